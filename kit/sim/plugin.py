@@ -1,0 +1,48 @@
+"""The contract between the simulation and a device.
+
+A device lives in one file of ``kit/sim/plugins/`` and never touches the graph: it *returns* messages and
+*accepts* messages, and whoever runs the simulation carries them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """A topic that a device publishes or subscribes, by its absolute name, and its message class."""
+
+    direction: Literal["publish", "subscribe"]
+    topic: str
+    type: type[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """A message on its way from a device to a topic."""
+
+    topic: str
+    message: Any
+
+
+class Plugin:
+    """One device of one model (or of the world). The simulation calls it; these defaults do nothing."""
+
+    endpoints: Sequence[Endpoint] = ()
+
+    def reset(self, seed: int) -> None:
+        """Back to how it was when built, with noise that depends on ``seed`` alone."""
+
+    def accept(self, topic: str, message: Any) -> None:
+        """Takes a message that arrived on one of its subscribed topics."""
+
+    def before_step(self, dt: float) -> Iterable[Outgoing]:
+        """Called before the physics step: drives set velocities; lasers look at the world as it is now."""
+        return ()
+
+    def after_step(self, dt: float) -> Iterable[Outgoing]:
+        """Called after the physics step and the advance of the clock: bumpers report what touched."""
+        return ()

@@ -1,0 +1,49 @@
+"""What a simulation looks like at one instant: plain frozen records, safe to hand to another thread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kit.geometry import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class BodyState:
+    """One body: its pose in the world, and the velocity of its origin [m/s, m/s, rad/s], world frame."""
+
+    model: str
+    body: str
+    pose: Pose
+    velocity: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two footprints that touch. A wall is named by its layer's first name, as entity and as body."""
+
+    entity_a: str
+    body_a: str
+    entity_b: str
+    body_b: str
+    points: tuple[tuple[float, float], ...]
+    """World coordinates [m]; empty for a sensor footprint."""
+    normal: tuple[float, float]
+    """Unit vector from a to b."""
+    force: float
+    """Mean impulse over the step divided by its length [N]; a rough figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationState:
+    time_ns: int
+    tick: int
+    bodies: tuple[BodyState, ...]
+    """In load order: model by model, body by body."""
+    contacts: tuple[Contact, ...]
+
+    def pose(self, model: str, body: str | None = None) -> Pose:
+        """The pose of a model's body, by default its first. KeyError if there is none."""
+        for state in self.bodies:
+            if state.model == model and body in (None, state.body):
+                return state.pose
+        raise KeyError(model if body is None else f"{model}/{body}")

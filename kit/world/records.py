@@ -1,0 +1,205 @@
+"""A world as its files describe it: frozen records, without I/O and without physics.
+
+Field for field Flatland's format (world, layer and model YAML). Lengths in metres, angles in radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.geometry import Pose
+
+MAX_LAYERS = 16
+"""Layer names in one world: Flatland has 16 collision bits."""
+
+ALL_LAYERS = 0xFFFF
+"""The bits of ``layers: ["all"]``, the default of a footprint and of a laser."""
+
+Color = tuple[float, float, float, float]
+"""Red, green, blue, alpha, each 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """A place in a file that the user can open: 1-based line and column."""
+
+    file: Path
+    line: int = 1
+    column: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walls:
+    """The zero-thickness, two-sided wall segments of one map, all in one static body.
+
+    ``local``: (n, 4) float64, ``x1 y1 x2 y2`` [m] in the map's own frame; ``origin``: that frame's pose in
+    the world.
+    """
+
+    local: NDArray[np.float64]
+    origin: Pose
+    file: Path
+    """The map YAML."""
+    source: Path
+    """The image or .dat file it names."""
+
+    @property
+    def segments(self) -> NDArray[np.float64]:
+        """(n, 4) float64 ``x1 y1 x2 y2`` [m] in world coordinates."""
+        cos, sin = np.cos(self.origin.theta), np.sin(self.origin.theta)
+        x, y = self.local[:, 0::2], self.local[:, 1::2]
+        out = np.empty_like(self.local)
+        out[:, 0::2] = self.origin.x + cos * x - sin * y
+        out[:, 1::2] = self.origin.y + sin * x + cos * y
+        return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layer:
+    """One entry of ``layers``: its names (the first is its identity), and its walls if it has a map."""
+
+    names: tuple[str, ...]
+    bits: int
+    """One bit per name; the walls carry all of them."""
+    color: Color
+    walls: Walls | None
+    properties: Mapping[str, object]
+    place: Place
+
+    @property
+    def name(self) -> str:
+        return self.names[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    center: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    points: tuple[tuple[float, float], ...]
+    """The corners of the convex hull of what the file lists, counter-clockwise, in the body's frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """One shape of a body, and what it touches."""
+
+    shape: Circle | Polygon
+    density: float
+    """kg/m^2"""
+    friction: float
+    restitution: float
+    sensor: bool
+    collision: bool
+    layers: tuple[str, ...]
+    """As written: ``("all",)`` or layer names."""
+    category: int
+    """The bits of its layers; what a laser compares with."""
+    place: Place
+
+    @property
+    def mask(self) -> int:
+        """What it collides with: its category, or nothing with ``collision: false``."""
+        return self.category if self.collision else 0
+
+
+BodyKind = Literal["dynamic", "kinematic", "static"]
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    name: str
+    pose: Pose
+    """In the model's frame."""
+    kind: BodyKind
+    color: Color
+    linear_damping: float
+    angular_damping: float
+    footprints: tuple[Footprint, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """One end of a joint: a body's name and a point [m] in that body's frame."""
+
+    body: str
+    point: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    name: str
+    kind: Literal["revolute", "weld"]
+    anchors: tuple[Anchor, Anchor]
+    color: Color
+    collide_connected: bool
+    limits: tuple[float, float] | None
+    """Revolute only: [rad]."""
+    angle: float
+    """Weld only: [rad]."""
+    frequency: float
+    """Weld only: Hz, 0 is rigid."""
+    damping: float
+    """Weld only: damping ratio."""
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class PluginSpec:
+    """One entry of ``plugins``. ``params`` is what the reader of its type made of the other keys."""
+
+    name: str
+    type: str
+    params: object
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    name: str
+    namespace: str
+    pose: Pose
+    file: Path
+    bodies: tuple[Body, ...]
+    """Enabled bodies only, at least one."""
+    joints: tuple[Joint, ...]
+    plugins: tuple[PluginSpec, ...]
+    place: Place
+
+    def topic(self, name: str) -> str:
+        """A plugin's topic name, absolute: under the model's namespace unless it starts with ``/``."""
+        if name.startswith("/"):
+            return name
+        return f"/{self.namespace}/{name}" if self.namespace else f"/{name}"
+
+    def frame(self, name: str) -> str:
+        """A plugin's frame name: prefixed by the namespace unless it starts with ``/``, which is dropped."""
+        if name.startswith("/"):
+            return name[1:]
+        return f"{self.namespace}_{name}" if self.namespace else name
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    file: Path
+    layers: tuple[Layer, ...] = ()
+    models: tuple[Model, ...] = ()
+    plugins: tuple[PluginSpec, ...] = ()
+    velocity_iterations: int = 10
+    position_iterations: int = 10
+    layer_bits: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    """Every layer name and its bit."""
