@@ -1,0 +1,68 @@
+"""The command line. Each verb is one module here, imported only when it is used, so that ``kit`` starts fast."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Final
+
+import click
+
+import kit
+
+VERBS: Final[dict[str, tuple[str, str]]] = {
+    "play": ("kit.cli.play", "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does)."),
+    "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
+    "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
+    "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
+    "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
+}
+"""Every verb: the module that holds its ``command``, and its line in ``kit --help``."""
+
+
+class LazyGroup(click.Group):
+    """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in VERBS:
+            return None
+        command: click.Command = import_module(VERBS[cmd_name][0]).command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError:
+            from difflib import get_close_matches
+
+            near = get_close_matches(args[0], VERBS, n=1)
+            hint = f" Did you mean `kit {near[0]}`?" if near else ""
+            raise click.UsageError(f"There is no `kit {args[0]}`.{hint} `kit --help` lists the verbs.", ctx) from None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Verbs"):
+            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items()])
+
+
+@click.group(
+    cls=LazyGroup,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="`kit VERB --help` explains a verb. Leave every screen with Ctrl-C or q.",
+)
+@click.version_option(kit.__version__, prog_name="kit")
+@click.pass_context
+def main(ctx: click.Context) -> None:
+    """The terminal robot-learning kit: drive a robot, program it, teach it.
+
+    `kit` alone opens the maze with a robot finding its own way; press an arrow key to take over.
+    """
+    if ctx.invoked_subcommand is None:
+        play = main.get_command(ctx, "play")
+        assert play is not None
+        ctx.invoke(play)

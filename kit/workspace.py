@@ -1,0 +1,74 @@
+"""Where the user's own files live: one folder, made by the first start, and nothing written outside it but caches."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+
+class WorkspaceError(Exception):
+    """The workspace cannot be used; the message says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """The user's folder and what stands where in it."""
+
+    folder: Path
+
+    @property
+    def controllers(self) -> Path:
+        return self.folder / "controllers"
+
+    @property
+    def worlds(self) -> Path:
+        return self.folder / "worlds"
+
+    @property
+    def recordings(self) -> Path:
+        return self.folder / "recordings"
+
+    @property
+    def runs(self) -> Path:
+        return self.folder / "runs"
+
+
+def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspace:
+    """The workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
+
+    Makes the folder and its parts where they are missing, unless ``make`` is false. Raises WorkspaceError
+    when the place is a file or may not be written.
+    """
+    if folder is None:
+        named = os.environ.get("KIT_WORKSPACE")
+        folder = Path(named).expanduser() if named else Path.home() / "robot-kit"
+    workspace = Workspace(folder.expanduser().absolute())
+    if make:
+        try:
+            for part in (workspace.controllers, workspace.worlds, workspace.recordings, workspace.runs):
+                part.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise WorkspaceError(
+                f"{workspace.folder}: cannot be used as the workspace ({error.strerror}). "
+                "Name another folder with --workspace FOLDER."
+            ) from None
+    return workspace
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(name).chmod(0o644)
+        Path(name).replace(path)
+    except BaseException:
+        with suppress(OSError):
+            Path(name).unlink()
+        raise
