@@ -1,0 +1,57 @@
+"""Floor 4: controllers that come with the kit, each an ordinary ROS 2 node file that also runs on a robot."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+FOLDER = Path(__file__).parent
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerFile:
+    """A node file that can drive a robot: its name, its file, and the first line of what it says of itself."""
+
+    name: str
+    file: Path
+    title: str
+
+
+def title_of(file: Path) -> str:
+    """The first line of a Python file's docstring, or nothing. The file is read, never run."""
+    try:
+        return (ast.get_docstring(ast.parse(file.read_bytes())) or "").partition("\n")[0]
+    except (OSError, SyntaxError, ValueError):
+        return ""
+
+
+def shipped() -> tuple[ControllerFile, ...]:
+    """The kit's own controllers, the two that the kit opens with first, then the worked examples."""
+    names = [FOLDER / "random_walk.py", FOLDER / "teleop.py", *sorted((FOLDER / "examples").glob("*.py"))]
+    return tuple(ControllerFile(file.stem, file, title_of(file)) for file in names)
+
+
+def in_folder(folder: Path) -> tuple[ControllerFile, ...]:
+    """The user's controllers: every ``.py`` file of ``folder``, by name."""
+    files = sorted(file for file in folder.glob("*.py") if not file.name.startswith((".", "_")))
+    return tuple(ControllerFile(file.stem, file, title_of(file)) for file in files)
+
+
+def find(name: str, folder: Path | None = None) -> ControllerFile:
+    """A controller by path, or by name: the user's ``folder`` first, then the kit's own.
+
+    Raises LookupError that names what there is.
+    """
+    path = Path(name).expanduser()
+    if path.suffix == ".py" or "/" in name:
+        if not path.is_file():
+            raise LookupError(f"{name}: there is no such file.")
+        return ControllerFile(path.stem, path.absolute(), title_of(path))
+    known = {item.name: item for item in (*shipped(), *(in_folder(folder) if folder else ()))}
+    if name in known:
+        return known[name]
+    near = get_close_matches(name, known, n=1)
+    hint = f" Did you mean {near[0]}?" if near else ""
+    raise LookupError(f"There is no controller named {name}.{hint} There are: {', '.join(known)}.")
