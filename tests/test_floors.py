@@ -1,0 +1,90 @@
+"""The house rules that a machine can check: floors, sizes, names, and what a fresh process must not load."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+SOURCES = sorted([*(ROOT / "kit").rglob("*.py"), *(ROOT / "grader").rglob("*.py")])
+EMPTY_NAMES = {"utils", "util", "common", "base", "helpers", "core", "manager", "managers", "misc"}
+HEAVY = (
+    "torch",
+    "stable_baselines3",
+    "gymnasium",
+    "textual",
+    "numba",
+    "pymunk",
+    "PIL",
+    "networkx",
+    "highspy",
+    "rosbags",
+)
+
+
+def lines_allowed(source: Path) -> int:
+    # numba's disk cache does not notice an edit in another file, so all kernels share one.
+    return 600 if source.name == "kernels.py" else 400
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_module_fits_in_a_head(source: Path) -> None:
+    assert len(source.read_text().splitlines()) <= lines_allowed(source)
+    assert source.stem not in EMPTY_NAMES
+
+
+def test_all_jitted_code_is_in_one_file() -> None:
+    jitted = [
+        source for source in SOURCES if "import numba" in (text := source.read_text()) or "from numba" in text
+    ]
+    assert jitted == [ROOT / "kit" / "kernels.py"]
+
+
+def test_no_print_below_the_command_line() -> None:
+    printing = [
+        str(source.relative_to(ROOT))
+        for source in SOURCES
+        if "cli" not in source.parts
+        for node in ast.walk(ast.parse(source.read_text()))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"
+    ]
+    assert printing == []
+
+
+def test_imports_go_down() -> None:
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports())",
+        ],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize(
+    ("module", "allowed"),
+    [
+        ("kit", ()),
+        ("kit.cli", ()),
+        ("kit.msg", ()),
+        ("kit.ros.names", ()),
+        ("kit.host.agent", ()),
+        ("kit.world.records", ()),
+        ("kit.runner", ("numba", "pymunk", "PIL")),
+        ("kit.layers", ()),
+    ],
+)
+def test_a_fresh_process_loads_no_more_than_it_needs(module: str, allowed: tuple[str, ...]) -> None:
+    unwanted = [name for name in HEAVY if name not in allowed]
+    code = f"import sys, {module}; print(*[name for name in {unwanted!r} if name in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
