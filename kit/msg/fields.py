@@ -86,7 +86,7 @@ class Scalar:
         # A NaN or an infinity fits every float: hence the comparisons as they are.
         if self.low != self.high and (value < self.low or value > self.high) and value - value == 0:
             raise FieldError(
-                f"The '{name}' field must be a {self.text} in [{self.low:g}, {self.high:g}], not {value}"
+                f"The '{name}' field must be a {self.text}, {self.low} to {self.high}, not {value}"
             )
         return value
 

@@ -38,6 +38,11 @@ class Field:
     def slot(self) -> str:
         return f"_{self.name}"
 
+    @property
+    def has_zero_default(self) -> bool:
+        """Whether the definition gives no default of its own."""
+        return self.default is zero
+
 
 @dataclass(frozen=True, slots=True)
 class Constant:
