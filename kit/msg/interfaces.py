@@ -15,6 +15,7 @@ PACKAGES = (
     "geometry_msgs",
     "nav_msgs",
     "rcl_interfaces",
+    "robot_kit_msgs",
     "rosgraph_msgs",
     "sensor_msgs",
     "shape_msgs",
