@@ -1,0 +1,97 @@
+"""A picture made of characters, and what differs between two of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+BLANK = ord(" ")
+
+GAP = 8
+"""Unchanged characters that are cheaper to send again than to jump over: moving the cursor and naming the
+colour anew cost about as many bytes as eight characters."""
+
+
+class Span(NamedTuple):
+    """The characters ``start`` to ``stop`` (exclusive) of a row."""
+
+    row: int
+    start: int
+    stop: int
+
+
+class Run(NamedTuple):
+    """Characters of one ink on one paper (roles)."""
+
+    text: str
+    ink: int
+    paper: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """Rows of characters, each with a role for its ink and one for its paper, 0 for none."""
+
+    glyphs: NDArray[np.uint32]
+    """(rows, columns) Unicode code points, all one character wide."""
+    inks: NDArray[np.uint8]
+    papers: NDArray[np.uint8]
+
+    @classmethod
+    def empty(cls, columns: int, rows: int) -> Frame:
+        shape = (rows, columns)
+        return cls(
+            np.full(shape, BLANK, dtype=np.uint32), np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
+        )
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        rows, columns = self.glyphs.shape
+        return rows, columns
+
+    def text(self, row: int) -> str:
+        return str(self.glyphs[row].astype("<u4").tobytes(), "utf-32-le")
+
+    def rows(self) -> list[str]:
+        """The characters alone, row by row, without the blanks at the ends."""
+        return [self.text(row).rstrip() for row in range(self.shape[0])]
+
+    def runs(self, row: int) -> Iterator[Run]:
+        """The row cut where the ink or the paper changes. A blank takes the ink of what stands before it,
+        since nobody sees it: fewer cuts, fewer bytes."""
+        text, inks, papers = self.text(row), self.inks[row], self.papers[row]
+        if not len(inks):
+            return
+        visible = (self.glyphs[row] != BLANK) | (papers != 0)
+        last = np.maximum.accumulate(np.where(visible, np.arange(len(inks)), 0))
+        looks = np.where(papers[last] == 0, inks[last], inks).astype(np.int32) * 256 + papers
+        cuts = [0, *(np.flatnonzero(np.diff(looks)) + 1).tolist(), len(looks)]
+        for start, stop in pairwise(cuts):
+            yield Run(text[start:stop], int(looks[start]) >> 8, int(papers[start]))
+
+
+def diff(before: Frame | None, after: Frame, gap: int = GAP) -> list[Span]:
+    """The spans in which ``after`` looks different, merged where ``gap`` or fewer characters lie between.
+
+    Without a frame before, or after one of another size, everything differs.
+    """
+    rows, columns = after.shape
+    if before is None or before.shape != after.shape:
+        return [Span(row, 0, columns) for row in range(rows)] if columns else []
+    changed = before.glyphs != after.glyphs
+    changed |= before.inks != after.inks
+    changed |= before.papers != after.papers
+    spans = []
+    for row in np.flatnonzero(changed.any(axis=1)).tolist():
+        where = np.flatnonzero(changed[row])
+        cuts = np.flatnonzero(np.diff(where) > gap + 1)
+        starts = where[np.concatenate(([0], cuts + 1))]
+        stops = where[np.concatenate((cuts, [-1]))] + 1
+        spans += [Span(row, start, stop) for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)]
+    return spans

@@ -1,0 +1,147 @@
+"""Scene and camera in, frame out; what stands still is drawn once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kit.picture import raster
+from kit.picture.camera import Camera
+from kit.picture.encode import Encoder
+from kit.picture.frame import Frame
+from kit.picture.raster import Grid
+from kit.picture.roles import ROBOTS, TRAILS, Role
+from kit.picture.scene import Body, FloatArray, Path, Scene
+from kit.picture.stamps import Stamps, is_outlined
+
+SOLID_WALL = 0.08
+"""Two wall lines one dot apart are drawn as one wall if the dot is at most this large [m]; no robot of the
+kit passes such a gap."""
+
+NOSE = 0.25
+"""How far a robot's heading line reaches beyond its hull: this share of its length, or two characters' widths
+if that is more."""
+
+_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
+"""Of a path's dots: so many make a period, so many of them are drawn."""
+
+
+class Painter:
+    """Draws scenes with one encoder. Keeps the walls as drawn last, and draws them again only when the
+    array or the camera is another one."""
+
+    def __init__(self, encoder: Encoder) -> None:
+        self.encoder = encoder
+        self._walls: FloatArray | None = None
+        self._camera: Camera | None = None
+        self._static = raster.blank(0, 0)
+
+    def paint(self, scene: Scene, camera: Camera) -> Frame:
+        canvas = _Canvas(self._standing(scene.walls, camera).copy(), camera, self.encoder)
+        canvas.draw_lines(scene.beams, Role.BEAM, period=3)
+        for path in scene.paths:
+            canvas.draw_path(path)
+        for number, trail in enumerate(scene.trails):
+            canvas.draw_points(trail, TRAILS[number % len(TRAILS)])
+        canvas.draw_points(scene.hits, Role.HIT)
+        for target in scene.targets:
+            canvas.draw_circle(target.x, target.y, target.radius, Role.TARGET)
+        for body in scene.bodies:
+            if not body.robot:
+                canvas.draw_outline(body, Role.BODY)
+        for number, robot in enumerate(scene.robots):
+            canvas.draw_robot(robot, ROBOTS[number % len(ROBOTS)])
+        frame = self.encoder.encode(canvas.grid)
+        Stamps(frame, camera, self.encoder.symbols).put_all(scene)
+        return frame
+
+    def _standing(self, walls: FloatArray, camera: Camera) -> Grid:
+        if walls is not self._walls or camera != self._camera:
+            self._static = _draw_walls(walls, camera, self.encoder)
+            self._walls, self._camera = walls, camera
+        return self._static
+
+
+def _draw_walls(walls: FloatArray, camera: Camera, encoder: Encoder) -> Grid:
+    canvas = _Canvas(
+        raster.blank(camera.columns * encoder.across, camera.rows * encoder.down), camera, encoder
+    )
+    canvas.draw_lines(walls, Role.WALL)
+    raster.close_gaps(
+        canvas.grid,
+        across=camera.cell / encoder.across <= SOLID_WALL,
+        down=camera.cell_height / encoder.down <= SOLID_WALL,
+    )
+    return canvas.grid
+
+
+class _Canvas:
+    """A grid of dots that takes world coordinates."""
+
+    def __init__(self, grid: Grid, camera: Camera, encoder: Encoder) -> None:
+        self.grid = grid
+        self._height, self._width = grid.shape
+        self._camera = camera
+        self._encoder = encoder
+        self._dot = camera.cell / encoder.across, camera.cell_height / encoder.down
+
+    def project(self, points: FloatArray) -> FloatArray:
+        return self._camera.project(points, self._encoder.across, self._encoder.down)
+
+    def draw_points(self, points: FloatArray, role: Role) -> None:
+        raster.put(self.grid, raster.point_dots(self.project(points), self._width, self._height), role)
+
+    def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
+        """Of every ``period`` dots along the lines, the first ``drawn``."""
+        if not len(segments):
+            return
+        self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)
+
+    def draw_path(self, path: Path) -> None:
+        self.draw_lines(raster.polyline(path.points), Role.PATH, *_PATTERNS[path.style])
+
+    def draw_circle(self, x: float, y: float, radius: float, role: Role) -> None:
+        """The circle's line; nothing where it would be a dot or two: a symbol marks the place."""
+        if radius < max(self._dot):
+            return
+        column, row = self.project(np.array((x, y))).tolist()
+        if not (math.isfinite(column) and math.isfinite(row)):
+            return
+        # About the middle of a dot, it is as round as dots can be.
+        middle = math.floor(column) + 0.5, math.floor(row) + 0.5
+        corners = raster.circle(*middle, radius / self._dot[0], radius / self._dot[1])
+        self._put_lines(raster.polyline(corners, closed=True), role)
+
+    def draw_outline(self, body: Body, role: Role) -> None:
+        for polygon in body.polygons:
+            self.draw_lines(raster.polyline(polygon, closed=True), role)
+        for disc in body.discs:
+            self.draw_circle(*disc, role)
+
+    def draw_robot(self, robot: Body, role: Role) -> None:
+        """Its outline, where that is large enough to be made out, and a line from its middle ahead."""
+        if is_outlined(robot, self._camera):
+            self.draw_outline(robot, role)
+        if not self._encoder.symbols.noses:
+            self._put_lines(_nose(robot, self._camera, self._encoder), role)
+
+    def _put_lines(self, dots: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
+        rows, columns = raster.line_dots(dots, self._width, self._height)
+        if drawn < period:
+            kept = np.arange(len(rows)) % period < drawn
+            rows, columns = rows[kept], columns[kept]
+        raster.put(self.grid, (rows, columns), role)
+
+
+def _nose(robot: Body, camera: Camera, encoder: Encoder) -> FloatArray:
+    """A robot's heading line, (1, 4) in dots: from its middle to well before its front."""
+    extent = robot.extent
+    middle = extent.middle
+    places = (middle, (extent.right, middle[1]), (extent.right + 1.0, middle[1]))
+    start, front, ahead = camera.project(
+        np.array([robot.pose.point(*place) for place in places]), encoder.across, encoder.down
+    )
+    step = (ahead - front) / np.abs(ahead - front).max()  # one dot along the longer axis
+    beyond = max(2.0, NOSE * extent.width / camera.cell) * encoder.across
+    return np.concatenate((start, front + step * beyond))[None]
