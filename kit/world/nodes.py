@@ -38,8 +38,13 @@ class Leaf:
     text: str
     plain: bool
     place: Place
-    variable: str | None = None
-    """The environment variable it came from, if any: its value is never shown in a message."""
+    shown_as: str | None = None
+    """What messages call it, where its text is not what stands in the file: an environment variable's value
+    is used but never shown."""
+
+    @property
+    def height(self) -> int:
+        return 0
 
     @property
     def is_null(self) -> bool:
@@ -50,12 +55,16 @@ class Leaf:
 class ListNode:
     items: tuple[Node, ...]
     place: Place
+    height: int
+    """How deep it is nested: 1 for a list of scalars."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapNode:
     entries: Mapping[str, Entry]
     place: Place
+    height: int
+    """As of a list."""
 
 
 @dataclass(frozen=True, slots=True)

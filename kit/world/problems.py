@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
@@ -51,10 +52,15 @@ class Problems:
         return bool(self._found)
 
 
-def quoted(text: str) -> str:
-    """``text`` for a message: in quotes, at most 60 characters, nothing a terminal would obey."""
-    shown = text if len(text) <= 60 else text[:57] + "..."
-    return '"' + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in shown) + '"'
+def displayable(text: str) -> bool:
+    """Whether a terminal would just show the text: spaces of any language, but no control characters."""
+    return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
+
+
+def quoted(text: str, limit: int = 60) -> str:
+    """``text`` for a message: in quotes, cut to ``limit`` characters, nothing a terminal would obey."""
+    shown = text if len(text) <= limit else text[: limit - 3] + "..."
+    return '"' + "".join(c if displayable(c) else ascii(c)[1:-1] for c in shown) + '"'
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:

@@ -6,12 +6,12 @@ in, asks for its keys, and returns a frozen record. The loader calls ``finish()`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Protocol, TypeAlias, TypeVar
 
 from kit.world.problems import Problem, Problems, WorldError, nearest, quoted, suggestion
-from kit.world.records import ALL_LAYERS, Layer, Model
+from kit.world.records import ALL_LAYERS, Layer, Model, PluginSpec
 from kit.world.section import REQUIRED, Required, Section
 
 __all__ = [
@@ -27,8 +27,60 @@ __all__ = [
     "layers_of",
     "nearest",
     "quoted",
+    "read_named",
+    "read_plugins",
     "suggestion",
 ]
+
+STANDARD_PLUGINS = "flatland_plugins::"
+"""What may stand before the type of a plugin that comes with Flatland."""
+
+ScopeT = TypeVar("ScopeT")
+NamedT = TypeVar("NamedT", bound="_Named")
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+def read_named(
+    sections: Iterable[Section], what: str, read: Callable[[Section], NamedT]
+) -> tuple[NamedT, ...]:
+    """Reads things that need names of their own. Those with ``enabled: false`` are skipped, unread."""
+    found: dict[str, NamedT] = {}
+    for section in sections:
+        if not section.flag("enabled", True):
+            continue
+        thing = read(section)
+        section.finish()
+        if thing.name in found:
+            section.error(f"a {what} named {quoted(thing.name)} already exists", "name")
+        found.setdefault(thing.name, thing)
+    return tuple(found.values())
+
+
+def read_plugins(
+    sections: Iterable[Section],
+    scope: ScopeT,
+    readers: Mapping[str, Callable[[Section, ScopeT], object]] | None,
+) -> tuple[PluginSpec, ...]:
+    """The plugins of a model or of the world. Without ``readers`` their types are not checked, and their
+    parameters stay a plain mapping.
+    """
+
+    def read(section: Section) -> PluginSpec:
+        name = section.name("name")
+        type_ = section.text("type").removeprefix(STANDARD_PLUGINS)
+        if readers is None:
+            return PluginSpec(name, type_, section.rest(), section.place)
+        if type_ in readers:
+            return PluginSpec(name, type_, readers[type_](section, scope), section.place)
+        if type_:
+            section.error(f"there is no plugin {quoted(type_)}: {suggestion(type_, readers)}", "type")
+        return PluginSpec(name, type_, section.rest(), section.place)
+
+    return read_named(sections, "plugin", read)
 
 
 def layers_of(section: Section, key: str, layer_bits: Mapping[str, int]) -> tuple[tuple[str, ...], int]:

@@ -14,8 +14,8 @@ from typing import Final, TypeVar, overload
 
 from kit.geometry import Pose
 from kit.world.nodes import Leaf, ListNode, MapNode, Node, as_flag, as_integer, as_number, plain_value
-from kit.world.problems import Problems, nearest, quoted, suggestion
-from kit.world.records import Place
+from kit.world.problems import Problems, displayable, nearest, quoted, suggestion
+from kit.world.records import Color, Place
 
 MAX_NUMBER = 1e12
 """No quantity of a flat world is larger, and nothing computed from smaller ones overflows."""
@@ -40,8 +40,8 @@ def _shown(node: Node) -> str:
         return f"a list of {len(node.items)}"
     if isinstance(node, MapNode):
         return "a mapping"
-    if node.variable is not None:
-        return f"the value of the environment variable {node.variable}"
+    if node.shown_as is not None:
+        return node.shown_as
     return "nothing" if node.is_null else quoted(node.text)
 
 
@@ -87,20 +87,29 @@ class Section:
             return _instead(default, "")
         text = self._text(node, quoted(key))
         if text is not None and choices is not None and text not in choices:
-            self.error(f"{quoted(key)} cannot be {_shown(node)}: {suggestion(text, choices)}", key)
+            self._not_one_of(key, choices)
             return _instead(default, next(iter(choices)))
         return _instead(default, "") if text is None else text
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
         """A text by which something is called: one line, not empty."""
         name = self.text(key, default)
-        if self.has(key) and (not name.strip() or "\n" in name):
-            self.error(f"{quoted(key)} must be a name: one line, not empty", key)
+        if self.has(key):
+            self._check_name(name, key)
         return name
 
-    def choice(self, key: str, options: Mapping[str, T], default: str | Required = REQUIRED) -> T:
-        """What the text stands for in the table ``options``."""
-        return options[self.text(key, default, choices=options)]
+    @overload
+    def choice(self, key: str, options: Mapping[str, T]) -> T | None: ...
+    @overload
+    def choice(self, key: str, options: Mapping[str, T], default: str) -> T: ...
+    def choice(self, key: str, options: Mapping[str, T], default: str | Required = REQUIRED) -> T | None:
+        """What the text stands for in the table ``options``; None where there is no default and no such text."""
+        text = self.text(key, default)
+        if text in options:
+            return options[text]
+        if text:
+            self._not_one_of(key, options)
+        return None if isinstance(default, Required) else options[default]
 
     def number(
         self,
@@ -192,6 +201,25 @@ class Section:
         texts = [self._text(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items)]
         return tuple(text for text in texts if text is not None)
 
+    def names(self, key: str) -> tuple[str, ...]:
+        """A name, or a list of at least one."""
+        if isinstance(self._value(key, REQUIRED), ListNode):
+            names = self.texts(key, at_least=1)
+            for name in names:
+                self._check_name(name, key)
+            return names
+        return (self.name(key),)
+
+    def color(self, key: str, default: Color) -> Color:
+        """Four numbers: red, green, blue, alpha; each is brought into 0 to 1."""
+        red, green, blue, alpha = (min(max(part, 0.0), 1.0) for part in self.numbers(key, default, length=4))
+        return red, green, blue, alpha
+
+    def point(self, key: str, default: tuple[float, float] | Required = REQUIRED) -> tuple[float, float]:
+        """``[x, y]``: metres."""
+        x, y = self.numbers(key, default, length=2)
+        return x, y
+
     def pose(self, key: str, default: Pose | Required = REQUIRED) -> Pose:
         """``[x, y, theta]``: m, m, rad."""
         return Pose(*self.numbers(key, default, length=3))
@@ -207,9 +235,16 @@ class Section:
             return None if default is None else self._absent(self.place)
         return self._section(node, quoted(key))
 
-    def sections(self, key: str, default: tuple[()] | Required = REQUIRED) -> tuple[Section, ...]:
+    def sections(
+        self,
+        key: str,
+        default: tuple[()] | Required = REQUIRED,
+        *,
+        length: int | None = None,
+        at_least: int | None = None,
+    ) -> tuple[Section, ...]:
         """A list of mappings."""
-        items = self._items(key, default, None, None, None) or ()
+        items = self._items(key, default, length, at_least, None) or ()
         return tuple(self._section(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items))
 
     def rest(self) -> Mapping[str, object]:
@@ -266,10 +301,19 @@ class Section:
         if not isinstance(node, Leaf) or node.is_null:
             self._error(f"{what} must be a text, not {_shown(node)}", node.place)
             return None
-        if not all(c.isprintable() or c == "\n" for c in node.text):
+        if not displayable(node.text.replace("\n", "")):
             self._error(f"{what} contains control characters: {_shown(node)}", node.place)
             return None
         return node.text
+
+    def _not_one_of(self, key: str, choices: Collection[str]) -> None:
+        node = self._entries[key].value
+        hint = suggestion(node.text if isinstance(node, Leaf) else "", choices)
+        self.error(f"{quoted(key)} cannot be {_shown(node)}: {hint}", key)
+
+    def _check_name(self, name: str, key: str) -> None:
+        if not name.strip() or "\n" in name:
+            self.error(f"{quoted(key)} must be a name: one line, not empty", key)
 
     def _number(self, node: Node, what: str, *, infinite: bool = False) -> float | None:
         number = as_number(node.text) if isinstance(node, Leaf) else None
@@ -303,7 +347,7 @@ class Section:
         return self._absent(node.place)
 
     def _absent(self, place: Place) -> Section:
-        return Section(MapNode(MappingProxyType({}), place), self._problems, silent=True)
+        return Section(MapNode(MappingProxyType({}), place, height=1), self._problems, silent=True)
 
 
 def _instead(default: T | Required, otherwise: T) -> T:

@@ -1,0 +1,97 @@
+"""The layers of a world file, and the maps they name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+
+from kit.world.documents import Documents
+from kit.world.files import Unusable
+from kit.world.problems import quoted
+from kit.world.records import MAX_LAYERS, Color, Layer, Walls
+from kit.world.section import Section
+from kit.world.walls import image_walls, read_lines
+
+WHITE: Color = (1.0, 1.0, 1.0, 1.0)
+
+
+class LayerReader:
+    """Reads the layers in order, and hands out their bits in that order."""
+
+    def __init__(self, documents: Documents) -> None:
+        self._documents = documents
+        self._bits: dict[str, int] = {}
+        self._maps: dict[Path, Walls | None] = {}
+
+    @property
+    def bits(self) -> Mapping[str, int]:
+        """The bit of every name read so far."""
+        return MappingProxyType(dict(self._bits))
+
+    def read(self, sections: Iterable[Section]) -> tuple[Layer, ...]:
+        return tuple(self._layer(section) for section in sections)
+
+    def _layer(self, section: Section) -> Layer:
+        names = section.names("name")
+        properties = section.section("properties", None)
+        layer = Layer(
+            names=names,
+            bits=self._register(names, section),
+            color=section.color("color", WHITE),
+            walls=self._walls(section) if section.text("map", "") else None,
+            properties=properties.rest() if properties else MappingProxyType({}),
+            place=section.place,
+        )
+        section.finish()
+        return layer
+
+    def _register(self, names: tuple[str, ...], section: Section) -> int:
+        """The bits of the names; a name that is taken, or one too many, gets none."""
+        before = len(self._bits)
+        bits = 0
+        for name in names:
+            if name in self._bits:
+                section.error(f"a layer named {quoted(name)} already exists", "name")
+            elif len(self._bits) < MAX_LAYERS:
+                self._bits[name] = 1 << len(self._bits)
+                bits |= self._bits[name]
+            else:
+                count = f"{len(names)} here after {before} before"
+                section.error(f"a world has at most {MAX_LAYERS} layer names: {count} are too many", "name")
+                break
+        return bits
+
+    def _walls(self, section: Section) -> Walls | None:
+        file = self._documents.named(section, "map")
+        if file is None:
+            return None
+        if file not in self._maps:
+            found = self._documents.section(file, section.place_of("map"))
+            self._maps[file] = None if found is None else self._map(found, file)
+        return self._maps[file]
+
+    def _map(self, section: Section, file: Path) -> Walls | None:
+        origin = section.pose("origin")
+        if section.text("type", "") == "line_segments":
+            key = "data"
+            read = partial(read_lines, scale=section.number("scale"), problems=self._documents.problems)
+        else:
+            key = "image"
+            read = partial(
+                image_walls,
+                resolution=section.number("resolution", above=0),
+                occupied_thresh=section.number("occupied_thresh"),
+            )
+        source = self._documents.named(section, key)
+        section.finish(ignore_unknown=True)
+        if source is None:
+            return None
+        try:
+            local = read(source)
+        except Unusable as error:
+            section.error(f"cannot read {quoted(str(source), 200)}: {error}", key)
+            return None
+        local.setflags(write=False)
+        return Walls(local=local, origin=origin, file=file, source=source)

@@ -1,0 +1,173 @@
+"""A model file: bodies with footprints, joints, plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+from kit.geometry import Pose
+from kit.world.hull import area, convex_hull
+from kit.world.problems import quoted, suggestion
+from kit.world.reading import DeviceReader, ModelScope, layers_of, read_named, read_plugins
+from kit.world.records import (
+    Anchor,
+    Body,
+    BodyKind,
+    Circle,
+    Color,
+    Footprint,
+    Joint,
+    Model,
+    Place,
+    Polygon,
+)
+from kit.world.section import Section
+
+TRANSLUCENT: Color = (1.0, 1.0, 1.0, 0.5)
+
+MAX_CORNERS = 8
+"""Box2D's limit for a polygon."""
+
+MIN_AREA = 1e-8
+"""m^2: a polygon must be larger than a tenth of a millimetre squared, or it is a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelEntry:
+    """What a world file, or whoever spawns a model, says about it."""
+
+    name: str
+    namespace: str
+    pose: Pose
+    file: Path
+    place: Place
+
+
+def read_model(
+    section: Section,
+    entry: ModelEntry,
+    layer_bits: Mapping[str, int],
+    devices: Mapping[str, DeviceReader] | None,
+) -> Model:
+    """The model that a model file's mapping describes. What is wrong is noted."""
+    sections = section.sections("bodies", at_least=1)
+    bodies = read_named(sections, "body", partial(_body, layer_bits=layer_bits))
+    if sections and not bodies:
+        section.error("a model needs a body that is enabled", "bodies")
+    names = [body.name for body in bodies]
+    model = Model(
+        name=entry.name,
+        namespace=entry.namespace,
+        pose=entry.pose,
+        file=entry.file,
+        bodies=bodies,
+        joints=read_named(section.sections("joints", ()), "joint", partial(_joint, bodies=names)),
+        plugins=(),
+        place=entry.place,
+    )
+    scope = ModelScope(model, layer_bits)
+    plugins = read_plugins(section.sections("plugins", ()), scope, devices)
+    section.finish()
+    return replace(model, plugins=plugins)
+
+
+def _body(section: Section, layer_bits: Mapping[str, int]) -> Body:
+    return Body(
+        name=section.name("name"),
+        pose=section.pose("pose", Pose()),
+        kind=section.choice("type", _BODY_KINDS, "dynamic"),
+        color=section.color("color", TRANSLUCENT),
+        linear_damping=section.number("linear_damping", 0.0, minimum=0),
+        angular_damping=section.number("angular_damping", 0.0, minimum=0),
+        footprints=tuple(_footprint(footprint, layer_bits) for footprint in section.sections("footprints")),
+        place=section.place,
+    )
+
+
+def _footprint(section: Section, layer_bits: Mapping[str, int]) -> Footprint:
+    read_shape = section.choice("type", _SHAPES)
+    layers, category = layers_of(section, "layers", layer_bits)
+    footprint = Footprint(
+        shape=_UNKNOWN_SHAPE if read_shape is None else read_shape(section),
+        density=section.number("density", minimum=0),
+        friction=section.number("friction", 0.0, minimum=0),
+        restitution=section.number("restitution", 0.0, minimum=0),
+        sensor=section.flag("sensor", False),
+        collision=section.flag("collision", True),
+        layers=layers,
+        category=category,
+        place=section.place,
+    )
+    if read_shape is None:
+        section.rest()
+    section.finish()
+    return footprint
+
+
+def _circle(section: Section) -> Circle:
+    return Circle(section.point("center", (0.0, 0.0)), section.number("radius", above=0))
+
+
+def _polygon(section: Section) -> Polygon:
+    points = section.points("points", at_least=3, at_most=MAX_CORNERS)
+    corners = convex_hull(points)
+    if len(points) >= 3 and area(corners) < MIN_AREA:
+        section.error("the points of a polygon must not all lie on one line", "points")
+    return Polygon(corners)
+
+
+def _joint(section: Section, bodies: Collection[str]) -> Joint:
+    kind = section.choice("type", _JOINT_KINDS)
+    ends = section.sections("bodies", length=2)
+    anchors = [_anchor(end, bodies) for end in ends] or [Anchor("", (0.0, 0.0))] * 2
+    if anchors[0].body and anchors[0].body == anchors[1].body:
+        section.error(f"a joint needs two bodies, not {quoted(anchors[0].body)} twice", "bodies")
+    joint = Joint(
+        name=section.name("name"),
+        kind=kind or "revolute",
+        anchors=(anchors[0], anchors[1]),
+        color=section.color("color", TRANSLUCENT),
+        collide_connected=section.flag("collide_connected", False),
+        limits=_limits(section) if kind == "revolute" else None,
+        angle=section.number("angle", 0.0) if kind == "weld" else 0.0,
+        frequency=section.number("frequency", 0.0, minimum=0) if kind == "weld" else 0.0,
+        damping=section.number("damping", 0.0, minimum=0) if kind == "weld" else 0.0,
+        place=section.place,
+    )
+    if kind is None:
+        section.rest()
+    return joint
+
+
+def _anchor(section: Section, bodies: Collection[str]) -> Anchor:
+    body = section.name("name")
+    if body and body not in bodies:
+        section.error(f"no body has the name {quoted(body)}: {suggestion(body, bodies)}", "name")
+    anchor = Anchor(body, section.point("anchor"))
+    section.finish()
+    return anchor
+
+
+def _limits(section: Section) -> tuple[float, float] | None:
+    if not section.has("limits"):
+        return None
+    low, high = section.numbers("limits", length=2)
+    if low > high:
+        section.error('"limits" must be [lowest, highest]', "limits")
+    return low, high
+
+
+_BODY_KINDS: Mapping[str, BodyKind] = MappingProxyType(
+    {"dynamic": "dynamic", "kinematic": "kinematic", "static": "static"}
+)
+_JOINT_KINDS: Mapping[str, Literal["revolute", "weld"]] = MappingProxyType(
+    {"revolute": "revolute", "weld": "weld"}
+)
+_SHAPES: Mapping[str, Callable[[Section], Circle | Polygon]] = MappingProxyType(
+    {"circle": _circle, "polygon": _polygon}
+)
+_UNKNOWN_SHAPE = Circle((0.0, 0.0), 1.0)
