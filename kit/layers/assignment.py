@@ -1,0 +1,163 @@
+"""A plan as it is used: named layers, who is in them, which laser watches them; and what such a plan brings about.
+
+``breaches`` judges any assignment, whoever made it (the planner, the slides, a world file), by nothing but the
+definition: two entities meet when they share a layer, and a laser sees an entity when it watches one of its layers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from kit.layers.requirements import Case, Contact, Requirement, Sight
+
+
+@dataclass(frozen=True, slots=True)
+class NamedLayer:
+    name: str
+    members: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """Layers in order, and for every laser the names of those it watches."""
+
+    layers: tuple[NamedLayer, ...]
+    watches: Mapping[str, tuple[str, ...]]
+
+    def layers_of(self, entity: str) -> tuple[str, ...]:
+        """What to write in the entity's ``layers`` list."""
+        return self._lists.get(entity, ())
+
+    def share(self, a: str, b: str) -> bool:
+        """Whether two entities share a layer; whether ``a`` is in one at all, if ``b`` is ``a``."""
+        return not set(self.layers_of(a)).isdisjoint(self.layers_of(b))
+
+    def sees(self, laser: str, entity: str) -> bool:
+        """Whether the laser watches a layer of the entity."""
+        return not set(self.watches.get(laser, ())).isdisjoint(self.layers_of(entity))
+
+    @cached_property
+    def _lists(self) -> Mapping[str, tuple[str, ...]]:
+        lists: dict[str, list[str]] = {}
+        for layer in self.layers:
+            for member in layer.members:
+                lists.setdefault(member, []).append(layer.name)
+        return {member: tuple(names) for member, names in lists.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Breach:
+    """Where an assignment does not do what a case asks."""
+
+    what: Requirement
+    wanted: bool
+    """True: it should happen and does not. False: it happens and must not."""
+    layers: tuple[str, ...] = ()
+    """The shared layers that make it happen."""
+
+    def __str__(self) -> str:
+        through = f" (layer {', '.join(self.layers)})" if self.layers else ""
+        if isinstance(self.what, Sight):
+            verb = "must see" if self.wanted else "must not see"
+            return f"{self.what.laser} {verb} {self.what.entity}, but {'does not' if self.wanted else 'does'}{through}"
+        wish = "must" if self.wanted else "must not"
+        outcome = "share no layer" if self.wanted else "share one"
+        if self.what.a == self.what.b:
+            return f"the copies of {self.what.a} {wish} collide, but {outcome}{through}"
+        return f"{self.what.a} and {self.what.b} {wish} collide, but {outcome}{through}"
+
+
+def breaches(case: Case, assignment: Assignment) -> tuple[Breach, ...]:
+    """Everything in which the assignment differs from what the case asks; empty if it does just that."""
+    found: list[Breach] = []
+    lists = {name: set(assignment.layers_of(name)) for name in case.names}
+    for pair in (*case.pairs(), *(Contact(name, name) for name in case.names)):
+        shared = lists[pair.a] & lists[pair.b]
+        relation = case.relation(pair.a, pair.b)
+        if relation == "collide" and not shared:
+            found.append(Breach(pair, wanted=True))
+        elif relation == "apart" and shared:
+            found.append(Breach(pair, wanted=False, layers=tuple(sorted(shared))))
+    for laser in case.lasers:
+        watched = set(assignment.watches.get(laser.name, ()))
+        for name in case.names:
+            shared = lists[name] & watched
+            sighting = laser.sighting(name)
+            if sighting == "sees" and not shared:
+                found.append(Breach(Sight(laser.name, name), wanted=True))
+            elif sighting == "blind" and shared:
+                found.append(Breach(Sight(laser.name, name), wanted=False, layers=tuple(sorted(shared))))
+    return tuple(found)
+
+
+def lean(case: Case, layers: Sequence[frozenset[str]]) -> tuple[list[frozenset[str]], dict[str, list[int]]]:
+    """Layers without the members, and lasers without the layers, that nothing rests on.
+
+    Takes layers that serve every requirement of the case when each laser watches all it may. Returns the
+    layers with fewer members, and for each laser the numbers of those it has to watch. What is left out can
+    only take away contacts and sightings that nobody asked for.
+    """
+    watches = {laser.name: _fewest_watched(case, laser.name, layers) for laser in case.lasers}
+    members = [set(layer) for layer in layers]
+    for number, layer in enumerate(layers):
+        for name in sorted(layer, key=lambda n: (_needs(case, n), n)):
+            if _superfluous(case, name, number, members, watches):
+                members[number].discard(name)
+    return [frozenset(layer) for layer in members], watches
+
+
+def named(case: Case, layers: Sequence[frozenset[str]], watches: Mapping[str, Iterable[int]]) -> Assignment:
+    """The layers with the slides' names: C1, C2, ... where some contact rests on them, L1, L2, ... for lasers alone."""
+    order = {name: i for i, name in enumerate(case.names)}
+    kinds = ["L" if _contacts(case, layer) == 0 else "C" for layer in layers]
+    ranks = sorted(range(len(layers)), key=lambda i: (kinds[i], sorted(order[name] for name in layers[i])))
+    names: dict[int, str] = {}
+    for number in ranks:
+        names[number] = f"{kinds[number]}{1 + sum(name.startswith(kinds[number]) for name in names.values())}"
+    return Assignment(
+        tuple(NamedLayer(names[i], layers[i]) for i in ranks),
+        {laser: tuple(names[i] for i in ranks if i in set(numbers)) for laser, numbers in watches.items()},
+    )
+
+
+def _contacts(case: Case, layer: frozenset[str]) -> int:
+    return sum(contact.a in layer and contact.b in layer for contact in case.collide)
+
+
+def _fewest_watched(case: Case, laser: str, layers: Sequence[frozenset[str]]) -> list[int]:
+    """Few layers that show the laser all it must see and nothing it must not: greedily, then the superfluous dropped."""
+    sees, blind = case.laser[laser].sees, case.blind(case.laser[laser])
+    usable = {i: layer & sees for i, layer in enumerate(layers) if layer.isdisjoint(blind) and layer & sees}
+    chosen: list[int] = []
+    left = set(sees)
+    while left and (best := max(usable, key=lambda i: (len(usable[i] & left), -i), default=None)) is not None:
+        if not usable[best] & left:
+            break
+        chosen.append(best)
+        left -= usable[best]
+    for number in list(chosen):
+        if usable[number] <= frozenset().union(*(usable[i] for i in chosen if i != number)):
+            chosen.remove(number)
+    return sorted(chosen)
+
+
+def _needs(case: Case, name: str) -> int:
+    return sum(name in (contact.a, contact.b) for contact in case.collide)
+
+
+def _superfluous(
+    case: Case, name: str, number: int, members: Sequence[set[str]], watches: Mapping[str, list[int]]
+) -> bool:
+    """Whether the entity can leave the layer and every requirement still be met."""
+    elsewhere = [i for i, layer in enumerate(members) if i != number and name in layer]
+    for other in members[number]:
+        if case.relation(name, other) == "collide":
+            met = bool(elsewhere) if other == name else any(other in members[i] for i in elsewhere)
+            if not met:
+                return False
+    return not any(
+        number in watched and name in case.laser[laser].sees and not set(watched) & set(elsewhere)
+        for laser, watched in watches.items()
+    )

@@ -1,0 +1,164 @@
+"""The layers worth considering: maximal cliques, once for every set of lasers that may watch them.
+
+Write G for the graph whose vertices are the entities and whose edges are the pairs that may share a layer
+(``collide`` and ``either``), and, for a set T of lasers, W_T for the entities to which no laser of T must be
+blind (W of no lasers: all of them). A layer watched by exactly the lasers T is a clique of G inside W_T; and
+adding to it any further vertex that keeps it so breaks nothing and serves more. Therefore some optimal plan
+uses maximal cliques of the graphs G[W_T] only, each watched by every laser that may watch it, and finding the
+fewest layers is a *set cover*: rows are the requirements, columns these cliques K, and K covers
+
+    a contact (a, b)    when a and b are in K,
+    a sighting (l, v)   when v is in K and l must be blind to nothing in K.
+
+With no lasers, this is the classical reduction of the edge clique cover problem, which is NP-hard; at most
+n*n/4 cliques are ever needed (Erdos, Goodman and Posa 1966), with equality for K_{n/2,n/2}: so eight
+entities always fit Flatland's sixteen layers, and nine may not.
+
+Complexity: a graph of n vertices has up to 3^(n/3) maximal cliques (Moon and Moser 1965), which networkx lists
+in time proportional to that bound; there are up to 2^L sets W_T for L lasers, but lasers with equal blind sets
+share theirs, and equal sets are searched once. Hence the limit and the deadline.
+
+References
+    P. Erdos, A. W. Goodman, L. Posa. The representation of a graph by set intersections. Canadian J. of
+        Mathematics 18 (1966). doi:10.4153/CJM-1966-014-3
+    J. W. Moon, L. Moser. On cliques in graphs. Israel J. of Mathematics 3 (1965). doi:10.1007/BF02760024
+    E. Tomita, A. Tanaka, H. Takahashi. The worst-case time complexity for generating all maximal cliques.
+        Theoretical Computer Science 363 (2006), as in networkx. doi:10.1016/j.tcs.2006.06.015
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from kit.layers.requirements import Case, Contact, Requirement, Sight, named_by
+
+if TYPE_CHECKING:
+    import networkx
+
+Members = frozenset[str]
+
+MAX_VISIBLE_SETS = 4096
+"""More sets W_T than this are not searched: twelve lasers of quite different needs."""
+
+_LOOK_AT_CLOCK_EVERY = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """The columns of the cover: ``covers[i]`` are the rows (numbers of requirements) that ``layers[i]`` serves."""
+
+    layers: tuple[Members, ...]
+    covers: tuple[frozenset[int], ...]
+    complete: bool
+    """False: the search was cut short, so a cover by these layers is a plan but its optimality proves nothing."""
+
+
+def sharing_graph(case: Case) -> networkx.Graph[str]:
+    """G: an edge where two entities may share a layer. Without the entities that may be in no layer at all."""
+    import networkx
+
+    graph: networkx.Graph[str] = networkx.Graph()
+    graph.add_nodes_from(name for name in case.names if case.relation(name, name) != "apart")
+    graph.add_edges_from(
+        (pair.a, pair.b)
+        for pair in case.pairs()
+        if pair.a in graph and pair.b in graph and case.relation(pair.a, pair.b) != "apart"
+    )
+    return graph
+
+
+def collision_graph(case: Case) -> networkx.Graph[str]:
+    """The slides' graph: an edge where two entities must collide."""
+    import networkx
+
+    graph: networkx.Graph[str] = networkx.Graph()
+    graph.add_nodes_from(case.names)
+    graph.add_edges_from((edge.a, edge.b) for edge in case.edges())
+    return graph
+
+
+def visible_sets(case: Case) -> list[Members]:
+    """Every distinct W_T, the largest first: the set of all entities, closed under taking out a laser's blind set.
+
+    More than MAX_VISIBLE_SETS are a sign that they are not all there.
+    """
+    everything = frozenset(case.names)
+    blind_sets = {case.blind(laser) for laser in case.lasers if laser.sees}
+    found = {everything}
+    # Invariant: ``found`` is closed under the blind sets looked at so far.
+    for blind in sorted(blind_sets, key=lambda b: (len(b), sorted(b))):
+        found |= {seen - blind for seen in found}
+        if len(found) > MAX_VISIBLE_SETS:
+            break
+    return sorted((w for w in found if w), key=lambda w: (-len(w), sorted(w)))
+
+
+def find_candidates(case: Case, *, limit: int = 100_000, deadline: float = float("inf")) -> Candidates:
+    """All candidate layers of the case, or as many as ``limit`` and ``deadline`` (of time.monotonic) allow.
+
+    Even when cut short, every requirement is served by at least one of them.
+    """
+    graph = sharing_graph(case)
+    rows = Rows(case)
+    found: dict[Members, frozenset[int]] = {}
+    visible = visible_sets(case)
+    complete = len(visible) <= MAX_VISIBLE_SETS
+    # Invariant: ``found`` holds every maximal clique of the graphs searched so far that serves something.
+    for layer in _cliques(graph, visible):
+        if layer not in found and (covers := rows.served_by(layer)):
+            found[layer] = covers
+            if len(found) % _LOOK_AT_CLOCK_EVERY == 0 and (len(found) >= limit or time.monotonic() > deadline):
+                complete = False
+                break
+    if not complete:
+        for requirement in case.requirements:
+            layer = grown(graph, case, requirement)
+            found.setdefault(layer, rows.served_by(layer))
+    return Candidates(tuple(found), tuple(found.values()), complete)
+
+
+def _cliques(graph: networkx.Graph[str], visible: Iterable[Members]) -> Iterator[Members]:
+    import networkx
+
+    for seen in visible:
+        for clique in networkx.find_cliques(graph.subgraph(seen).copy()):
+            yield frozenset(clique)
+
+
+def grown(graph: networkx.Graph[str], case: Case, requirement: Requirement) -> Members:
+    """One maximal layer that serves the requirement: its entities, and greedily whoever fits, the best-connected first."""
+    layer = set(named_by(requirement))
+    allowed: set[Any] = set(graph)
+    if isinstance(requirement, Sight):
+        allowed -= case.blind(case.laser[requirement.laser])
+    for name in sorted(allowed, key=lambda n: (-graph.degree(n), n)):
+        if name not in layer and layer <= graph.adj[name].keys():
+            layer.add(name)
+    return frozenset(layer)
+
+
+class Rows:
+    """The requirements, numbered, and which of them a layer serves."""
+
+    def __init__(self, case: Case) -> None:
+        self._contacts: dict[str, list[tuple[str, int]]] = {}
+        self._sights: list[tuple[Members, dict[str, int]]] = []
+        sights: dict[str, dict[str, int]] = {}
+        for row, requirement in enumerate(case.requirements):
+            if isinstance(requirement, Contact):
+                self._contacts.setdefault(requirement.a, []).append((requirement.b, row))
+            else:
+                sights.setdefault(requirement.laser, {})[requirement.entity] = row
+        for laser, seen in sights.items():
+            self._sights.append((case.blind(case.laser[laser]), seen))
+
+    def served_by(self, layer: Members) -> frozenset[int]:
+        """The rows a layer serves when every laser that may watch it does."""
+        rows = [row for a in layer for b, row in self._contacts.get(a, ()) if b in layer]
+        for blind, seen in self._sights:
+            if layer.isdisjoint(blind):
+                rows.extend(seen[name] for name in layer if name in seen)
+        return frozenset(rows)

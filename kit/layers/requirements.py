@@ -1,0 +1,292 @@
+"""What a layer plan has to satisfy: who must collide with whom, and which laser must see what.
+
+An *entity* is a map, a model, or a group of bodies of one model with the same needs: whatever gets one list
+of layers. Two entities collide when they share a layer, and a laser sees an entity when it watches a layer
+the entity is in (Flatland compares bit sets; nothing else enters). So every pair of entities is in one of
+three relations, and every laser in one of three relations to every entity:
+
+    pair    collide   some layer holds both          laser   sees     watches some layer of the entity
+            either    nobody minds                           either   nobody minds
+            apart     no layer holds both                    blind    watches no layer of the entity
+
+What a case does not mention is ``apart``, and ``blind``: nothing happens that nobody asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+from typing import Literal, TypeAlias
+
+MAX_LAYERS = 16
+"""Layer names in one Flatland world: it has 16 collision bits."""
+
+Relation = Literal["collide", "either", "apart"]
+Sighting = Literal["sees", "either", "blind"]
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """Whatever gets one list of layers."""
+
+    name: str
+    kind: Literal["map", "bodies"] = "bodies"
+    model: str = ""
+    """The model whose bodies these are: entities of one model have the same word here. Empty for a map."""
+    copies: int = 1
+    """How many model instances share this one list, because they are read from one model file."""
+    ghost: bool = False
+    """Never collides (``collision: false``), whatever layers it shares; lasers can still see it."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Contact:
+    """A pair of entities, in either order. ``Contact(a, a)``: the copies of ``a`` among themselves."""
+
+    a: str
+    b: str
+
+    def __post_init__(self) -> None:
+        if self.b < self.a:
+            a, b = self.b, self.a
+            object.__setattr__(self, "a", a)
+            object.__setattr__(self, "b", b)
+
+    def __str__(self) -> str:
+        return f"{self.a} - {self.b}"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Sight:
+    """A laser and an entity."""
+
+    laser: str
+    entity: str
+
+    def __str__(self) -> str:
+        return f"{self.laser} > {self.entity}"
+
+
+Requirement: TypeAlias = Contact | Sight
+"""Something some layer has to bring about: a contact, or a sighting."""
+
+
+@dataclass(frozen=True, slots=True)
+class Laser:
+    """What one laser must see, and what it may see; it must be blind to everything else."""
+
+    name: str
+    sees: frozenset[str] = frozenset()
+    either: frozenset[str] = frozenset()
+
+    def sighting(self, entity: str) -> Sighting:
+        if entity in self.sees:
+            return "sees"
+        return "either" if entity in self.either else "blind"
+
+
+class CaseError(ValueError):
+    """A case that means nothing: a name given twice or unknown, a wish that Flatland rules out."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One layer-assignment problem. Immutable; the ``with_`` methods return the changed case.
+
+    ``collide`` keeps the order it was written in, which is the order of the slides' list of edges. Raises
+    CaseError for unknown or repeated names, for a pair that is both ``collide`` and ``either``, for two maps
+    that shall share a layer (a layer name belongs to one entry of the world file) and for a ghost that shall
+    collide.
+    """
+
+    entities: tuple[Entity, ...]
+    collide: tuple[Contact, ...] = ()
+    either: frozenset[Contact] = frozenset()
+    lasers: tuple[Laser, ...] = ()
+    title: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        _unique("entity", [entity.name for entity in self.entities])
+        _unique("laser", [laser.name for laser in self.lasers])
+        _unique("pair", [str(contact) for contact in self.collide])
+        for contact in (*self.collide, *self.either):
+            self._check(contact)
+        for laser in self.lasers:
+            for name in laser.sees | laser.either:
+                if name not in self.by_name:
+                    raise CaseError(f"laser {laser.name}: there is no entity {name!r}")
+            if both := laser.sees & laser.either:
+                raise CaseError(f"laser {laser.name} both must and may see {min(both)!r}")
+        for requirement in self.requirements:
+            for name in named_by(requirement):
+                if self.relation(name, name) == "apart":
+                    raise CaseError(
+                        f"{requirement} needs a layer, but the {self.by_name[name].copies} copies of {name} share "
+                        f"one list of layers and must not collide with each other"
+                    )
+
+    def _check(self, contact: Contact) -> None:
+        for name in (contact.a, contact.b):
+            if name not in self.by_name:
+                raise CaseError(f"there is no entity {name!r}")
+        a, b = self.by_name[contact.a], self.by_name[contact.b]
+        if a.kind == b.kind == "map" and a != b:
+            raise CaseError(f"{a.name} and {b.name} are maps: maps never collide, and a layer holds one at most")
+        if contact in self.must and contact in self.either:
+            raise CaseError(f"{contact} is both required and left open")
+        if contact in self.must and (a.ghost or b.ghost):
+            raise CaseError(f"{(a if a.ghost else b).name} is a ghost: it cannot collide with anything")
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Entity]:
+        return {entity.name: entity for entity in self.entities}
+
+    @cached_property
+    def laser(self) -> Mapping[str, Laser]:
+        return {laser.name: laser for laser in self.lasers}
+
+    @cached_property
+    def must(self) -> frozenset[Contact]:
+        """``collide`` as a set."""
+        return frozenset(self.collide)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        return tuple(entity.name for entity in self.entities)
+
+    @cached_property
+    def requirements(self) -> tuple[Requirement, ...]:
+        """Everything the layers have to bring about: the contacts as written, then the sightings."""
+        sights = [Sight(laser.name, name) for laser in self.lasers for name in self.names if name in laser.sees]
+        return (*self.collide, *sights)
+
+    def relation(self, a: str, b: str) -> Relation:
+        """Of two entities, or (``a == b``) of the copies of one among themselves."""
+        contact = Contact(a, b)
+        if contact in self.must:
+            return "collide"
+        if contact in self.either:
+            return "either"
+        first, second = self.by_name[a], self.by_name[b]
+        if a == b:
+            return "either" if first.copies == 1 or first.ghost else "apart"
+        if first.kind == second.kind == "map":
+            return "apart"
+        return "either" if first.ghost or second.ghost else "apart"
+
+    def pairs(self) -> Iterable[Contact]:
+        """Every pair of two different entities, in their order."""
+        return (Contact(a, b) for a, b in combinations(self.names, 2))
+
+    def blind(self, laser: Laser) -> frozenset[str]:
+        """What the laser must not see."""
+        return frozenset(self.names) - laser.sees - laser.either
+
+    def edges(self) -> tuple[Contact, ...]:
+        """The edges of the collision graph: the required contacts of two different entities."""
+        return tuple(contact for contact in self.collide if contact.a != contact.b)
+
+    def with_relation(self, a: str, b: str, relation: Relation) -> Case:
+        """The case with another relation of one pair; a new required contact goes to the end of the list."""
+        contact = Contact(a, b)
+        collide = tuple(c for c in self.collide if c != contact) if relation != "collide" else self.collide
+        if relation == "collide" and contact not in self.must:
+            collide = (*self.collide, contact)
+        either = self.either | {contact} if relation == "either" else self.either - {contact}
+        return replace(self, collide=collide, either=either)
+
+    def with_sighting(self, laser: str, entity: str, sighting: Sighting) -> Case:
+        """The case with another relation of one laser to one entity."""
+
+        def changed(old: Laser) -> Laser:
+            sees, either = old.sees - {entity}, old.either - {entity}
+            return Laser(
+                old.name,
+                sees | {entity} if sighting == "sees" else sees,
+                either | {entity} if sighting == "either" else either,
+            )
+
+        return replace(
+            self, lasers=tuple(changed(old) if old.name == laser else old for old in self.lasers)
+        )
+
+    def with_entity(self, entity: Entity) -> Case:
+        return replace(self, entities=(*self.entities, entity))
+
+    def with_laser(self, laser: Laser) -> Case:
+        return replace(self, lasers=(*self.lasers, laser))
+
+    def without_entity(self, name: str) -> Case:
+        """The case without an entity and everything said about it."""
+        return replace(
+            self,
+            entities=tuple(entity for entity in self.entities if entity.name != name),
+            collide=tuple(contact for contact in self.collide if name not in (contact.a, contact.b)),
+            either=frozenset(contact for contact in self.either if name not in (contact.a, contact.b)),
+            lasers=tuple(Laser(old.name, old.sees - {name}, old.either - {name}) for old in self.lasers),
+        )
+
+    def without_laser(self, name: str) -> Case:
+        return replace(self, lasers=tuple(laser for laser in self.lasers if laser.name != name))
+
+    def without(self, requirements: Iterable[Requirement]) -> Case:
+        """The case in which these requirements are given up: nobody minds any more."""
+        case = self
+        for given_up in requirements:
+            if isinstance(given_up, Contact):
+                case = case.with_relation(given_up.a, given_up.b, "either")
+            else:
+                case = case.with_sighting(given_up.laser, given_up.entity, "either")
+        return case
+
+    def with_one_model_free(self) -> Case:
+        """The slides' assumption as a switch: bodies of one model never collide, so they may share layers.
+
+        Flatland does not treat them so: two bodies of one model that share a layer and are not joined do
+        collide. True of a model whose parts cannot reach each other. Copies of a model are not meant: with
+        several instances in one list, a part of one can meet a part of another.
+        """
+        mates = [
+            Contact(a.name, b.name)
+            for a, b in combinations(self.entities, 2)
+            if a.model and a.model == b.model and a.copies == b.copies == 1
+        ]
+        return replace(
+            self,
+            collide=tuple(contact for contact in self.collide if contact not in mates),
+            either=self.either | frozenset(mates),
+        )
+
+
+def fit_together(case: Case, one: Requirement, other: Requirement) -> str | None:
+    """Why no layer can serve both requirements, in words; None if one can.
+
+    A layer that serves them holds all the entities they name, so no two of these may be ``apart``, and it is
+    watched by the lasers they name, so none of these may be blind to any of those. Nothing else can stand in
+    the way. This is the whole of the argument of a certificate, and it asks no solver.
+    """
+    entities = dict.fromkeys(name for requirement in (one, other) for name in named_by(requirement))
+    for a, b in combinations(entities, 2):
+        if case.relation(a, b) == "apart":
+            return f"{a} and {b} must not share a layer"
+    lasers = dict.fromkeys(r.laser for r in (one, other) if isinstance(r, Sight))
+    for name in lasers:
+        for entity in entities:
+            if case.laser[name].sighting(entity) == "blind":
+                return f"{name} must not see {entity}"
+    return None
+
+
+def named_by(requirement: Requirement) -> tuple[str, ...]:
+    """The entities a requirement names: a layer that brings it about holds them all."""
+    return (requirement.a, requirement.b) if isinstance(requirement, Contact) else (requirement.entity,)
+
+
+def _unique(what: str, names: list[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise CaseError(f"the {what} {name!r} is named twice")
+        seen.add(name)
