@@ -1,0 +1,139 @@
+"""The maps that come with the kit: what each is for, and from where to where one drives in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from kit.geometry import Pose
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, quoted, suggestion
+from kit.world.records import Place
+from kit.world.section import Section
+
+CARD = "about.yaml"
+WORLD = "world.yaml"
+
+
+class UnknownMap(LookupError):
+    """No map has that name; the message offers the nearest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A task on a map: drive from ``start`` to within ``target_radius`` of ``target``. In metres and radians."""
+
+    name: str
+    start: Pose
+    target: tuple[float, float]
+    target_radius: float
+    start_shift: tuple[float, float]
+    """How far the start may be moved at random, to either side, along x and y."""
+    target_shift: tuple[float, float]
+    any_heading: bool
+    """Whether the start's heading may be any."""
+    group: str
+    """Cases that results are given for together; may be empty."""
+    partner_start: Pose | None
+    """Where the map's partner starts, if it has one: at its place in the world file where None."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapCard:
+    """One map of the catalogue."""
+
+    name: str
+    title: str
+    summary: str
+    source: str
+    folder: Path
+    world_file: Path
+    robot: str
+    """The model of the world that drives."""
+    partner: str | None
+    """The second model, where two drive as one."""
+    cases: tuple[Case, ...]
+
+    @property
+    def root(self) -> Path:
+        """The folder its world may read: that of all maps, since they share their robots."""
+        return self.folder.parent
+
+
+def maps_folder() -> Path:
+    """Where the maps lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package / "data" / "maps", package.parent / "maps"):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"the maps are missing: neither in {package / 'data'} nor beside {package}")
+
+
+def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
+    """Every map of the folder (by default the kit's own), by name. Raises WorldError if a card is wrong."""
+    folder = maps_folder() if folder is None else folder
+    return tuple(_read_card(folder / name) for name in map_names(folder))
+
+
+def find_map(name: str, folder: Path | None = None) -> MapCard:
+    """The map of that name. Raises UnknownMap, and WorldError if its card is wrong."""
+    folder = maps_folder() if folder is None else folder
+    names = map_names(folder)
+    if name not in names:
+        raise UnknownMap(f"there is no map {quoted(name)}: {suggestion(name, names)}")
+    return _read_card(folder / name)
+
+
+def map_names(folder: Path | None = None) -> tuple[str, ...]:
+    """The names of all maps, without reading them: every folder with a card is one."""
+    folder = maps_folder() if folder is None else folder
+    return tuple(sorted(card.parent.name for card in folder.glob(f"*/{CARD}")))
+
+
+def _read_card(folder: Path) -> MapCard:
+    problems = Problems()
+    file = folder / CARD
+    section = Documents(Enclosure.of(folder), {}, problems).section(file, Place(file))
+    card = None if section is None else _card(section, folder)
+    problems.raise_if_any()
+    assert card is not None  # None is noted as a problem
+    return card
+
+
+def _card(section: Section, folder: Path) -> MapCard:
+    card = MapCard(
+        name=folder.name,
+        title=section.name("title"),
+        summary=section.name("summary"),
+        source=section.text("source"),
+        folder=folder,
+        world_file=folder / WORLD,
+        robot=section.name("robot", "serp"),
+        partner=section.name("partner") if section.has("partner") else None,
+        cases=tuple(_cases(section.sections("cases", at_least=1))),
+    )
+    section.finish()
+    return card
+
+
+def _cases(sections: tuple[Section, ...]) -> Iterator[Case]:
+    names: set[str] = set()
+    for section in sections:
+        case = Case(
+            name=section.name("name"),
+            start=section.pose("start"),
+            target=section.point("target"),
+            target_radius=section.number("target_radius", 0.2, above=0),
+            start_shift=section.point("start_shift", (0.0, 0.0)),
+            target_shift=section.point("target_shift", (0.0, 0.0)),
+            any_heading=section.flag("any_heading", False),
+            group=section.text("group", ""),
+            partner_start=section.pose("partner_start") if section.has("partner_start") else None,
+        )
+        section.finish()
+        if case.name in names:
+            section.error(f"a case named {quoted(case.name)} already exists", "name")
+        names.add(case.name)
+        yield case
