@@ -159,6 +159,18 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True)
+class Sight:
+    """What a laser looks at. A plugin whose ``params`` has an attribute ``sight`` of this type is a laser."""
+
+    body: str
+    """The body that carries it."""
+    bits: int
+    """It sees the footprints and walls whose category shares one of these."""
+    origin: Pose = Pose()
+    """Where its rays start, in that body's frame."""
+
+
+@dataclass(frozen=True, slots=True)
 class PluginSpec:
     """One entry of ``plugins``. ``params`` is what the reader of its type made of the other keys."""
 
