@@ -43,7 +43,7 @@ def load_model(
     *,
     name: str,
     namespace: str = "",
-    pose: Pose = Pose(),  # noqa: B008 - immutable
+    pose: Pose = Pose(),
     layer_bits: Mapping[str, int],
     devices: Mapping[str, DeviceReader] | None = None,
     root: Path | None = None,
