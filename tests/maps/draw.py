@@ -296,8 +296,11 @@ OWN_PICTURES = {
             ring(2.4, 2.4, 0.6, 1.4),
             boxes((0.1, 2.0, 1.4, 2.8), (3.4, 2.0, 4.7, 2.8), (2.0, 0.1, 2.8, 1.4), (2.0, 3.4, 2.8, 4.7)),
         ),
+        wall=math.inf,
     ),
-    "figure_eight": Plan((6.4, 3.6), join(ring(1.9, 1.8, 0.95, 1.65), ring(4.5, 1.8, 0.95, 1.65))),
+    "figure_eight": Plan(
+        (6.4, 3.6), join(ring(1.9, 1.8, 0.95, 1.65), ring(4.5, 1.8, 0.95, 1.65)), wall=math.inf
+    ),
     "office": office(),
     "warehouse": warehouse(),
     "forest": forest(seed=7, trees=30),
