@@ -36,10 +36,14 @@ class Camera:
     """Height of a character divided by its width; 1 for pixels."""
 
     @classmethod
-    def fit(cls, bounds: Bounds, columns: int, rows: int, aspect: float = CELL_ASPECT) -> Camera:
-        """The camera that shows all of ``bounds``, as large as it can, with half a character to spare."""
+    def fit(
+        cls, bounds: Bounds, columns: int, rows: int, aspect: float = CELL_ASPECT, margin: float = 0.5
+    ) -> Camera:
+        """The camera that shows all of ``bounds``, as large as it can, with ``margin`` characters to spare on
+        every side."""
         columns, rows = max(1, columns), max(1, rows)
-        cell = max(bounds.width / max(0.5, columns - 1), bounds.height / (max(0.5, rows - 1) * aspect))
+        across, up = max(0.5, columns - 2 * margin), max(0.5, rows - 2 * margin)
+        cell = max(bounds.width / across, bounds.height / (up * aspect))
         return cls(
             (bounds.left + bounds.right) / 2,
             (bounds.bottom + bounds.top) / 2,

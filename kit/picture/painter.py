@@ -13,7 +13,7 @@ from kit.picture.frame import Frame
 from kit.picture.raster import Grid
 from kit.picture.roles import ROBOTS, TRAILS, Role
 from kit.picture.scene import Body, FloatArray, Path, Scene
-from kit.picture.stamps import Stamps, is_outlined
+from kit.picture.stamps import SMALLEST_OUTLINE, Stamps, rows_across
 
 SOLID_WALL = 0.08
 """Two wall lines one dot apart are drawn as one wall if the dot is at most this large [m]; no robot of the
@@ -22,6 +22,9 @@ kit passes such a gap."""
 NOSE = 0.25
 """How far a robot's heading line reaches beyond its hull: this share of its length, or two characters' widths
 if that is more."""
+
+SMALLEST_HOLLOW = 4.0
+"""A robot shorter than this many rows is filled: its outline alone would be a tangle of dots."""
 
 _PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
 """Of a path's dots: so many make a period, so many of them are drawn."""
@@ -119,12 +122,24 @@ class _Canvas:
         for disc in body.discs:
             self.draw_circle(*disc, role)
 
+    def fill(self, body: Body, role: Role) -> None:
+        for polygon in body.polygons:
+            self._fill(self.project(polygon), role)
+        for disc in body.discs:
+            self._fill(self.project(raster.circle(disc.x, disc.y, disc.radius, disc.radius)), role)
+
     def draw_robot(self, robot: Body, role: Role) -> None:
         """Its outline, where that is large enough to be made out, and a line from its middle ahead."""
-        if is_outlined(robot, self._camera):
+        size = rows_across(robot, self._camera)
+        if size >= SMALLEST_OUTLINE:
             self.draw_outline(robot, role)
+            if size < SMALLEST_HOLLOW:
+                self.fill(robot, role)
         if not self._encoder.symbols.noses:
             self._put_lines(_nose(robot, self._camera, self._encoder), role)
+
+    def _fill(self, corners: FloatArray, role: Role) -> None:
+        raster.put(self.grid, raster.filled_dots(corners, self._width, self._height), role)
 
     def _put_lines(self, dots: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
         rows, columns = raster.line_dots(dots, self._width, self._height)

@@ -20,6 +20,10 @@ Dots = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Rows and columns, in the order in which they were drawn."""
 
 
+CORNERS = 64
+"""Of a circle: enough for one as large as the screen."""
+
+
 def blank(width: int, height: int) -> Grid:
     return np.zeros((height, width), dtype=np.uint8)
 
@@ -66,9 +70,8 @@ def polyline(points: FloatArray, closed: bool = False) -> FloatArray:
 
 
 def circle(x: float, y: float, radius_x: float, radius_y: float) -> FloatArray:
-    """The corners (k, 2) of a polygon that looks round at this size; radii differ where dots are oblong."""
-    quarter = int(min(max(4.0, 1.5 * math.sqrt(max(radius_x, radius_y))), 45.0))
-    angle = (np.arange(4 * quarter) + 0.5) * (math.tau / (4 * quarter))
+    """The corners (k, 2) of a polygon that looks round; its radii differ where dots are oblong."""
+    angle = (np.arange(CORNERS) + 0.5) * (math.tau / CORNERS)
     return np.stack((x + radius_x * np.cos(angle), y + radius_y * np.sin(angle)), axis=1)
 
 

@@ -6,7 +6,7 @@ A role is a meaning, not a colour: an encoder gives it a shape, a palette gives 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from types import MappingProxyType
 
@@ -104,7 +104,9 @@ TRUECOLOR: Palette = MappingProxyType(
     }
 )
 
-NO_COLOR: Palette = MappingProxyType({role: Ink(bold=ink.bold) for role, ink in ANSI.items()})
+NO_COLOR: Palette = MappingProxyType(
+    {role: replace(ink, color=None, bold=ink.bold or role is Role.HIT) for role, ink in ANSI.items()}
+)
 """Shape and weight alone: what moves and what matters is bold."""
 
 PALETTES: Mapping[str, Palette] = MappingProxyType(

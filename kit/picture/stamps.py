@@ -23,10 +23,10 @@ Cell = tuple[int, int]
 """Row and column."""
 
 
-def is_outlined(robot: Body, camera: Camera) -> bool:
-    """Whether the robot is large enough for its shape to be made out."""
-    extent = robot.extent
-    return max(extent.width, extent.height) >= SMALLEST_OUTLINE * camera.cell_height
+def rows_across(body: Body, camera: Camera) -> float:
+    """How large a body is on the picture: its longer side, in rows."""
+    extent = body.extent
+    return max(extent.width, extent.height) / camera.cell_height
 
 
 class Stamps:
@@ -80,7 +80,7 @@ class Stamps:
         theta, extent = robot.pose.theta, robot.extent
         role, arrows = ROBOTS[number % len(ROBOTS)], self._symbols.robots[number % len(self._symbols.robots)]
         if self._symbols.noses:
-            front = extent.right if is_outlined(robot, self._camera) else extent.middle[0]
+            front = extent.right if rows_across(robot, self._camera) >= SMALLEST_OUTLINE else extent.middle[0]
             base = self._cell(*robot.pose.point(front, extent.middle[1]))
             if base is not None:
                 eighth = round(theta / math.tau * 8) * math.tau / 8
