@@ -193,7 +193,7 @@ class Touching:
 
     def _names(self, bits: int) -> tuple[str, ...]:
         if bits == ALL_LAYERS:
-            return ("every layer",)
+            return ("all layers",)
         return tuple(name for name, bit in self._layer_bits.items() if bit & bits)
 
 
