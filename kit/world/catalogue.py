@@ -71,6 +71,15 @@ def maps_folder() -> Path:
     raise FileNotFoundError(f"the maps are missing: neither in {package / 'data'} nor beside {package}")
 
 
+def root_of(world_file: Path) -> Path | None:
+    """The folder that a world file of the catalogue may read; None for any other file, which gets its own."""
+    try:
+        folder = maps_folder()
+    except FileNotFoundError:
+        return None
+    return folder if world_file.resolve().is_relative_to(folder.resolve()) else None
+
+
 def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
     """Every map of the folder (by default the kit's own), by name. Raises WorldError if a card is wrong."""
     folder = maps_folder() if folder is None else folder

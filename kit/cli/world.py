@@ -1,0 +1,97 @@
+"""``kit world``: what a world file says, and what is wrong with it."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from kit.world.problems import Problem
+
+
+@click.group()
+def command() -> None:
+    """Check a world: its errors, who collides with whom, which laser sees whom."""
+
+
+@command.command()
+@click.argument("world", metavar="FILE_OR_MAP")
+@click.option(
+    "--root",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="The folder whose files the world may use.  [default: the world's own]",
+)
+@click.option(
+    "--env",
+    "variables",
+    metavar="NAME[=VALUE]",
+    multiple=True,
+    help="An environment variable that env() in the world may read; repeat for more.  [default: none]",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print data for a program instead of text.")
+def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bool) -> None:
+    """Read a world with all its files; print every error, or what is in it and who meets whom.
+
+    FILE_OR_MAP is a world file, a folder with a world.yaml, or the name of a map that comes with the kit. Exits
+    with 0 if the world is sound, 1 if it has errors, 2 if there is no such world.
+    """
+    from kit.sim.plugins import readers, world_readers
+    from kit.world.loading import load_world
+    from kit.world.problems import WorldError
+    from kit.world.report import details, summary
+
+    file, own_root = _find(world)
+    try:
+        loaded = load_world(
+            file,
+            devices=readers,
+            world_devices=world_readers,
+            root=root or own_root,
+            environment=dict(map(_variable, variables)),
+        )
+    except WorldError as error:
+        if as_json:
+            click.echo(json.dumps({"ok": False, "problems": [_problem(p) for p in error.problems]}, indent=2))
+        else:
+            click.echo(error)
+            count = len(error.problems)
+            click.echo(f"\n{count} problem{'' if count == 1 else 's'}", err=True)
+        raise SystemExit(1) from None
+    click.echo(json.dumps({"ok": True, **details(loaded)}, indent=2) if as_json else summary(loaded))
+
+
+def _find(world: str) -> tuple[Path, Path | None]:
+    """The world file meant, and the folder it may use if that is not its own."""
+    from kit.world.catalogue import WORLD, UnknownMap, find_map, root_of
+
+    path = Path(world)
+    try:
+        if path.is_dir():
+            path /= WORLD
+        if path.exists():
+            return path, root_of(path)
+    except OSError as error:  # no permission; a name too long
+        raise click.UsageError(f"{path} cannot be opened: {error.strerror}.") from None
+    if len(Path(world).parts) > 1 or path.suffix:
+        raise click.UsageError(f"There is no file {path}.")
+    try:
+        card = find_map(world)
+    except UnknownMap as error:
+        raise click.UsageError(f"There is no file {world}, and {error}") from None
+    return card.world_file, card.root
+
+
+def _variable(text: str) -> tuple[str, str]:
+    name, given, value = text.partition("=")
+    if not given and name not in os.environ:
+        raise click.UsageError(f"The environment variable {name} is not set: write --env {name}=VALUE.")
+    return name, value if given else os.environ[name]
+
+
+def _problem(problem: Problem) -> dict[str, str | int]:
+    place = problem.place
+    return {"file": str(place.file), "line": place.line, "column": place.column, "message": problem.message}
