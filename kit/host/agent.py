@@ -1,0 +1,47 @@
+"""The child: loads a student's file and runs it as a node program, or answers calls of its functions."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+from kit.host import calls, seeds
+from kit.host.channel import Channel
+from kit.host.conversation import Conversation, watch_stacks
+from kit.host.explain import explain
+from kit.host.program import Program
+
+
+def preload(role: str) -> None:
+    """Imports what a program of this role will need, while there is still the right to keep it compiled."""
+    if role == "node":
+        import kit.host.nodes  # noqa: F401 - for later
+
+
+def work(role: str, channel: Channel) -> int:
+    """Everything from the start to the end of one program; the process's exit status."""
+    sys.dont_write_bytecode = True
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
+    watch_stacks()
+    conversation = Conversation(channel)
+    _, start = conversation.next_question()
+    conversation.reply_s = start["reply_s"]
+    program = Program(start["file"], start["source"].encode("latin-1"))
+
+    def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
+        if problem.exc_value is not None:
+            conversation.fail(explain(problem.exc_value, program))
+
+    threading.excepthook = thread_has_failed
+    sys.path += [*start["libraries"], program.folder]
+    seeds.plant(start["seed"])
+    try:
+        if role == "node":
+            from kit.host import nodes
+
+            nodes.run(program, conversation, start)
+        else:
+            calls.serve(program, conversation)
+    except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
+        conversation.fail(explain(problem, program))
+    return 0

@@ -1,0 +1,114 @@
+"""The first code of a student's process. Run by its path, not imported: see ``launcher.command``.
+
+There are two processes. This one stays outside the cage and does nothing but wait: for the kit to hang up, or
+for its child to end. Then it ends everything that came out of the child and takes away the run's folder. So
+nothing of a student's is left behind, even when the kit itself is killed. The child locks itself in, says so,
+and only then receives the student's code.
+"""
+
+import os
+import select
+import signal
+import sys
+from contextlib import suppress
+
+# The kit is found through its own folder, wherever that is. Nothing that lies beside it becomes importable.
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+from kit.host import agent, confine
+from kit.host.channel import Channel
+from kit.host.reaper import end_descendants, remove_folder
+
+del sys.path[0]
+
+PIPE = 0
+"""The pipe to the kit comes in place of the standard input."""
+
+
+def main() -> int:
+    channel = Channel(PIPE)
+    role, record = channel.receive()
+    cage = confine.Cage.from_json(record)
+    confine.adopt_orphans()
+    try:
+        confine.separate(cage.level)
+    except confine.CannotConfine as problem:
+        channel.send(["refused", str(problem)])
+        return 1
+    agent.preload(role)
+    ended, wake = os.pipe()
+    os.set_blocking(wake, False)
+    signal.signal(signal.SIGCHLD, lambda *_: None)
+    signal.set_wakeup_fd(wake)
+    child = os.fork()
+    if child == 0:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        os.close(ended)
+        os.close(wake)
+        return _student(role, cage)
+    return _watch(child, ended, cage.folder)
+
+
+def _watch(child: int, ended: int, folder: str) -> int:
+    """Waits for the end, cleans up, and returns the child's exit status, 128 + n for a signal n."""
+    for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
+        with suppress(OSError):
+            signal.signal(number, signal.SIG_IGN)
+    null = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (1, 2):  # what the child prints ends with the child
+        os.dup2(null, descriptor)
+    poller = select.poll()
+    poller.register(PIPE, 0)  # hanging up is always reported
+    poller.register(ended, select.POLLIN)
+    status = None
+    while status is None:
+        ready = [descriptor for descriptor, _ in poller.poll()]
+        if PIPE in ready:
+            break
+        os.read(ended, 512)
+        status = _collect(child)
+    with suppress(OSError):
+        os.killpg(child, signal.SIGKILL)
+    end_descendants(os.getpid())
+    status = _collect(child) if status is None else status
+    remove_folder(folder)
+    code = os.waitstatus_to_exitcode(status or 0)
+    return code if code >= 0 else 128 - code
+
+
+def _collect(child: int) -> int | None:
+    """Takes note of every child that has ended; the status of ``child`` if it is one of them."""
+    status = None
+    with suppress(ChildProcessError):
+        while True:
+            process, outcome = os.waitpid(-1, os.WNOHANG)
+            if process == 0:
+                break
+            if process == child:
+                status = outcome
+    return status
+
+
+def _student(role: str, cage: confine.Cage) -> int:
+    """In the child: into the cage, then on with the student's code."""
+    os.setsid()
+    channel = Channel(os.dup(PIPE))
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, PIPE)
+    os.close(null)
+    try:
+        confine.lock(cage)
+    except confine.CannotConfine as problem:
+        channel.send(["refused", str(problem)])
+        return 1
+    channel.send(["confined", int(cage.level)])
+    return agent.work(role, channel)
+
+
+if __name__ == "__main__":
+    try:
+        code = main()
+    except EOFError:
+        code = 0
+    # Not sys.exit: no student's thread, destructor or exit handler has a say any more.
+    os._exit(code)

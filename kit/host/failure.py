@@ -1,0 +1,55 @@
+"""What went wrong with a student's code, as a record that can be shown as it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class FailureKind(Enum):
+    """Why a student's code has stopped."""
+
+    SYNTAX = "syntax"
+    IMPORT = "import"
+    EXCEPTION = "exception"
+    EXIT = "exit"
+    TIMEOUT = "timeout"
+    MEMORY = "memory"
+    PROTOCOL = "protocol"
+    KILLED = "killed"
+    CRASH = "crash"
+    CONFINEMENT = "confinement"
+    """Not the student's: the machine cannot lock the program in as asked."""
+
+
+REPORTABLE = frozenset(
+    (FailureKind.SYNTAX, FailureKind.IMPORT, FailureKind.EXCEPTION, FailureKind.EXIT, FailureKind.MEMORY)
+)
+"""The kinds a child may tell of itself; the others are what the parent saw."""
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """One failure: what, and where in the student's own file. ``str()`` is the message to show.
+
+    ``file`` is relative to the folder of the student's file; ``line`` is 1-based. Both are None where there
+    is no such place. All text is printable, without control characters.
+    """
+
+    kind: FailureKind
+    message: str
+    file: str | None = None
+    line: int | None = None
+
+    def __str__(self) -> str:
+        if self.file is None:
+            return self.message
+        return f"{self.file}:{self.line}: {self.message}" if self.line else f"{self.file}: {self.message}"
+
+
+class GuestError(Exception):
+    """Student code has stopped; ``failure`` says why."""
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(str(failure))
+        self.failure = failure

@@ -1,0 +1,109 @@
+"""Landlock: a Linux process gives up, for good, the sight of files it was not granted. No root, no package.
+
+Kernel interface: Documentation/userspace-api/landlock.rst. What the kernel cannot restrict yet (older
+versions restrict less) is left out, and ``abi()`` says which version this is.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import stat
+from collections.abc import Iterable
+from contextlib import suppress
+from typing import Final
+
+_CREATE, _ADD, _RESTRICT = 444, 445, 446
+"""System call numbers, the same on every architecture."""
+_VERSION_FLAG: Final = 1
+_PATH_BENEATH: Final = 1
+
+EXECUTE, WRITE, READ, READ_DIR = 1 << 0, 1 << 1, 1 << 2, 1 << 3
+REMOVE_DIR, REMOVE_FILE = 1 << 4, 1 << 5
+MAKE_CHAR, MAKE_DIR, MAKE_REGULAR, MAKE_SOCKET, MAKE_FIFO, MAKE_BLOCK, MAKE_LINK = (
+    1 << bit for bit in range(6, 13)
+)
+REFER, TRUNCATE, IOCTL_DEVICE = 1 << 13, 1 << 14, 1 << 15
+
+ALL_FILE_ACCESS: Final = ((1, (1 << 13) - 1), (2, REFER), (3, TRUNCATE), (5, IOCTL_DEVICE))
+"""Accesses by the version that came to restrict them."""
+TCP: Final = (4, 0b11)
+"""Bind and connect."""
+SCOPES: Final = (6, 0b11)
+"""Abstract sockets and signals: only within what is locked in."""
+
+SEE: Final = EXECUTE | READ | READ_DIR
+"""Granted below a readable folder. Execute, because shared libraries are mapped."""
+OF_A_FILE: Final = EXECUTE | WRITE | READ | TRUNCATE | IOCTL_DEVICE
+"""The accesses that make sense for what is not a folder."""
+
+
+class _Ruleset(ctypes.Structure):
+    _fields_ = (("files", ctypes.c_uint64), ("network", ctypes.c_uint64), ("scopes", ctypes.c_uint64))
+
+
+class _PathBeneath(ctypes.Structure):
+    _pack_ = 1
+    _fields_ = (("access", ctypes.c_uint64), ("descriptor", ctypes.c_int32))
+
+
+def abi() -> int:
+    """The version of Landlock this kernel has; 0 if it has none or it is switched off."""
+    version: int = _libc().syscall(_CREATE, None, ctypes.c_size_t(0), ctypes.c_uint32(_VERSION_FLAG))
+    return max(0, version)
+
+
+def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
+    """From now on this thread, and what it starts, sees and changes only what is at or below these paths.
+
+    Missing paths are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
+    """
+    version = abi()
+    handled = sum(bits for since, bits in ALL_FILE_ACCESS if version >= since)
+    ruleset = _Ruleset(
+        handled,
+        TCP[1] if version >= TCP[0] else 0,
+        SCOPES[1] if version >= SCOPES[0] else 0,
+    )
+    # A kernel that knows fewer fields takes a longer record, as long as the rest is zero.
+    descriptor = _call(
+        _CREATE, ctypes.byref(ruleset), ctypes.c_size_t(ctypes.sizeof(ruleset)), ctypes.c_uint32(0)
+    )
+    try:
+        for path in readable:
+            _grant(descriptor, path, SEE & handled)
+        for path in writable:
+            _grant(descriptor, path, handled)
+        _call(_RESTRICT, ctypes.c_int(descriptor), ctypes.c_uint32(0))
+    finally:
+        os.close(descriptor)
+
+
+def _grant(ruleset: int, path: str, access: int) -> None:
+    with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
+        target = os.open(path, os.O_PATH | os.O_CLOEXEC)
+        try:
+            if not stat.S_ISDIR(os.fstat(target).st_mode):
+                access &= OF_A_FILE
+            rule = _PathBeneath(access, target)
+            _call(
+                _ADD,
+                ctypes.c_int(ruleset),
+                ctypes.c_int(_PATH_BENEATH),
+                ctypes.byref(rule),
+                ctypes.c_uint32(0),
+            )
+        finally:
+            os.close(target)
+
+
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
+
+
+def _call(number: int, *arguments: object) -> int:
+    result: int = _libc().syscall(ctypes.c_long(number), *arguments)
+    if result < 0:
+        error = ctypes.get_errno()
+        raise OSError(error, f"Landlock: {os.strerror(error)}")
+    return result

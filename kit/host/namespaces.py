@@ -1,0 +1,95 @@
+"""Namespaces: a process sees no other processes, no network and, of the file tree, only what it was granted.
+
+As root this needs nothing else; for anyone else a user namespace, which some systems forbid. Man pages:
+unshare(2), user_namespaces(7), mount_namespaces(7), pivot_root(2).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Iterable
+
+_NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
+    0x00020000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000,
+)  # fmt: skip
+_READ_ONLY, _NO_SUID, _NO_DEVICES, _NO_EXECUTE = 1, 2, 4, 8
+_REMOUNT, _BIND, _RECURSIVE, _PRIVATE = 32, 4096, 16384, 1 << 18
+_DETACH = 2
+_PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
+
+
+def separate() -> None:
+    """The next child of this process will be alone: first of a process tree of its own, without a network."""
+    flags = _NEW_PID | _NEW_NET | _NEW_IPC | _NEW_UTS
+    if os.geteuid() == 0:
+        try:
+            _unshare(flags)
+        except PermissionError:  # root of a container
+            pass
+        else:
+            return
+    user, group = os.geteuid(), os.getegid()
+    _unshare(flags | _NEW_USER)
+    for name, content in (
+        ("setgroups", "deny"),
+        ("uid_map", f"{user} {user} 1"),
+        ("gid_map", f"{group} {group} 1"),
+    ):
+        with open(f"/proc/self/{name}", "w") as file:
+            file.write(content)
+
+
+def narrow(root: str, readable: Iterable[str], writable: Iterable[str]) -> None:
+    """A file tree with nothing in it but these paths, built on the empty folder ``root``, becomes the only one.
+
+    Paths that do not exist are left out; one that is a link leads to the same file as before.
+    """
+    _unshare(_NEW_MOUNT)
+    _mount("none", "/", "", _RECURSIVE | _PRIVATE)
+    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, "size=1m,mode=755")
+    for path in readable:
+        _show(root, path, _READ_ONLY)
+    for path in writable:
+        _show(root, path, 0)
+    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, "size=1m,mode=755")
+    os.chdir(root)
+    # The old root comes to lie over the new one, and is then taken away: pivot_root(2), "pivot_root(., .)".
+    _check(_libc().syscall(ctypes.c_long(_PIVOT_ROOT[os.uname().machine]), b".", b"."), "pivot_root")
+    _check(_libc().umount2(b".", _DETACH), "umount2")
+
+
+def _show(root: str, path: str, flags: int) -> None:
+    real = os.path.realpath(path)
+    for name in dict.fromkeys((path, real)):
+        target = root + name
+        if not os.path.exists(real) or os.path.exists(target):
+            continue
+        if os.path.isdir(real):
+            os.makedirs(target)
+        else:
+            os.makedirs(os.path.dirname(target), exist_ok=True)
+            os.close(os.open(target, os.O_CREAT, 0o444))
+        _mount(real, target, "", _BIND)
+        # A mount that came from outside may only be made stricter: what it forbids has to be forbidden again.
+        kept = os.statvfs(target).f_flag & (_READ_ONLY | _NO_SUID | _NO_DEVICES | _NO_EXECUTE)
+        _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)
+
+
+def _unshare(flags: int) -> None:
+    _check(_libc().unshare(flags), "unshare")
+
+
+def _mount(source: str, target: str, kind: str, flags: int, options: str = "") -> None:
+    arguments = (source.encode(), os.fsencode(target), kind.encode(), ctypes.c_ulong(flags), options.encode())
+    _check(_libc().mount(*arguments), f"mount on {target}")
+
+
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
+
+
+def _check(result: int, what: str) -> None:
+    if result < 0:
+        error = ctypes.get_errno()
+        raise OSError(error, f"{what}: {os.strerror(error)}")

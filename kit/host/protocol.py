@@ -1,0 +1,159 @@
+"""What a student's process may say to us, and the one place that checks it.
+
+A frame's content is an array that starts with the name of its kind. Nothing in it names code or is turned into
+any. The parent asks, the child answers, each answer carrying the number of what it answers; a child that says
+anything else is ended.
+
+    parent -> child                              child -> parent
+    setup  (how to lock itself in)               confined level, or refused reason
+    start  0 ...                                 reply 0 ..., or functions 0 ...
+    tick   n, time, events                       reply n, wake time, events
+    call   n, function, batch                    values n, numbers
+                                                 ended n, events        the program is over, as it wished
+                                                 failed n, what, where  the program is over, by its own fault
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final, TypeAlias
+
+from kit.host.failure import REPORTABLE, Failure
+from kit.host.wire import MAX_NAME, Json, ProtocolError, array, integer, number, shown, text
+
+
+@dataclass(frozen=True, slots=True)
+class Confined:
+    """The child is locked in, to this level of the ladder, and has run nothing of the student's yet."""
+
+    level: int
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """The child cannot be locked in as asked, and has ended."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something a student's node did: declared an endpoint, published, asked, answered, logged.
+
+    ``fields`` are raw; ``kit.host.declarations`` and ``codec`` check them against the types concerned.
+    """
+
+    name: str
+    fields: list[Json]
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """All nodes wait. ``wake_ns``: when the earliest wants to go on by itself; None: never."""
+
+    seq: int
+    wake_ns: int | None
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Functions:
+    """The functions a student's file defines."""
+
+    seq: int
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """What a function returned for each record of a batch: finite numbers."""
+
+    seq: int
+    values: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The program has come to its end."""
+
+    seq: int
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """The program has failed, as the child tells it."""
+
+    seq: int
+    failure: Failure
+
+
+Frame: TypeAlias = Confined | Refused | Reply | Functions | Values | Ended | Failed
+
+
+def _confined(level: Json) -> Confined:
+    return Confined(integer(level, 0, 3))
+
+
+def _refused(reason: Json) -> Refused:
+    return Refused(text(reason))
+
+
+def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
+    return Reply(integer(seq), None if wake_ns is None else integer(wake_ns, 0, 2**63 - 1), _events(events))
+
+
+def _functions(seq: Json, names: Json) -> Functions:
+    return Functions(integer(seq), tuple(text(name, MAX_NAME) for name in array(names)))
+
+
+def _values(seq: Json, values: Json) -> Values:
+    return Values(integer(seq), [number(value) for value in array(values)])
+
+
+def _ended(seq: Json, events: Json) -> Ended:
+    return Ended(integer(seq), _events(events))
+
+
+def _failed(seq: Json, kind: Json, message: Json, file: Json, line: Json) -> Failed:
+    name = text(kind, MAX_NAME)
+    known = {kind.value: kind for kind in REPORTABLE}
+    if name not in known:
+        raise ProtocolError(f"no such kind of failure: {name}")
+    where = None if file is None else text(file, MAX_NAME)
+    at = None if line is None or where is None else integer(line, 1)
+    return Failed(integer(seq), Failure(known[name], text(message), where, at))
+
+
+def _events(events: Json) -> tuple[Event, ...]:
+    found = []
+    for event in array(events):
+        name, *fields = array(event) or [None]
+        found.append(Event(text(name, MAX_NAME), fields))
+    return tuple(found)
+
+
+_FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyType(
+    {
+        "confined": (1, _confined),
+        "refused": (1, _refused),
+        "reply": (3, _reply),
+        "functions": (2, _functions),
+        "values": (2, _values),
+        "ended": (2, _ended),
+        "failed": (5, _failed),
+    }
+)
+
+
+def parse(content: Json) -> Frame:
+    """The frame a child sent, every value checked. ProtocolError if there is anything wrong with it."""
+    name, *fields = array(content) or [None]
+    if type(name) is not str or name not in _FRAMES:
+        raise ProtocolError(f"no such kind of frame: {shown(name)}")
+    count, read = _FRAMES[name]
+    if len(fields) != count:
+        raise ProtocolError(f"{name} with {len(fields)} fields instead of {count}")
+    return read(*fields)

@@ -1,0 +1,120 @@
+"""Frames, and the exact types of what is in them: shared by both ends of the pipe.
+
+A frame is four bytes of length (big-endian) and that many bytes of JSON. Values are checked for exactly one
+type each: a number is no text, true is no number, and NaN is nothing at all.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+from math import isfinite
+from typing import Any, Final, TypeAlias
+
+Json: TypeAlias = Any
+"""What JSON can say: None, bool, int, float, str, lists and dicts of these."""
+
+HEADER: Final = struct.Struct(">I")
+MAX_DEPTH: Final = 24
+"""Arrays in arrays: a message in an event in a frame needs ten at most."""
+MAX_ITEMS: Final = 1_000_000
+MAX_TEXT: Final = 4_000
+"""Characters of a line of log or of an error's text."""
+MAX_NAME: Final = 255
+"""Characters of a topic, node, type, function or file name."""
+MAX_ID: Final = 2**53
+"""Numbers above are not exact in every JSON reader."""
+
+
+class ProtocolError(Exception):
+    """The other side said something that this protocol does not know; the message says what."""
+
+
+def encode(content: Json) -> bytes:
+    """A frame. ValueError for NaN and infinity, which JSON does not know."""
+    data = _ENCODER.encode(content).encode("ascii")
+    return HEADER.pack(len(data)) + data
+
+
+def decode(data: bytes) -> Json:
+    """The content of a frame without its header, whose length the reader has checked already."""
+    opening = data.count(b"[") + data.count(b"{")
+    if opening + data.count(b",") > MAX_ITEMS:
+        raise ProtocolError(f"a frame with more than {MAX_ITEMS} items")
+    if opening > MAX_DEPTH and _depth(data) > MAX_DEPTH:
+        raise ProtocolError(f"a frame nested deeper than {MAX_DEPTH}")
+    try:
+        return _DECODER.decode(data.decode("ascii"))
+    except (ValueError, RecursionError) as problem:
+        # ValueError covers broken JSON, bytes beyond ASCII and numbers of thousands of digits.
+        raise ProtocolError(f"a frame that is not plain JSON ({type(problem).__name__})") from None
+
+
+def _depth(data: bytes) -> int:
+    depth = deepest = 0
+    for bracket in _STRING.sub(b"", data).translate(None, _NO_BRACKETS):
+        depth += 1 if bracket in b"[{" else -1
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _refuse_constant(name: str) -> Json:
+    raise ProtocolError(f"{name} is not a number")
+
+
+_STRING: Final = re.compile(rb'"(?:[^"\\]|\\.)*+"')
+_NO_BRACKETS: Final = bytes(byte for byte in range(256) if byte not in b"[]{}")
+_ENCODER: Final = json.JSONEncoder(allow_nan=False, check_circular=False, separators=(",", ":"))
+_DECODER: Final = json.JSONDecoder(parse_constant=_refuse_constant)
+
+
+# JSON's true is a Python bool, and bool passes for int: hence `type(...) is` below.
+
+
+def integer(value: Json, low: int = 0, high: int = MAX_ID) -> int:
+    if type(value) is not int or not low <= value <= high:
+        raise ProtocolError(f"not a whole number from {low} to {high}: {shown(value)}")
+    return value
+
+
+def number(value: Json) -> float:
+    """A finite number. 1e999 is JSON, and infinite."""
+    if type(value) is int and -MAX_ID <= value <= MAX_ID:
+        return float(value)
+    if type(value) is not float or not isfinite(value):
+        raise ProtocolError(f"not a finite number: {shown(value)}")
+    return value
+
+
+def text(value: Json, longest: int = MAX_TEXT) -> str:
+    """Text without control characters, escape sequences or halves of characters."""
+    if type(value) is not str or len(value) > longest:
+        raise ProtocolError(f"not a text of at most {longest} characters: {shown(value)}")
+    return printable(value)
+
+
+def array(value: Json, length: int | None = None) -> list[Json]:
+    if type(value) is not list or (length is not None and len(value) != length):
+        raise ProtocolError(f"not a list{'' if length is None else f' of {length}'}: {shown(value)}")
+    return value
+
+
+def printable(value: str) -> str:
+    """``value`` with everything that could steer a terminal, or hide, replaced by a visible sign."""
+    if value.isprintable():
+        return value
+    return "".join(
+        sign if sign.isprintable() else " " if sign in "\t\n" else "\N{REPLACEMENT CHARACTER}"
+        for sign in value
+    )
+
+
+def shown(value: Json) -> str:
+    """A refused value, for a message: short and printable."""
+    if isinstance(value, (list, dict)):
+        return f"a {type(value).__name__} of {len(value)}"
+    # Not repr() first: a whole number of more than 4300 digits refuses to be written out.
+    return (
+        printable(f"{value!r}"[:60]) if not isinstance(value, int) or abs(value) < 10**50 else "a huge number"
+    )
