@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol, TypeAlias
@@ -180,7 +181,7 @@ class Composer:
             return expanded(leaf, self._environment)
         except Refused as refused:
             self._problems.add(place, str(refused))
-            return leaf
+            return replace(leaf, broken=True)
 
     def _included(self, include: Include, place: Place, depth: int) -> Node:
         """The one document that takes the place of a scalar."""
@@ -189,7 +190,7 @@ class Composer:
             self._problems.add(place, "$[include] stands in a list only: write $include")
         elif len(nodes) > 1:
             self._problems.add(place, "the file holds several documents: write $[include], in a list")
-        return nodes[0] if nodes else Leaf("", True, place, "a file that cannot be included")
+        return nodes[0] if nodes else Leaf("", True, place, broken=True)
 
     def _alias(self, event: yaml.AliasEvent, place: Place) -> Node:
         if event.anchor not in self._anchors:

@@ -55,21 +55,21 @@ class Enclosure:
 def read_bytes(path: Path, limit: int) -> bytes:
     """The content of a regular file of at most ``limit`` bytes. Raises Unusable."""
     try:
-        # Non-blocking: opening a named pipe would otherwise wait for somebody to write to it.
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        with open(path, "rb", opener=_without_waiting) as file:
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise Unusable("it is not a regular file")
+            content = file.read(limit + 1) if status.st_size <= limit else None
     except (OSError, ValueError) as error:
         raise Unusable(_reason(error)) from error
-    with os.fdopen(descriptor, "rb") as file:
-        status = os.fstat(descriptor)
-        if not stat.S_ISREG(status.st_mode):
-            raise Unusable("it is a folder" if stat.S_ISDIR(status.st_mode) else "it is not a regular file")
-        try:
-            content = file.read(limit + 1) if status.st_size <= limit else None
-        except OSError as error:
-            raise Unusable(_reason(error)) from error
     if content is None or len(content) > limit:
         raise Unusable(f"it is larger than {limit // 1_000_000} MB")
     return content
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Opens a named pipe at once too, where ``open`` would wait until somebody writes to it."""
+    return os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC)
 
 
 def _resolved(path: Path) -> Path:
@@ -82,6 +82,8 @@ def _resolved(path: Path) -> Path:
 def _reason(error: Exception) -> str:
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
+    if isinstance(error, IsADirectoryError):
+        return "it is a folder"
     if isinstance(error, OSError) and error.strerror:
         return error.strerror.lower()
     return str(error).lower()

@@ -51,7 +51,7 @@ class LayerReader:
         """The bits of the names; a name that is taken, or one too many, gets none."""
         before = len(self._bits)
         bits = 0
-        for name in names:
+        for name in filter(None, names):
             if name in self._bits:
                 section.error(f"a layer named {quoted(name)} already exists", "name")
             elif len(self._bits) < MAX_LAYERS:

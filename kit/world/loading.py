@@ -104,7 +104,7 @@ def _model_entries(sections: Iterable[Section], documents: Documents) -> Iterato
     names: set[str] = set()
     for section in sections:
         name = section.name("name")
-        if name in names:
+        if name and name in names:
             section.error(f"a model named {quoted(name)} already exists", "name")
         names.add(name)
         file = documents.named(section, "model")

@@ -41,6 +41,8 @@ class Leaf:
     shown_as: str | None = None
     """What messages call it, where its text is not what stands in the file: an environment variable's value
     is used but never shown."""
+    broken: bool = False
+    """It stands for something that could not be had, which has been noted: nothing more is said of it."""
 
     @property
     def height(self) -> int:

@@ -54,7 +54,7 @@ def read_named(
             continue
         thing = read(section)
         section.finish()
-        if thing.name in found:
+        if thing.name and thing.name in found:
             section.error(f"a {what} named {quoted(thing.name)} already exists", "name")
         found.setdefault(thing.name, thing)
     return tuple(found.values())

@@ -34,6 +34,10 @@ class Required(Enum):
 REQUIRED: Final = Required.REQUIRED
 
 
+def _is_broken(node: Node) -> bool:
+    return isinstance(node, Leaf) and node.broken
+
+
 def _shown(node: Node) -> str:
     """What stands in the file, in a few words, for "expected X, found ..."."""
     if isinstance(node, ListNode):
@@ -82,10 +86,7 @@ class Section:
         self, key: str, default: str | Required = REQUIRED, *, choices: Collection[str] | None = None
     ) -> str:
         """A scalar as text, perhaps one of ``choices``."""
-        node = self._value(key, default)
-        if node is None:
-            return _instead(default, "")
-        text = self._text(node, quoted(key))
+        text = self._written(key, default)
         if text is not None and choices is not None and text not in choices:
             self._not_one_of(key, choices)
             return _instead(default, next(iter(choices)))
@@ -93,9 +94,10 @@ class Section:
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
         """A text by which something is called: one line, not empty."""
-        name = self.text(key, default)
-        if self.has(key):
-            self._check_name(name, key)
+        name = self._written(key, default)
+        if name is None:
+            return _instead(default, "")
+        self._check_name(name, key)
         return name
 
     @overload
@@ -104,10 +106,10 @@ class Section:
     def choice(self, key: str, options: Mapping[str, T], default: str) -> T: ...
     def choice(self, key: str, options: Mapping[str, T], default: str | Required = REQUIRED) -> T | None:
         """What the text stands for in the table ``options``; None where there is no default and no such text."""
-        text = self.text(key, default)
-        if text in options:
-            return options[text]
-        if text:
+        text = self._written(key, default)
+        if text is not None:
+            if text in options:
+                return options[text]
             self._not_one_of(key, options)
         return None if isinstance(default, Required) else options[default]
 
@@ -144,7 +146,7 @@ class Section:
             return instead
         integer = as_integer(node.text) if isinstance(node, Leaf) else None
         if integer is None or abs(integer) > MAX_INTEGER:
-            self.error(f"{quoted(key)} must be a whole number, not {_shown(node)}", key)
+            self._reject(node, f"{quoted(key)} must be a whole number")
             return instead
         return integer if self._bounded(integer, key, minimum, None, maximum) else instead
 
@@ -155,7 +157,7 @@ class Section:
             return _instead(default, False)
         flag = as_flag(node.text) if isinstance(node, Leaf) else None
         if flag is None:
-            self.error(f"{quoted(key)} must be true or false, not {_shown(node)}", key)
+            self._reject(node, f"{quoted(key)} must be true or false")
             return _instead(default, False)
         return flag
 
@@ -184,7 +186,7 @@ class Section:
         for i, item in enumerate(self._items(key, REQUIRED, None, at_least, at_most) or ()):
             what = f"{quoted(key)}[{i}]"
             if not isinstance(item, ListNode) or len(item.items) != 2:
-                self._error(f"{what} must be a point [x, y], not {_shown(item)}", item.place)
+                self._reject(item, f"{what} must be a point [x, y]")
                 continue
             x, y = (self._number(coordinate, what) for coordinate in item.items)
             if x is not None and y is not None:
@@ -269,13 +271,22 @@ class Section:
         if not self._silent:
             self._problems.add(place, message)
 
+    def _reject(self, node: Node, demand: str) -> None:
+        """Notes that the node is not what is demanded, unless it is broken, which was noted already."""
+        if not _is_broken(node):
+            self._error(f"{demand}, not {_shown(node)}", node.place)
+
     def _value(self, key: str, default: object) -> Node | None:
         self._asked.add(key)
         entry = self._entries.get(key)
         if entry is None and default is REQUIRED:
             self._missing.add(key)
             self.error(f"{quoted(key)} is missing")
-        return None if entry is None else entry.value
+        return None if entry is None or _is_broken(entry.value) else entry.value
+
+    def _written(self, key: str, default: object) -> str | None:
+        node = self._value(key, default)
+        return None if node is None else self._text(node, quoted(key))
 
     def _items(
         self, key: str, default: object, length: int | None, at_least: int | None, at_most: int | None
@@ -284,7 +295,7 @@ class Section:
         if node is None:
             return None
         if not isinstance(node, ListNode):
-            self.error(f"{quoted(key)} must be a list, not {_shown(node)}", key)
+            self._reject(node, f"{quoted(key)} must be a list")
             return None
         count = len(node.items)
         for wrong, wanted in (
@@ -299,10 +310,10 @@ class Section:
 
     def _text(self, node: Node, what: str) -> str | None:
         if not isinstance(node, Leaf) or node.is_null:
-            self._error(f"{what} must be a text, not {_shown(node)}", node.place)
+            self._reject(node, f"{what} must be a text")
             return None
         if not displayable(node.text.replace("\n", "")):
-            self._error(f"{what} contains control characters: {_shown(node)}", node.place)
+            self._reject(node, f"{what} must be without control characters")
             return None
         return node.text
 
@@ -318,12 +329,12 @@ class Section:
     def _number(self, node: Node, what: str, *, infinite: bool = False) -> float | None:
         number = as_number(node.text) if isinstance(node, Leaf) else None
         if number is None:
-            self._error(f"{what} must be a number, not {_shown(node)}", node.place)
+            self._reject(node, f"{what} must be a number")
             return None
         if infinite and math.isinf(number):
             return number
         if not abs(number) <= MAX_NUMBER:  # NaN too
-            self._error(f"{what} must be a number of at most {MAX_NUMBER:g}, not {_shown(node)}", node.place)
+            self._reject(node, f"{what} must be a number of at most {MAX_NUMBER:g}")
             return None
         return number
 
@@ -336,14 +347,14 @@ class Section:
             (maximum is not None and number > maximum, f"at most {maximum}"),
         ):
             if wrong:
-                self.error(f"{quoted(key)} must be {wanted}, not {_shown(self._entries[key].value)}", key)
+                self._reject(self._entries[key].value, f"{quoted(key)} must be {wanted}")
                 return False
         return True
 
     def _section(self, node: Node, what: str) -> Section:
         if isinstance(node, MapNode):
             return Section(node, self._problems, silent=self._silent)
-        self._error(f"{what} must be a mapping, not {_shown(node)}", node.place)
+        self._reject(node, f"{what} must be a mapping")
         return self._absent(node.place)
 
     def _absent(self, place: Place) -> Section:
