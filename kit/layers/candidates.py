@@ -110,7 +110,9 @@ def find_candidates(case: Case, *, limit: int = 100_000, deadline: float = float
     for layer in _cliques(graph, visible):
         if layer not in found and (covers := rows.served_by(layer)):
             found[layer] = covers
-            if len(found) % _LOOK_AT_CLOCK_EVERY == 0 and (len(found) >= limit or time.monotonic() > deadline):
+            if len(found) % _LOOK_AT_CLOCK_EVERY == 0 and (
+                len(found) >= limit or time.monotonic() > deadline
+            ):
                 complete = False
                 break
     if not complete:

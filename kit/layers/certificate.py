@@ -47,7 +47,9 @@ def certificate_of(case: Case, candidates: Candidates, cover: Cover) -> Certific
     if candidates.complete:
         found = Certificate(
             tuple(case.requirements[row] for row in cover.packed),
-            tuple({case.requirements[row]: weight for row, weight in part.items()} for part in cover.weighted),
+            tuple(
+                {case.requirements[row]: weight for row, weight in part.items()} for part in cover.weighted
+            ),
         )
         if holds(case, candidates, found):
             return found

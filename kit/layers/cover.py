@@ -195,7 +195,9 @@ def _settle(part: _Part, deadline: float) -> Cover:
 def _exact(values: Sequence[float], matrix: Sequence[Column]) -> list[Fraction]:
     """The weights as fractions that certainly obey "no column collects more than 1"."""
     weights = [Fraction(value).limit_denominator(_LARGEST_DENOMINATOR) for value in values]
-    heaviest = max((sum((weights[row] for row in column), Fraction(0)) for column in matrix), default=Fraction(1))
+    heaviest = max(
+        (sum((weights[row] for row in column), Fraction(0)) for column in matrix), default=Fraction(1)
+    )
     return [weight / heaviest for weight in weights] if heaviest > 1 else weights
 
 

@@ -55,7 +55,9 @@ def solve(case: Case, *, time_limit: float = DEFAULT_TIME_LIMIT) -> Plan:
     layers, watches = lean(case, [candidates.layers[i] for i in cover.chosen])
     assignment = named(case, layers, watches)
     certificate = certificate_of(case, candidates, cover)
-    assert not breaches(case, assignment), "a cover by candidate layers serves every requirement and nothing else"
+    assert not breaches(case, assignment), (
+        "a cover by candidate layers serves every requirement and nothing else"
+    )
     return Plan(
         case,
         assignment,

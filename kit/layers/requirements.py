@@ -41,18 +41,25 @@ class Entity:
     """Never collides (``collision: false``), whatever layers it shares; lasers can still see it."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """A pair of entities, in either order. ``Contact(a, a)``: the copies of ``a`` among themselves."""
+    """A pair of entities; ``Contact(a, b) == Contact(b, a)``. ``Contact(a, a)``: the copies of ``a`` among themselves."""
 
     a: str
     b: str
 
-    def __post_init__(self) -> None:
-        if self.b < self.a:
-            a, b = self.b, self.a
-            object.__setattr__(self, "a", a)
-            object.__setattr__(self, "b", b)
+    @property
+    def _either_way(self) -> tuple[str, str]:
+        return (self.a, self.b) if self.a <= self.b else (self.b, self.a)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Contact) and self._either_way == other._either_way
+
+    def __hash__(self) -> int:
+        return hash(self._either_way)
+
+    def __lt__(self, other: Contact) -> bool:
+        return self._either_way < other._either_way
 
     def __str__(self) -> str:
         return f"{self.a} - {self.b}"
@@ -110,7 +117,8 @@ class Case:
     def __post_init__(self) -> None:
         _unique("entity", [entity.name for entity in self.entities])
         _unique("laser", [laser.name for laser in self.lasers])
-        _unique("pair", [str(contact) for contact in self.collide])
+        if len(self.must) < len(self.collide):
+            raise CaseError("the same pair is required twice")
         for contact in (*self.collide, *self.either):
             self._check(contact)
         for laser in self.lasers:
@@ -133,7 +141,9 @@ class Case:
                 raise CaseError(f"there is no entity {name!r}")
         a, b = self.by_name[contact.a], self.by_name[contact.b]
         if a.kind == b.kind == "map" and a != b:
-            raise CaseError(f"{a.name} and {b.name} are maps: maps never collide, and a layer holds one at most")
+            raise CaseError(
+                f"{a.name} and {b.name} are maps: maps never collide, and a layer holds one at most"
+            )
         if contact in self.must and contact in self.either:
             raise CaseError(f"{contact} is both required and left open")
         if contact in self.must and (a.ghost or b.ghost):
@@ -159,7 +169,9 @@ class Case:
     @cached_property
     def requirements(self) -> tuple[Requirement, ...]:
         """Everything the layers have to bring about: the contacts as written, then the sightings."""
-        sights = [Sight(laser.name, name) for laser in self.lasers for name in self.names if name in laser.sees]
+        sights = [
+            Sight(laser.name, name) for laser in self.lasers for name in self.names if name in laser.sees
+        ]
         return (*self.collide, *sights)
 
     def relation(self, a: str, b: str) -> Relation:
@@ -208,9 +220,7 @@ class Case:
                 either | {entity} if sighting == "either" else either,
             )
 
-        return replace(
-            self, lasers=tuple(changed(old) if old.name == laser else old for old in self.lasers)
-        )
+        return replace(self, lasers=tuple(changed(old) if old.name == laser else old for old in self.lasers))
 
     def with_entity(self, entity: Entity) -> Case:
         return replace(self, entities=(*self.entities, entity))

@@ -52,7 +52,9 @@ def row_weights(columns: Sequence[frozenset[int]], rows: int, seconds: float) ->
     return tuple(min(1.0, max(0.0, value)) for value in highs.getSolution().col_value)
 
 
-def fewest_left_out(columns: Sequence[frozenset[int]], rows: int, at_most: int, seconds: float) -> Selection | None:
+def fewest_left_out(
+    columns: Sequence[frozenset[int]], rows: int, at_most: int, seconds: float
+) -> Selection | None:
     """``at_most`` columns that leave the fewest rows uncovered; the bound is on how few those can be.
 
     ``min sum d, A z + d >= 1, sum z <= at_most, z binary, d >= 0``. ``chosen`` are the columns.

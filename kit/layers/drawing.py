@@ -1,0 +1,273 @@
+"""A case and its plan in characters: the collision graph as a picture or a matrix, the assignment as a table.
+
+Every line is a row of spans, a text and what it stands for: a face may colour them by their style, and joined
+they are the picture in plain characters, in which no meaning hangs on colour.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations, groupby
+from typing import Final, Literal
+
+from kit.layers.assignment import Assignment
+from kit.layers.requirements import Case, Contact
+from kit.world.tables import table
+
+Style = Literal["space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text"]
+Glyphs = Literal["braille", "ascii"]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    text: str
+    style: Style
+
+
+Line = tuple[Span, ...]
+
+_ORDER: Final[tuple[Style, ...]] = (
+    "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
+)  # fmt: skip
+"""Where two things meet in one character, the later one is seen."""
+
+_RANK: Final = {style: rank for rank, style in enumerate(_ORDER)}
+
+MOST_IN_PICTURE = 16
+"""With more entities than this, lines cross too often to be followed: draw the matrix."""
+
+
+def plain(lines: Iterable[Line]) -> list[str]:
+    """The lines as text, without what trails behind."""
+    return ["".join(span.text for span in line).rstrip() for line in lines]
+
+
+def draw_graph(
+    case: Case,
+    *,
+    struck: Collection[Contact] = (),
+    group: Collection[str] = (),
+    laser: str | None = None,
+    width: int = 80,
+    height: int = 17,
+    glyphs: Glyphs = "braille",
+) -> list[Line]:
+    """The collision graph as a picture of ``width`` x ``height`` characters.
+
+    Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
+    group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
+    it must see.
+    """
+    names = [*_order_with_few_crossings(case), *([laser] if laser else [])]
+    canvas = _Canvas(width, height, glyphs)
+    spots = dict(zip(names, _ellipse(len(case.names), width, height), strict=False))
+    if laser:
+        spots[laser] = ((width - 1) / 2, (height - 1) / 2)
+        for name in sorted(case.laser[laser].sees):
+            canvas.line(spots[laser], spots[name], "beam")
+    for edge in sorted(case.edges(), key=lambda e: _RANK[_edge_style(e, struck, group)]):
+        canvas.line(spots[edge.a], spots[edge.b], _edge_style(edge, struck, group))
+    for name in names:
+        canvas.label(spots[name], *_labelled(case, name, group))
+    return canvas.lines()
+
+
+def _edge_style(edge: Contact, struck: Collection[Contact], group: Collection[str]) -> Style:
+    if edge.a in group and edge.b in group:
+        return "group edge"
+    return "struck" if edge in struck else "edge"
+
+
+def _labelled(case: Case, name: str, group: Collection[str]) -> tuple[str, Style]:
+    if name in group:
+        return f"[{name}]", "group"
+    entity = case.by_name.get(name)
+    if entity is None:
+        return f"<{name}>", "laser"
+    return (f"#{name}#", "map") if entity.kind == "map" else (f" {name} ", "body")
+
+
+def _ellipse(count: int, width: int, height: int) -> list[tuple[float, float]]:
+    """Points on an ellipse as wide and high as the picture, from the top clockwise: (column, row)."""
+    turns = [math.tau * i / max(count, 1) - math.pi / 2 for i in range(count)]
+    across, down = max(1.0, (width - 1) / 2 - 6), (height - 1) / 2
+    return [((width - 1) / 2 + across * math.cos(t), down + down * math.sin(t)) for t in turns]
+
+
+def _order_with_few_crossings(case: Case) -> list[str]:
+    """The entities around the ellipse, two swapped as long as that makes fewer edges cross."""
+    order = list(case.names)
+    edges = [(edge.a, edge.b) for edge in case.edges()]
+    if len(order) > MOST_IN_PICTURE:
+        return order
+    best = _crossings(order, edges)
+    improved = True
+    while improved and best > (0, 0):
+        improved = False
+        for i, j in combinations(range(len(order)), 2):
+            order[i], order[j] = order[j], order[i]
+            crossings = _crossings(order, edges)
+            if crossings < best:
+                best, improved = crossings, True
+            else:
+                order[i], order[j] = order[j], order[i]
+    return order
+
+
+def _crossings(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:
+    """How many pairs of chords cross, and how long the chords are together (in steps around the circle)."""
+    place = {name: i for i, name in enumerate(order)}
+    chords = [tuple(sorted((place[a], place[b]))) for a, b in edges]
+    crossing = sum(a < c < b < d or c < a < d < b for (a, b), (c, d) in combinations(chords, 2))
+    return crossing, sum(min(b - a, len(order) - b + a) for a, b in chords)
+
+
+class _Canvas:
+    """A grid of characters with lines under labels. Columns and rows from 0, at the top left."""
+
+    def __init__(self, width: int, height: int, glyphs: Glyphs) -> None:
+        self._width, self._height, self._glyphs = width, height, glyphs
+        self._dots: dict[tuple[int, int], int] = {}
+        self._styles: dict[tuple[int, int], Style] = {}
+        self._letters: dict[tuple[int, int], str] = {}
+
+    def line(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+        """A straight line between two characters' middles."""
+        draw = self._braille if self._glyphs == "braille" else self._ascii
+        draw(start, end, style)
+
+    def label(self, middle: tuple[float, float], text: str, style: Style) -> None:
+        """Text over whatever is there, moved so that it fits."""
+        row = min(max(round(middle[1]), 0), self._height - 1)
+        shown = text[: self._width]
+        first = min(max(round(middle[0] - (len(shown) - 1) / 2), 0), self._width - len(shown))
+        for i, letter in enumerate(shown):
+            self._letters[first + i, row] = letter
+            self._styles[first + i, row] = style
+
+    def lines(self) -> list[Line]:
+        return [
+            tuple(
+                Span("".join(glyph for glyph, _ in run), style)
+                for style, run in groupby(
+                    (self._cell(column, row) for column in range(self._width)), lambda c: c[1]
+                )
+            )
+            for row in range(self._height)
+        ]
+
+    def _cell(self, column: int, row: int) -> tuple[str, Style]:
+        cell = column, row
+        if cell in self._letters:
+            return self._letters[cell], self._styles[cell]
+        if cell in self._dots:
+            return chr(0x2800 + self._dots[cell]), self._styles[cell]
+        return " ", "space"
+
+    def _mark(self, cell: tuple[int, int], style: Style) -> None:
+        if _RANK[style] >= _RANK[self._styles.get(cell, "space")]:
+            self._styles[cell] = style
+
+    def _braille(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+        x0, y0, x1, y1 = (2 * start[0] + 0.5, 4 * start[1] + 1.5, 2 * end[0] + 0.5, 4 * end[1] + 1.5)
+        steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
+        every = {"struck": 6, "beam": 3}.get(style, 1)
+        aside = (1, 0) if abs(y1 - y0) > abs(x1 - x0) else (0, 1)
+        for step in range(0, steps + 1, every):
+            x, y = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
+            self._dot(x, y, style)
+            if style == "group edge":
+                self._dot(x + aside[0], y + aside[1], style)
+
+    def _dot(self, x: int, y: int, style: Style) -> None:
+        cell = x // 2, y // 4
+        if 0 <= cell[0] < self._width and 0 <= cell[1] < self._height:
+            self._dots[cell] = self._dots.get(cell, 0) | _BRAILLE[y % 4][x % 2]
+            self._mark(cell, style)
+
+    def _ascii(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+        (x0, y0), (x1, y1) = start, end
+        steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
+        letter = {"struck": ".", "beam": ":", "group edge": "*"}.get(style) or _slope(x1 - x0, y1 - y0)
+        for step in range(0, steps + 1, 2 if style == "struck" else 1):
+            cell = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
+            if _RANK[style] >= _RANK[self._styles.get(cell, "space")]:
+                self._letters[cell] = letter
+                self._mark(cell, style)
+
+
+_BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+"""The bit of each dot of a braille character, by row and column."""
+
+
+def _slope(across: float, down: float) -> str:
+    """The character that looks most like a line in this direction; a character is twice as high as wide."""
+    if abs(down) * 5 < abs(across):
+        return "-"
+    if abs(across) * 1.25 < abs(down):
+        return "|"
+    return "\\" if (across > 0) == (down > 0) else "/"
+
+
+def draw_matrix(case: Case, *, struck: Collection[Contact] = (), group: Collection[str] = ()) -> list[Line]:
+    """Every pair and every laser in one table, which no number of entities tangles.
+
+    ``#`` must collide, ``x`` the same and struck, ``~`` nobody minds, ``.`` must not; in a laser's row ``#`` must
+    see, ``~`` may, ``.`` must not. A name in the ``group`` is marked by ``*``.
+    """
+    numbers = [f"{i + 1}" for i in range(len(case.names))]
+    digits = max((len(number) for number in numbers), default=1)
+    wide = max((len(name) for name in (*case.names, *case.laser)), default=0)
+    wide = min(wide, max(8, 76 - digits - 2 * len(numbers)))
+    step = 2 if digits == 1 or wide + digits + 2 * len(numbers) <= 76 else 1
+    lines: list[Line] = []
+    for place in range(digits):
+        head = "".join(number.rjust(digits)[place].ljust(step) for number in numbers)
+        lines.append((Span(" " * (wide + digits + 3) + head, "text"),))
+    for i, a in enumerate(case.names):
+        label = f"{numbers[i].rjust(digits)}{'*' if a in group else ' '}{a[:wide].ljust(wide)}  "
+        marks = [_pair_mark(case, a, b, struck) for b in case.names[: i + 1]]
+        style: Style = "group" if a in group else "map" if case.by_name[a].kind == "map" else "body"
+        lines.append((Span(label, style), Span("".join(mark.ljust(step) for mark in marks), "edge")))
+    for laser in case.lasers:
+        marks = [{"sees": "#", "either": "~", "blind": "."}[laser.sighting(name)] for name in case.names]
+        label = f"{' ' * digits}>{laser.name[:wide].ljust(wide)}  "
+        lines.append((Span(label, "laser"), Span("".join(mark.ljust(step) for mark in marks), "beam")))
+    return lines
+
+
+def _pair_mark(case: Case, a: str, b: str, struck: Collection[Contact]) -> str:
+    relation = case.relation(a, b)
+    if a == b:
+        return {"collide": "#", "apart": ".", "either": "\\"}[relation]
+    if relation == "collide" and Contact(a, b) in struck:
+        return "x"
+    return {"collide": "#", "apart": ".", "either": "~"}[relation]
+
+
+def draw_assignment(case: Case, assignment: Assignment, *, width: int = 80) -> list[str]:
+    """The plan as two tables: what each layer holds and who watches it; which list each entity and laser gets."""
+    watchers = {
+        layer.name: ", ".join(name for name, watched in assignment.watches.items() if layer.name in watched)
+        for layer in assignment.layers
+    }
+    in_order = {name: i for i, name in enumerate(case.names)}
+    layers = [
+        (
+            layer.name,
+            ", ".join(sorted(layer.members, key=lambda n: in_order.get(n, -1))),
+            watchers[layer.name] or "-",
+        )
+        for layer in assignment.layers
+    ]
+    lists = [(name, ", ".join(assignment.layers_of(name)) or "(none: layers: [])") for name in case.names]
+    lasers = [
+        (name, ", ".join(assignment.watches.get(name, ())) or "(none: layers: [])") for name in case.laser
+    ]
+    lines = list(table([("layer", "holds", "watched by"), *layers], width))
+    lines += ["", *table([("who", "its layers"), *lists], width)]
+    if lasers:
+        lines += ["", *table([("laser", "watches"), *lasers], width)]
+    return lines

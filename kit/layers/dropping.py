@@ -1,0 +1,110 @@
+"""More than sixteen layers needed: what to give up.
+
+There are two ways out, and both are worked out. *Give up requirements*: the fewest contacts and sightings that
+nobody insists on any more, exactly, by the same set cover with a price for each row left uncovered. *Tolerate*
+contacts and sightings that should not happen, by merging layers, at each step the two whose union brings the
+fewest; quick, and often much cheaper than the first way, but not proved the fewest.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import combinations, product
+
+from kit.layers import solver
+from kit.layers.candidates import find_candidates
+from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
+from kit.layers.requirements import MAX_LAYERS, Case, Contact, Requirement, Sight
+
+
+@dataclass(frozen=True, slots=True)
+class Sacrifice:
+    """What to give up or to tolerate, and the plan of the case without it."""
+
+    what: tuple[Requirement, ...]
+    at_least: int
+    """Proved: no smaller sacrifice of this kind will do. 0 where nothing is proved."""
+    plan: Plan
+
+    @property
+    def fewest(self) -> bool:
+        return self.at_least == len(self.what)
+
+
+def give_up(
+    case: Case, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
+) -> Sacrifice | None:
+    """The fewest requirements without which ``limit`` layers do. None: none found in time."""
+    deadline = time.monotonic() + time_limit
+    candidates = find_candidates(case, deadline=time.monotonic() + time_limit / 4)
+    rows = len(case.requirements)
+    selection = solver.fewest_left_out(candidates.covers, rows, limit, (deadline - time.monotonic()) / 2)
+    if selection is None:
+        return None
+    served = frozenset().union(*(candidates.covers[i] for i in selection.chosen))
+    dropped = tuple(requirement for row, requirement in enumerate(case.requirements) if row not in served)
+    plan = solve(case.without(dropped), time_limit=max(0.1, deadline - time.monotonic()))
+    return (
+        Sacrifice(dropped, selection.bound if candidates.complete else 0, plan)
+        if plan.size <= limit
+        else None
+    )
+
+
+def tolerate(
+    plan: Plan, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
+) -> Sacrifice | None:
+    """Few unwanted contacts and sightings with which ``limit`` layers do. None: no merging leads there."""
+    case = plan.case
+    layers = [
+        (
+            layer.members,
+            frozenset(name for name, watched in plan.assignment.watches.items() if layer.name in watched),
+        )
+        for layer in plan.assignment.layers
+    ]
+    tolerated: set[Requirement] = set()
+    while len(layers) > limit:
+        prices = {
+            (i, j): price
+            for (i, one), (j, other) in combinations(enumerate(layers), 2)
+            if (price := _price(case, one, other)) is not None
+        }
+        if not prices:
+            return None
+        i, j = min(prices, key=lambda pair: (len(prices[pair] - tolerated), pair))
+        tolerated |= prices[i, j]
+        merged = (layers[i][0] | layers[j][0], layers[i][1] | layers[j][1])
+        layers = [layer for k, layer in enumerate(layers) if k not in (i, j)] + [merged]
+    what = tuple(sorted(tolerated, key=_by_kind))
+    relaxed = solve(case.without(what), time_limit=time_limit)
+    return Sacrifice(what, 0, relaxed) if relaxed.size <= limit else None
+
+
+_Layer = tuple[frozenset[str], frozenset[str]]
+"""Members, and the lasers that watch."""
+
+
+def _price(case: Case, one: _Layer, other: _Layer) -> frozenset[Requirement] | None:
+    """What happens that should not when two layers become one; None where it cannot be done (two maps)."""
+    unwanted: set[Requirement] = set()
+    for a, b in product(one[0] - other[0], other[0] - one[0]):
+        if case.relation(a, b) == "apart":
+            if case.by_name[a].kind == case.by_name[b].kind == "map":
+                return None
+            unwanted.add(Contact(a, b))
+    for laser, (members, _) in _crossings(one, other):
+        unwanted.update(Sight(laser, name) for name in members if case.laser[laser].sighting(name) == "blind")
+    return frozenset(unwanted)
+
+
+def _crossings(one: _Layer, other: _Layer) -> Iterable[tuple[str, _Layer]]:
+    """Each laser of one layer with the other layer, whose members it would come to see."""
+    yield from ((laser, other) for laser in one[1])
+    yield from ((laser, one) for laser in other[1])
+
+
+def _by_kind(requirement: Requirement) -> tuple[bool, str]:
+    return isinstance(requirement, Sight), str(requirement)

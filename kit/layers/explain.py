@@ -1,0 +1,239 @@
+"""Plans and proofs in words, as lines of at most 80 characters, for terminals and screen readers alike."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Collection, Iterable, Iterator
+from fractions import Fraction
+from itertools import combinations
+
+from kit.layers.certificate import Certificate
+from kit.layers.dropping import Sacrifice
+from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
+from kit.layers.planning import Plan
+from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight, fit_together
+
+WIDTH = 80
+
+
+def wrapped(text: str, *, indent: str = "", later: str | None = None) -> list[str]:
+    """A paragraph; ``later`` is the indent of its further lines."""
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=indent,
+        subsequent_indent=indent if later is None else later,
+        break_on_hyphens=False,
+    )
+
+
+def listed(names: Iterable[object]) -> str:
+    """a, b and c"""
+    words = [str(name) for name in names]
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def layers_in_words(count: int) -> str:
+    return f"{count} layer" if count == 1 else f"{count} layers"
+
+
+def members_in_words(case: Case, members: Collection[str]) -> str:
+    """{a, b, c}, in the case's order."""
+    return f"{{{', '.join(name for name in case.names if name in members)}}}"
+
+
+def requirement_in_words(requirement: Requirement, case: Case) -> str:
+    """A requirement as a statement: "a and b collide"."""
+    if isinstance(requirement, Sight):
+        return f"{requirement.laser} sees {requirement.entity}"
+    if requirement.a != requirement.b:
+        return f"{requirement.a} and {requirement.b} collide"
+    if case.by_name[requirement.a].kind == "map":
+        return f"{requirement.a} has at least one name"
+    return f"the copies of {requirement.a} collide with each other"
+
+
+def case_in_words(case: Case) -> list[str]:
+    """What a case asks, briefly: counts, then who collides with whom and what the lasers see."""
+    maps = [entity.name for entity in case.entities if entity.kind == "map"]
+    others = [entity.name for entity in case.entities if entity.kind != "map"]
+    lines = wrapped(f"Maps: {', '.join(maps) or 'none'}. Bodies: {', '.join(others) or 'none'}.")
+    for contact in case.collide:
+        lines += wrapped(requirement_in_words(contact, case), indent="  ", later="    ")
+    for laser in case.lasers:
+        seen = [name for name in case.names if name in laser.sees]
+        lines += wrapped(f"{laser.name} sees {listed(seen) or 'nothing'}", indent="  ", later="    ")
+    return lines
+
+
+# The slides' method
+
+
+def greedy_in_words(run: GreedyRun) -> Iterator[str]:
+    """The method as it is taught, clique by clique, then laser by laser."""
+    yield f"Edges: {len(run.case.collide)}"
+    yield from wrapped(", ".join(map(str, run.case.collide)) or "none", indent="  ")
+    for number, step in enumerate(run.collision_steps, start=1):
+        yield ""
+        yield from collision_step_in_words(run.case, number, step)
+    for laser_step in run.laser_steps:
+        yield ""
+        yield from laser_step_in_words(run.case, laser_step)
+    yield ""
+    yield from wrapped(f"The slides' method ends with {layers_in_words(run.size)}.")
+    if run.missed:
+        yield from wrapped(
+            f"It leaves a hole: {listed(run.missed)} (laser > what it should see). What collides with nothing is in "
+            "no collision layer, so the method never shows it to a laser. Give it a layer of its own."
+        )
+
+
+def collision_step_in_words(case: Case, number: int, step: CollisionStep) -> list[str]:
+    """One collision layer: the edge, what joined, what is struck, what is left."""
+    left = len(step.choices)
+    lines = wrapped(
+        f"Step {number}. {f'Of {left} edges left, take' if left > 1 else 'Take the last edge,'} {step.edge}."
+    )
+    for growth in step.growth:
+        also = [name for name in growth.choices if name != growth.added]
+        choice = f" ({listed(also)} could have joined instead)" if also else ""
+        lines += wrapped(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
+    lines += wrapped(
+        f"Nobody {'else ' if step.growth else ''}collides with everyone. "
+        f"Layer {step.layer.name} = {members_in_words(case, step.layer.members)}.",
+        indent="  ",
+    )
+    struck = ", ".join(map(str, step.struck))
+    lines += wrapped(f"Strike {struck}. {left - len(step.struck) or 'None'} left.", indent="  ")
+    return lines
+
+
+def laser_step_in_words(case: Case, step: LaserStep) -> list[str]:
+    """One laser: its groups, what becomes of each, and the layers it watches."""
+    lines = wrapped(f"Laser {step.laser}. In each collision layer, group what it must see.")
+    endings = {
+        "whole layer": "the whole layer, so {} itself serves",
+        "known group": "a group that exists already, {}",
+        "new layer": "a new layer, {}",
+        "inside another": "inside {}: not needed",
+    }
+    for group in step.groups:
+        members = members_in_words(case, group.members)
+        lines += wrapped(
+            f"{group.source}: {members}, {endings[group.fate].format(group.layer)}.", indent="  "
+        )
+    lines += wrapped(f"{step.laser} watches {listed(step.watches) or 'nothing'}.", indent="  ")
+    return lines
+
+
+# The optimum and its proof
+
+
+def plan_in_words(plan: Plan) -> list[str]:
+    """How many layers, and whether that is proved."""
+    if plan.optimal:
+        return wrapped(f"{layers_in_words(plan.size)}, and no plan has fewer.")
+    return wrapped(
+        f"{layers_in_words(plan.size)} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
+        f"have up to {plan.gap} fewer. The time was up; --time-limit gives it more."
+    )
+
+
+def proof_in_words(plan: Plan, *, every_pair: bool = False) -> list[str]:
+    """Why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
+    certificate = plan.certificate
+    lines = _packing_in_words(plan.case, certificate, every_pair=every_pair) if certificate.apart else []
+    for part in certificate.parts:
+        lines += _weights_in_words(plan.case, dict(part))
+    if not plan.size:
+        return [*lines, "Nothing has to meet and nothing has to be seen: no layer is needed."]
+    if certificate.bound < plan.bound:
+        lines += wrapped(
+            f"That proves {certificate.bound}. The solver went through every cover by the {plan.candidates} possible "
+            f"layers and found none with fewer than {plan.bound}; there is no shorter reason to give."
+        )
+    elif certificate.parts and certificate.apart:
+        lines += wrapped(
+            f"No layer counts twice in this: together that is {layers_in_words(certificate.bound)}."
+        )
+    return lines
+
+
+def _packing_in_words(case: Case, certificate: Certificate, *, every_pair: bool) -> list[str]:
+    apart = certificate.apart
+    count = len(apart)
+    if count == 1:
+        lines = wrapped("This needs a layer:")
+    else:
+        lines = wrapped(f"No two of these {count} fit one layer, so they need {layers_in_words(count)}:")
+    for number, requirement in enumerate(apart, start=1):
+        lines += wrapped(f"{number:>3}  {requirement_in_words(requirement, case)}", later="     ")
+    pairs = list(combinations(range(count), 2))
+    shown = pairs if every_pair else pairs[:3]
+    if shown:
+        lines.append("Because:" if every_pair or len(pairs) <= len(shown) else "Because, for example:")
+    for i, j in shown:
+        lines += wrapped(f"{i + 1:>3} and {j + 1}: {fit_together(case, apart[i], apart[j])}", later="     ")
+    return lines
+
+
+def _weights_in_words(case: Case, weights: dict[Requirement, Fraction]) -> list[str]:
+    total = sum(weights.values(), Fraction(0))
+    lines = wrapped(
+        f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
+        f"they weigh {_mixed(total)}: they need {layers_in_words(-(-total.numerator // total.denominator))}."
+    )
+    for requirement, weight in weights.items():
+        lines += wrapped(f"{_mixed(weight):>5}  {requirement_in_words(requirement, case)}", later="       ")
+    return lines
+
+
+def _mixed(number: Fraction) -> str:
+    """7 1/2"""
+    whole, rest = divmod(number.numerator, number.denominator)
+    if not rest:
+        return str(whole)
+    return f"{whole} {rest}/{number.denominator}" if whole else f"{rest}/{number.denominator}"
+
+
+def comparison_in_words(run: GreedyRun, plan: Plan) -> list[str]:
+    """The slides' method beside the plan."""
+    more = run.size - plan.size
+    if run.missed:
+        verdict = f"it also leaves {len(run.missed)} things unseen"
+    elif more == 0:
+        verdict = "as few as can be" if plan.optimal else "as few as the plan"
+    elif more < 0:
+        verdict = f"{-more} fewer than this plan, which ran out of time"
+    else:
+        verdict = f"{more} more than needed" if plan.optimal else f"{more} more than the plan"
+    return wrapped(f"The slides' method, taking edges in order: {layers_in_words(run.size)}; {verdict}.")
+
+
+# What to give up
+
+
+def too_many_in_words(plan: Plan, given_up: Sacrifice | None, tolerated: Sacrifice | None) -> list[str]:
+    """More than Flatland's sixteen layers: the two ways out, the shorter first."""
+    lines = wrapped(f"Flatland has {MAX_LAYERS} layers and this plan needs {plan.size}. Ways out:")
+    ways = [
+        (sacrifice, words)
+        for sacrifice, words in (
+            (given_up, "Give up, so that it need no longer happen"),
+            (tolerated, "Or allow, so that it may happen"),
+        )
+        if sacrifice is not None
+    ]
+    for sacrifice, words in sorted(ways, key=lambda way: len(way[0].what)):
+        proof = "the fewest there are" if sacrifice.fewest else "perhaps not the fewest"
+        words = words.removeprefix("Or ").capitalize()
+        lines += wrapped(
+            f"{words} ({len(sacrifice.what)}, {proof}; {layers_in_words(sacrifice.plan.size)} then do):"
+        )
+        for requirement in sacrifice.what:
+            lines += wrapped(requirement_in_words(requirement, plan.case), indent="    - ", later="      ")
+    if not ways:
+        lines += wrapped(
+            "None was found in the time given. Split the world, or give models the same needs.", indent="  "
+        )
+    return lines

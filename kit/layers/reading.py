@@ -1,0 +1,310 @@
+"""Requirements written down: a small YAML file, read with every mistake at its place, and written.
+
+    world: yard.world.yaml                 # optional: the Flatland world these are for
+    maps: [hall, yard]
+    models: [robot, crane, chair]
+    parts: {crane: [hook, base]}           # of one model, with different needs: crane.hook, crane.base
+    bodies: {crane.base: [base, wheel]}    # optional: which bodies are meant; otherwise the one of that name
+    copies: {chair: [chair1, chair2]}      # model instances of one model file, which share one list of layers
+    ghosts: [crane.hook]                   # never collide (collision: false); lasers may see them
+    collide:                               # who must collide with whom
+      robot: [hall, crane, chair]
+      chair: [chair]                       # the copies among themselves
+    either: {chair: [hall]}                # may share a layer or not, nobody minds
+    lasers: {robot.front: [hall, chair]}   # what each laser must see
+    may_see: {robot.front: [crane.hook]}   # what it may see
+
+A pair that is not named must not collide, and what a laser is not to see it must not see; ``apart`` and
+``blind`` say so in so many words, and are checked against the rest. A model's name stands for all its parts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from kit.layers.requirements import Case, Contact, Entity, Laser, Relation, Sight, Sighting
+from kit.world.documents import Documents
+from kit.world.files import Enclosure, Unusable
+from kit.world.problems import Problem, Problems, WorldError, quoted, suggestion
+from kit.world.records import Place
+from kit.world.section import Section
+
+_PAIRS: Final[Mapping[str, Relation]] = MappingProxyType(
+    {"collide": "collide", "either": "either", "apart": "apart"}
+)
+_SIGHTS: Final[Mapping[str, Sighting]] = MappingProxyType(
+    {"lasers": "sees", "may_see": "either", "blind": "blind"}
+)
+KEYS: Final = ("world", "maps", "models", "parts", "bodies", "copies", "ghosts", *_PAIRS, *_SIGHTS)
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """A requirements file: the case, and what its names mean in a Flatland world."""
+
+    file: Path
+    case: Case
+    world: Path | None
+    copies: Mapping[str, tuple[str, ...]]
+    """For each model of the case, the model instances of the world it stands for: itself, if nothing else is said."""
+    bodies: Mapping[str, tuple[str, ...]]
+    """For each part of a model, the bodies it consists of (``body``, or ``body.0`` for its first footprint)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names a file declares: entities, and what stands for several of them."""
+
+    entities: Mapping[str, Entity]
+    models: Mapping[str, tuple[str, ...]]
+
+    def meant(self, name: str, section: Section, key: str) -> tuple[str, ...]:
+        """The entities a name stands for; none if it is unknown, which is noted."""
+        if name in self.models:
+            return self.models[name]
+        if name in self.entities:
+            return (name,)
+        known = [*self.models, *self.entities]
+        section.error(f"nothing here is called {quoted(name)}: {suggestion(name, known)}", key)
+        return ()
+
+
+def read_requirements(path: Path) -> Requirements:
+    """What a requirements file asks. Raises WorldError with all that is wrong in it."""
+    problems = Problems()
+    try:
+        documents = Documents(Enclosure.around(path), {}, problems)
+        section = documents.section(path, Place(path))
+    except Unusable as error:
+        raise WorldError([Problem(Place(path), f"cannot read it: {error}")]) from error
+    if section is None:
+        problems.raise_if_any()
+        raise AssertionError("a missing section is noted as a problem")
+    title = section.text("title", "")
+    world = section.name("world", "") if section.has("world") else ""
+    copies, bodies = _lists(section, "copies"), _lists(section, "bodies")
+    names = _names(section, copies)
+    contacts = _contacts(section, names)
+    lasers = tuple(_lasers(section, names))
+    _check_keys(section, "copies", copies, names.models, "model")
+    _check_keys(section, "bodies", bodies, names.entities, "part of a model")
+    section.finish()
+    problems.raise_if_any()
+    case = Case(
+        tuple(names.entities.values()),
+        tuple(contact for contact, relation in contacts.items() if relation == "collide"),
+        frozenset(contact for contact, relation in contacts.items() if relation == "either"),
+        lasers,
+        title,
+    )
+    named = {model: copies.get(model, (model,)) for model in names.models}
+    return Requirements(path, case, path.parent / world if world else None, named, bodies)
+
+
+def _lists(section: Section, key: str) -> dict[str, tuple[str, ...]]:
+    """A mapping from names to lists of names; empty where the key is missing."""
+    inner = section.section(key, None)
+    return {} if inner is None else {name: inner.texts(name) for name in inner.keys()}  # noqa: SIM118 - a Section
+
+
+def _names(section: Section, copies: Mapping[str, tuple[str, ...]]) -> Names:
+    maps, models = section.texts("maps", ()), section.texts("models", ())
+    parts = _lists(section, "parts")
+    _check_keys(section, "parts", parts, models, "model")
+    grouped = {
+        model: tuple(f"{model}.{part}" for part in parts.get(model, ())) or (model,) for model in models
+    }
+    entities: dict[str, Entity] = {}
+    for key, kind_entities in (
+        ("maps", [Entity(name, kind="map") for name in maps]),
+        (
+            "models",
+            [
+                Entity(name, model=model, copies=len(copies.get(model, (model,))))
+                for model, names in grouped.items()
+                for name in names
+            ],
+        ),
+    ):
+        for entity in kind_entities:
+            if entity.name in entities:
+                section.error(f"{quoted(entity.name)} is named twice", key)
+            entities[entity.name] = entity
+    names = Names(entities, grouped)
+    for ghost in [n for name in section.texts("ghosts", ()) for n in names.meant(name, section, "ghosts")]:
+        old = entities[ghost]
+        entities[ghost] = Entity(old.name, old.kind, old.model, old.copies, ghost=True)
+    return names
+
+
+def _check_keys(section: Section, key: str, found: Iterable[str], known: Iterable[str], what: str) -> None:
+    known = list(known)
+    for name in found:
+        if name not in known:
+            section.error(f"{quoted(name)} is no {what}: {suggestion(name, known)}", key)
+
+
+def _contacts(section: Section, names: Names) -> dict[Contact, Relation]:
+    """Every pair the file speaks of. Two statements about one pair that differ are noted, with both places."""
+    said: dict[Contact, tuple[Relation, Place]] = {}
+    for key, relation in _PAIRS.items():
+        inner = section.section(key, None)
+        for name in () if inner is None else inner.keys():
+            assert inner is not None
+            first = names.meant(name, inner, name)
+            for other in inner.texts(name):
+                for contact in _pairs(first, names.meant(other, inner, name), name == other):
+                    if wrong := _impossible(contact, relation, names):
+                        inner.error(wrong, name)
+                        continue
+                    old, place = said.setdefault(contact, (relation, inner.place_of(name)))
+                    if old != relation:
+                        inner.error(
+                            _contradiction(str(contact), _IN_WORDS[relation], _IN_WORDS[old], place), name
+                        )
+    return {contact: relation for contact, (relation, _) in said.items()}
+
+
+def _pairs(first: tuple[str, ...], second: tuple[str, ...], same: bool) -> Iterator[Contact]:
+    """Each of one with each of the other; of a model with itself, each with each of the others."""
+    if same and len(first) > 1:
+        yield from (Contact(a, b) for i, a in enumerate(first) for b in first[i + 1 :])
+    else:
+        yield from (Contact(a, b) for a in first for b in second)
+
+
+def _impossible(contact: Contact, relation: Relation, names: Names) -> str | None:
+    """Why Flatland rules a wish out, in words."""
+    a, b = names.entities[contact.a], names.entities[contact.b]
+    if a.kind == b.kind == "map" and relation != "apart":
+        return (
+            f"{a.name} and {b.name} are maps: maps never collide, and a layer name belongs to one entry of the "
+            "world file, so no layer holds two"
+        )
+    if a == b and a.copies == 1:
+        return f"{a.name} cannot collide with itself: only a model with copies can"
+    if relation == "collide" and (a.ghost or b.ghost):
+        return f"{(a if a.ghost else b).name} is one of the ghosts: it cannot collide with anything"
+    return None
+
+
+def _lasers(section: Section, names: Names) -> Iterator[Laser]:
+    """Every laser with what the file says of it. Statements that contradict each other are noted."""
+    known = _lists(section, "lasers")
+    said: dict[Sight, tuple[Sighting, Place]] = {}
+    for key, sighting in _SIGHTS.items():
+        inner = section.section(key, None)
+        for laser in () if inner is None else inner.keys():
+            assert inner is not None
+            if laser not in known:
+                inner.error(
+                    f"there is no laser {quoted(laser)} under lasers: {suggestion(laser, known)}", laser
+                )
+            for sight in (Sight(laser, e) for n in inner.texts(laser) for e in names.meant(n, inner, laser)):
+                old, place = said.setdefault(sight, (sighting, inner.place_of(laser)))
+                if old != sighting:
+                    inner.error(_contradiction(str(sight), _IN_WORDS[sighting], _IN_WORDS[old], place), laser)
+    for laser in known:
+        entities = {
+            wanted: frozenset(
+                sight.entity for sight, (what, _) in said.items() if sight.laser == laser and what == wanted
+            )
+            for wanted in ("sees", "either")
+        }
+        yield Laser(laser, entities["sees"], entities["either"])
+
+
+_IN_WORDS: Final = MappingProxyType(
+    {
+        "collide": "must collide",
+        "either": "is left open",
+        "apart": "must not collide",
+        "sees": "must be seen",
+        "blind": "must not be seen",
+    }
+)
+
+
+def _contradiction(what: str, here: str, there: str, place: Place) -> str:
+    return f"contradiction: {what} {here} here, and {there} in line {place.line}: strike one of the two"
+
+
+# Writing
+
+
+def written(case: Case, *, requirements: Requirements | None = None, comment: str = "") -> str:
+    """The case as the text of a requirements file, which reads as the same case.
+
+    ``requirements``: whose world, copies and bodies to write along.
+    """
+    maps = [entity.name for entity in case.entities if entity.kind == "map"]
+    models = list(
+        dict.fromkeys(entity.model or entity.name for entity in case.entities if entity.kind != "map")
+    )
+    parts = {
+        model: [
+            e.name.removeprefix(f"{model}.") for e in case.entities if e.model == model and e.name != model
+        ]
+        for model in models
+    }
+    lines = [f"# {line}".rstrip() for line in comment.splitlines()]
+    if case.title:
+        lines.append(f"title: {_scalar(case.title)}")
+    if requirements is not None and requirements.world is not None:
+        lines.append(f"world: {_scalar(requirements.world.name)}")
+    for key, names in (("maps", maps), ("models", models)):
+        if names:
+            lines.append(f"{key}: {_flow(names)}")
+    lines += _mapping("parts", {model: names for model, names in parts.items() if names})
+    if requirements is not None:
+        lines += _mapping("bodies", requirements.bodies)
+        copies = {model: names for model, names in requirements.copies.items() if names != (model,)}
+        lines += _mapping("copies", copies)
+    if ghosts := [entity.name for entity in case.entities if entity.ghost]:
+        lines.append(f"ghosts: {_flow(ghosts)}")
+    lines += _mapping("collide", _adjacency(case.collide))
+    lines += _mapping("either", _adjacency(sorted(case.either)))
+    lines += _mapping(
+        "lasers", {laser.name: [n for n in case.names if n in laser.sees] for laser in case.lasers}
+    )
+    may_see = {laser.name: [n for n in case.names if n in laser.either] for laser in case.lasers}
+    lines += _mapping("may_see", {laser: names for laser, names in may_see.items() if names})
+    return "\n".join([*lines, ""])
+
+
+def _adjacency(contacts: Iterable[Contact]) -> dict[str, list[str]]:
+    """Pairs as a list for each first name. The order of the pairs is kept as far as such lists allow."""
+    lists: dict[str, list[str]] = {}
+    for first, run in groupby(contacts, key=lambda contact: contact.a):
+        lists.setdefault(first, []).extend(contact.b for contact in run)
+    return lists
+
+
+def _mapping(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
+    return (
+        [f"{key}:", *(f"  {_scalar(name)}: {_flow(names)}" for name, names in lists.items())] if lists else []
+    )
+
+
+def _flow(names: Iterable[str]) -> str:
+    return f"[{', '.join(_scalar(name) for name in names)}]"
+
+
+_PLAIN: Final = re.compile(r"[A-Za-z_][\w.+-]*(?<![.])", re.ASCII)
+_WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
+
+
+def _scalar(text: str) -> str:
+    """A YAML scalar that is read as this text."""
+    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
+        return text
+    escaped = "".join(
+        {'"': '\\"', "\\": "\\\\"}.get(c) or (c if c.isprintable() else f"\\U{ord(c):08x}") for c in text
+    )
+    return f'"{escaped}"'
