@@ -124,9 +124,7 @@ def _binned(curve: Curve, right: float, bins: int) -> tuple[FloatArray, FloatArr
     count = np.bincount(which, minlength=bins)
     total = np.bincount(which, weights=curve.y, minlength=bins)
     kept = np.flatnonzero(count)
-    middles: FloatArray = kept + 0.5
-    means: FloatArray = total[kept] / count[kept]
-    return middles, means
+    return kept.astype(np.float64) + 0.5, np.asarray(total[kept] / count[kept], dtype=np.float64)
 
 
 def _finite(curve: Curve) -> Curve:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kit.picture.frame import BLANK, Frame
 from kit.picture.raster import Grid
@@ -65,17 +65,16 @@ class Braille:
 
     # Unicode numbers the dots of a braille pattern down the left column, then down the right one, and
     # later added the lowest row.
-    _bits = np.array(((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80)), dtype=np.uint32)
+    _bits = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
     _bullet = ord("•")
 
     def encode(self, grid: Grid) -> Frame:
-        cells = _cells(grid, self.across, self.down)
-        inks = cells.max(axis=(1, 3))
-        seen = (cells > 0) & (
-            cells >= (inks if self._mono else np.minimum(inks, Role.WALL))[:, None, :, None]
-        )
-        patterns = np.einsum("ryxc,yc->rx", seen.astype(np.uint32), self._bits)
-        glyphs = np.where(patterns > 0, patterns + 0x2800, BLANK).astype(np.uint32)
+        # Eight views of every second dot of every fourth row: much faster than one view with four axes.
+        views = [(bit, grid[y::4, x::2]) for y, bits in enumerate(self._bits) for x, bit in enumerate(bits)]
+        inks = reduce(np.maximum, (view for _, view in views))
+        least = np.clip(inks, 1, Role.WALL)
+        patterns = reduce(np.bitwise_or, ((view >= least) * np.uint8(bit) for bit, view in views))
+        glyphs = np.where(patterns > 0, patterns + np.uint32(0x2800), np.uint32(BLANK))
         if self._mono:
             glyphs[inks == Role.HIT] = self._bullet
         return Frame(glyphs, inks, np.zeros_like(inks))
@@ -148,12 +147,6 @@ class Ascii:
 
     def encode(self, grid: Grid) -> Frame:
         return Frame(self._glyphs[grid], grid.copy(), np.zeros_like(grid))
-
-
-def _cells(grid: Grid, across: int, down: int) -> NDArray[np.uint8]:
-    """The grid as (rows, down, columns, across)."""
-    height, width = grid.shape
-    return grid.reshape(height // down, down, width // across, across)
 
 
 ENCODERS: Mapping[str, Callable[[bool], Encoder]] = MappingProxyType(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache, partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -13,8 +14,12 @@ from kit.geometry import Pose
 FloatArray = NDArray[np.float64]
 
 
-def _rows(width: int) -> FloatArray:
-    return np.empty((0, width))
+@cache
+def _none(width: int) -> FloatArray:
+    """No rows; always the same array, since the walls' identity matters."""
+    nothing = np.empty((0, width))
+    nothing.setflags(write=False)
+    return nothing
 
 
 class Bounds(NamedTuple):
@@ -92,21 +97,21 @@ class Path:
 class Scene:
     """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
 
-    walls: FloatArray = field(default_factory=lambda: _rows(4))
+    walls: FloatArray = field(default_factory=partial(_none, 4))
     """(n, 4) ``x1 y1 x2 y2``. Hand over the same array again and it is not drawn anew: its identity is the
     key of the static layer."""
     bodies: tuple[Body, ...] = ()
-    hits: FloatArray = field(default_factory=lambda: _rows(2))
+    hits: FloatArray = field(default_factory=partial(_none, 2))
     """(m, 2): where laser rays ended. Rows that are not finite are left out."""
-    beams: FloatArray = field(default_factory=lambda: _rows(4))
+    beams: FloatArray = field(default_factory=partial(_none, 4))
     """(m, 4): the rays themselves, from the laser to the hit."""
     targets: tuple[Disc, ...] = ()
     trails: tuple[FloatArray, ...] = ()
     """One (k, 2) per robot, drawn as single dots: see ``kit.picture.trail.Trail``."""
-    contacts: FloatArray = field(default_factory=lambda: _rows(2))
+    contacts: FloatArray = field(default_factory=partial(_none, 2))
     """(c, 2): where bodies touch."""
     marks: tuple[Mark, ...] = ()
-    arrows: FloatArray = field(default_factory=lambda: _rows(5))
+    arrows: FloatArray = field(default_factory=partial(_none, 5))
     """(a, 5) ``x y dx dy strength``: a field; the direction need not be of unit length, strength is 0 to 1."""
     paths: tuple[Path, ...] = ()
 

@@ -1,0 +1,101 @@
+"""How many frames may be under way to the terminal: what bounds the age of the picture on a slow link.
+
+The link's buffers, not its speed, make a picture late: whatever is written is taken, and arrives seconds
+afterwards. So after each frame the terminal is asked for its cursor position, and no more frames are drawn
+than so many unanswered ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+TIMEOUT: Final = 2.0
+"""Seconds after which an unanswered frame no longer counts."""
+
+FORGOTTEN: Final = 20.0
+"""Seconds after which its answer is no longer expected either."""
+
+MOST_UNDER_WAY: Final = 3
+
+SLOW, FAST = 10, 20
+"""Frames per second."""
+
+LAG_FOR_FAST, LAG_FOR_SLOW = 0.100, 0.130
+"""Below the first lag [s] the fast rate is used, above the second the slow one, between them the same as before."""
+
+_SMOOTHING: Final = 0.2
+_WINDOW: Final = 32
+"""Answers over which the shortest counts as the link's own delay."""
+
+
+@dataclass
+class FrameCredit:
+    """Says when the next frame may be drawn. Times are seconds on any one steady clock."""
+
+    fastest: int = FAST
+    """Frames per second that are never exceeded."""
+
+    def __post_init__(self) -> None:
+        self._asked: deque[float] = deque()
+        self._lags: deque[float] = deque(maxlen=_WINDOW)
+        self._lag = math.nan
+        self._fps = min(SLOW, self.fastest)
+        self._due = -math.inf
+        self._deaf = False
+
+    @property
+    def lag(self) -> float | None:
+        """Seconds from writing a frame to the terminal's having shown it, smoothed; None if it never answered."""
+        return None if math.isnan(self._lag) else self._lag
+
+    @property
+    def fps(self) -> int:
+        return self._fps
+
+    @property
+    def allowed(self) -> int:
+        """Frames that may be under way at once: as many as are shown during a round trip, and one."""
+        if not self._lags:
+            return 1
+        return min(1 + math.ceil(min(self._lags) * self._fps), MOST_UNDER_WAY)
+
+    def may_draw(self, now: float) -> bool:
+        return self.wait(now) <= 0
+
+    def wait(self, now: float) -> float:
+        """Seconds until a frame may be drawn, if no answer arrives before."""
+        wait = self._due - now
+        under_way = [asked for asked in self._asked if now - asked < TIMEOUT]
+        if len(under_way) >= self.allowed and not self._deaf:
+            wait = max(wait, under_way[-self.allowed] + TIMEOUT - now)
+        # A timer may ring a little early; a frame that is late by a millisecond is not.
+        return wait if wait > 1e-3 else 0.0
+
+    def drawn(self, now: float) -> None:
+        """A frame was drawn. One that came late does not make the next one late."""
+        period = 1 / self._fps
+        self._due = max(self._due + period, now + period / 2)
+
+    def sent(self, now: float) -> None:
+        """It was written, and the question after it."""
+        if self._asked and not self._lags and now - self._asked[0] >= TIMEOUT:
+            self._deaf = True  # it has never answered: it will not
+        self._asked.append(now)
+        while now - self._asked[0] > FORGOTTEN:
+            self._asked.popleft()
+
+    def answered(self, now: float) -> None:
+        """The terminal gave its cursor position. Answers come in the order of the questions, however late."""
+        if not self._asked:
+            return
+        self._deaf = False
+        lag = now - self._asked.popleft()
+        self._lags.append(lag)
+        self._lag = lag if math.isnan(self._lag) else self._lag + _SMOOTHING * (lag - self._lag)
+        if self._lag < LAG_FOR_FAST:
+            self._fps = self.fastest
+        elif self._lag > LAG_FOR_SLOW:
+            self._fps = min(SLOW, self.fastest)

@@ -1,0 +1,115 @@
+"""A terminal in memory: an app runs in it, its bytes are counted, and pyte shows what a user would see."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine
+from typing import Any
+
+import pyte
+from textual import events
+from textual.app import App
+from textual.drivers.headless_driver import HeadlessDriver
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.picture.encode import Encoder
+from kit.picture.roles import ANSI, Palette
+from kit.tui.painting import ASK_CURSOR, crop_left
+from kit.tui.world_view import WorldView
+
+
+class TapeDriver(HeadlessDriver):
+    """Keeps what is written, in the order in which a terminal would get it."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.tape: list[str] = []
+        self.answers = True
+        """Whether this terminal says where its cursor is, when asked."""
+
+    @property
+    def is_headless(self) -> bool:
+        return False
+
+    def write(self, data: str) -> None:
+        self.tape.append(data)
+        if self.answers and ASK_CURSOR in data:
+            self.send_message(events.CursorPosition(0, 0))
+
+    def take(self) -> str:
+        """What was written since the last call."""
+        text = "".join(self.tape)
+        self.tape.clear()
+        return text
+
+
+class ViewApp(App[None]):
+    """A world view and nothing else, on a screen that sends what changed alone."""
+
+    def __init__(
+        self,
+        encoder: Encoder | None = None,
+        palette: Palette = ANSI,
+        *,
+        cropped: bool = True,
+        clock: Callable[[], float] | None = None,
+    ) -> None:
+        super().__init__(driver_class=TapeDriver)
+        self.theme = "ansi-dark"
+        self.view = WorldView(encoder, palette, **({"clock": clock} if clock else {}))
+        self._cropped = cropped
+
+    def get_default_screen(self) -> Screen[None]:
+        screen: Screen[None] = Screen(id="_default")
+        if self._cropped:
+            assert crop_left(screen)
+        return screen
+
+    def compose(self) -> Any:
+        yield self.view
+
+    def on_cursor_position(self, event: events.CursorPosition) -> None:
+        self.view.answered()
+
+    @property
+    def terminal(self) -> TapeDriver:
+        driver = self._driver
+        assert isinstance(driver, TapeDriver)
+        return driver
+
+
+def run_in(app: App[None], script: Callable[[Pilot[None]], Coroutine[Any, Any, None]], size: tuple[int, int]) -> None:
+    """Runs the app in a terminal of this size until the script ends."""
+
+    async def scripted(pilot: Pilot[None]) -> None:
+        await pilot.pause()
+        await script(pilot)
+        app.exit()
+
+    asyncio.run(app.run_async(size=size, auto_pilot=scripted))
+
+
+def painted(app: App[Any]) -> Awaitable[bool]:
+    """Waits until all that was to be drawn has been written."""
+    written = asyncio.Event()
+    app.screen.call_after_refresh(written.set)
+    return written.wait()
+
+
+class Display:
+    """A terminal's screen, as pyte understands it."""
+
+    def __init__(self, columns: int, rows: int) -> None:
+        self._screen = pyte.Screen(columns, rows)
+        self._stream = pyte.Stream(self._screen)
+
+    def feed(self, text: str) -> None:
+        self._stream.feed(text)
+
+    @property
+    def rows(self) -> list[str]:
+        return [row.rstrip() for row in self._screen.display]
+
+    def color(self, row: int, column: int) -> str:
+        return str(self._screen.buffer[row][column].fg)
