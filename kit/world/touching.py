@@ -17,7 +17,18 @@ from typing import NamedTuple
 from kit.geometry import Pose
 from kit.world.records import ALL_LAYERS, Circle, Footprint, Layer, Model, Sight, World
 
-__all__ = ["Cause", "Laser", "Seeing", "Sight", "Surface", "Thing", "Touch", "Touching", "Verdict"]
+__all__ = [
+    "Cause",
+    "Laser",
+    "Seeing",
+    "Sight",
+    "Surface",
+    "Thing",
+    "Touch",
+    "Touching",
+    "Verdict",
+    "contains",
+]
 
 
 class Surface(NamedTuple):
@@ -188,7 +199,7 @@ class Touching:
             return thing.surfaces, frozenset()
         sides: tuple[set[Surface], set[Surface]] = (set(), set())
         for footprint in self._carriers[laser.model, laser.sight.body].footprints:
-            sides[_contains(footprint, laser.sight.origin)].add(_surface(footprint))
+            sides[contains(footprint, laser.sight.origin)].add(_surface(footprint))
         return frozenset(sides[False]), frozenset(sides[True])
 
     def _names(self, bits: int) -> tuple[str, ...]:
@@ -222,7 +233,7 @@ def _surface(footprint: Footprint) -> Surface:
     return Surface(footprint.category, footprint.mask, footprint.sensor)
 
 
-def _contains(footprint: Footprint, origin: Pose) -> bool:
+def contains(footprint: Footprint, origin: Pose) -> bool:
     """Whether a point given in the body's frame lies in the footprint."""
     shape = footprint.shape
     if isinstance(shape, Circle):
