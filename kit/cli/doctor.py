@@ -1,0 +1,190 @@
+"""``kit doctor``: what the kit found here and what it decided, as text to paste into a question."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+import sys
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError, requires, version
+from typing import Final
+
+import click
+
+import kit
+from kit.tui.input.probe import ask_keyboard
+from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
+from kit.workspace import open_workspace
+
+_DISTRIBUTION: Final = "robot-learning-kit"
+_REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
+
+_WIDTH: Final = 80
+_LABEL: Final = 18
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One line of the report: what was looked at, what was found, and what that means."""
+
+    section: str
+    name: str
+    value: str
+    meaning: str = ""
+
+
+def _machine() -> Iterator[Finding]:
+    yield Finding("Machine", "kit", kit.__version__)
+    yield Finding("Machine", "python", platform.python_version(), sys.executable)
+    yield Finding("Machine", "system", f"{platform.system()} {platform.release()} {platform.machine()}")
+    yield Finding("Machine", "processors", str(os.cpu_count() or "unknown"))
+
+
+def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
+    section = "Terminal"
+    plain, between = decision.plain, decision.between
+    for name in ("TERM", "COLORTERM"):
+        yield Finding(section, name, os.environ.get(name) or "not set")
+    yield Finding(section, "screen", "plain text" if plain.value else "full screen", plain.reason)
+    yield Finding(section, "glyphs", decision.glyphs.value, decision.glyphs.reason)
+    yield Finding(section, "colours", decision.colour.value, decision.colour.reason)
+    yield Finding(section, "size", decision.room.value, decision.room.reason)
+    yield Finding(section, "link", "remote" if decision.remote.value else "local", decision.remote.reason)
+    yield Finding(section, "in between", between.value or "nothing", between.reason)
+    yield _keyboard(decision)
+    if decision.remote.value:
+        yield Finding(
+            section,
+            "tip",
+            "ssh -C",
+            "Compression makes the picture about eight times cheaper to send: `ssh -C HOST`.",
+        )
+
+
+def _keyboard(decision: TerminalDecision) -> Finding:
+    name = "key release"
+    if decision.plain.value:
+        return Finding("Terminal", name, "not asked", "Plain mode reads lines, not keys.")
+    if not decision.ask_keyboard.value:
+        return Finding("Terminal", name, "not asked", decision.ask_keyboard.reason)
+    try:
+        report = ask_keyboard(sys.stdin.fileno(), sys.stderr.fileno())
+    except OSError as error:
+        return Finding("Terminal", name, "not asked", f"The terminal cannot be asked: {error.args[-1]}.")
+    if report.seconds is None:
+        return Finding(
+            "Terminal", name, "no answer", "The terminal said nothing within a second. Keys drive by repeat."
+        )
+    took = f"Answered in {1000 * report.seconds:.0f} ms"
+    if report.releases:
+        return Finding(
+            "Terminal", name, "reported", f"{took}, flags {report.flags}. A key drives while it is down."
+        )
+    who = decision.between.value or "This terminal"
+    flags = "" if report.flags is None else f", flags {report.flags}"
+    return Finding(
+        "Terminal",
+        name,
+        "not reported",
+        f"{took}{flags}. {who} keeps them: a key drives while it repeats, or latched.",
+    )
+
+
+def _packages() -> Iterator[Finding]:
+    """What the kit is declared to need, and what of it is here. Imports none of it: torch alone takes seconds."""
+    try:
+        declared = [match for line in requires(_DISTRIBUTION) or () if (match := _REQUIREMENT.match(line))]
+    except PackageNotFoundError:
+        yield Finding(
+            "Packages", _DISTRIBUTION, "not installed", "The kit runs from a folder: pip install -e FOLDER."
+        )
+        return
+    for match in declared:
+        if match["extra"] is None:
+            found = _version(match["name"])
+            yield Finding(
+                "Packages", match["name"], found or "missing", "" if found else "Install the kit again."
+            )
+    learning = {match["name"]: _version(match["name"]) for match in declared if match["extra"] == "learn"}
+    for name, found in learning.items():
+        yield Finding("Learning", name, found or "missing")
+    if None in learning.values():
+        yield Finding(
+            "Learning",
+            "in all",
+            "incomplete",
+            "Driving, controllers, worlds, layers and grading work; training does not. "
+            f"To have it: pip install '{_DISTRIBUTION}[learn]'",
+        )
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def _workspace() -> Finding:
+    folder = open_workspace(make=False).folder
+    if not folder.exists():
+        return Finding("Your files", "workspace", str(folder), "Not there yet: the first start makes it.")
+    if not folder.is_dir():
+        return Finding(
+            "Your files", "workspace", str(folder), "A file is in its place: use --workspace FOLDER."
+        )
+    writable = os.access(folder, os.W_OK | os.X_OK)
+    return Finding(
+        "Your files", "workspace", str(folder), "Ready." if writable else "It cannot be written to."
+    )
+
+
+def findings() -> list[Finding]:
+    """The whole report, in order. Asks the terminal, if there is one."""
+    facts = TerminalFacts.here()
+    # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
+    decision = decide(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
+    return [*_machine(), *_terminal(decision), *_packages(), _workspace()]
+
+
+def as_text(report: list[Finding]) -> str:
+    """The report in lines of at most 80 columns, but for a word that is longer itself."""
+    lines: list[str] = []
+    section = ""
+    for finding in report:
+        if finding.section != section:
+            section = finding.section
+            lines += ["", section]
+        lines += textwrap.wrap(
+            f"{finding.value}  {finding.meaning}",
+            _WIDTH,
+            initial_indent=f"  {finding.name:<{_LABEL}}",
+            subsequent_indent=" " * (_LABEL + 2),
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+    return "\n".join(lines[1:])
+
+
+def as_json(report: list[Finding]) -> str:
+    """The report as an object of sections, names, and ``value`` and ``meaning``."""
+    sections: dict[str, dict[str, dict[str, str]]] = {}
+    for finding in report:
+        entry = {"value": finding.value, "meaning": finding.meaning}
+        sections.setdefault(finding.section, {})[finding.name] = entry
+    return json.dumps(sections, indent=2)
+
+
+@click.command
+@click.option("--json", "machine_readable", is_flag=True, help="Print the report as JSON.")
+def command(machine_readable: bool) -> None:
+    """Say what the kit found on this machine and terminal, and what it decided and why.
+
+    The output holds nothing secret: paste it when you ask for help.
+    """
+    report = findings()
+    click.echo(as_json(report) if machine_readable else as_text(report))

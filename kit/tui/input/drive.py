@@ -1,0 +1,165 @@
+"""Driving with keys, whatever the terminal can tell of them: key events in, the seed's key messages out.
+
+Pure: no terminal and no Textual here, and the clock is given.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Final, Literal
+
+from kit.tui.input.keys import drive_key, named
+from kit.tui.input.modes import Clock, DriveMode, ExactMode, Kind, LatchMode, RepeatMode
+from kit.tui.input.protocol import reports_releases
+
+ModeName = Literal["exact", "repeat", "latch"]
+
+_MODES: Final[Mapping[ModeName, Callable[[Clock], DriveMode]]] = MappingProxyType(
+    {"exact": ExactMode, "repeat": RepeatMode, "latch": LatchMode}
+)
+MODE_TEXTS: Final[Mapping[ModeName, str]] = MappingProxyType(
+    {
+        "exact": "a key drives while it is down",
+        "repeat": "a key drives while it repeats",
+        "latch": "each press is a step, Space stops",
+    }
+)
+"""What a mode means for the driver, in a few words."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveState:
+    """What the keys ask for now. ``held``: message names of the keys down, and how strongly each pushes, 0 to 1."""
+
+    held: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def linear(self) -> float:
+        """Forward +1 to backward -1. Opposite keys cancel."""
+        return sum(push * named(name).linear for name, push in self.held.items())
+
+    @property
+    def angular(self) -> float:
+        """Left (counter-clockwise) +1 to right -1."""
+        return sum(push * named(name).angular for name, push in self.held.items())
+
+
+@dataclass(frozen=True, slots=True)
+class ModeChoice:
+    mode: ModeName
+    reason: str
+
+
+UNASKED: Final = ModeChoice("repeat", "the terminal has not said whether it reports releases")
+
+
+def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoice:
+    """The mode for a terminal that answered with these keyboard flags, None if it does not know them.
+
+    ``hidden_by`` names a program between us and the terminal that keeps releases to itself: tmux, mosh, screen.
+    """
+    if reports_releases(flags):
+        return ModeChoice("exact", "this terminal reports key releases")
+    return ModeChoice("repeat", f"{hidden_by or 'this terminal'} does not report key releases")
+
+
+class Drive:
+    """Reads driving from keys. Every method that may change something returns the key messages it caused.
+
+    Messages and ``state`` agree: ``p_<name>`` when a name enters ``state.held``, ``r_<name>`` when it leaves.
+    """
+
+    def __init__(self, clock: Clock = time.monotonic) -> None:
+        self._clock = clock
+        self._automatic = UNASKED
+        self._wish: ModeName | None = None
+        self._mode: DriveMode = _MODES[UNASKED.mode](clock)
+        self._state = DriveState()
+
+    @property
+    def state(self) -> DriveState:
+        """As of the last call that returned messages."""
+        return self._state
+
+    @property
+    def wish(self) -> ModeName | None:
+        """The mode the user chose, None for automatic."""
+        return self._wish
+
+    @property
+    def choice(self) -> ModeChoice:
+        """The active mode and why it is."""
+        return ModeChoice(self._wish, "your choice") if self._wish else self._automatic
+
+    @property
+    def status(self) -> str:
+        """One line for the status bar: the mode, what it means, why; or what would be better."""
+        choice = self.choice
+        if isinstance(self._mode, RepeatMode) and self._mode.rhythm.uneven:
+            return "repeat: keys arrive unevenly over this link; latch mode would drive better"
+        return f"{choice.mode}: {MODE_TEXTS[choice.mode]} ({choice.reason})"
+
+    @property
+    def deadline(self) -> float | None:
+        """When to call ``tick`` [s of the clock] if no key comes before; None if never."""
+        return self._mode.deadline()
+
+    @property
+    def timeouts(self) -> tuple[float, float] | None:
+        """In ``repeat``: how long [s] a key may be silent after its press, and after a repeat."""
+        if not isinstance(self._mode, RepeatMode):
+            return None
+        return self._mode.rhythm.first_timeout, self._mode.rhythm.next_timeout
+
+    def press(self, key: str) -> tuple[str, ...]:
+        """A key as Textual names it. Keys that do not drive change nothing."""
+        return self._handle(Kind.PRESS, key)
+
+    def repeat(self, key: str) -> tuple[str, ...]:
+        return self._handle(Kind.REPEAT, key)
+
+    def release(self, key: str) -> tuple[str, ...]:
+        return self._handle(Kind.RELEASE, key)
+
+    def tick(self) -> tuple[str, ...]:
+        """Lets time pass."""
+        self._mode.advance()
+        return self._changes()
+
+    def stop(self) -> tuple[str, ...]:
+        """Everything up at once: the focus is lost, the screen changes, the world is paused."""
+        self._mode.stop()
+        return self._changes()
+
+    def terminal_answered(self, flags: int | None, hidden_by: str | None = None) -> tuple[str, ...]:
+        """The terminal said what it can (see ``automatic_mode``); the mode follows unless one was chosen."""
+        return self._switch(self._wish, automatic_mode(flags, hidden_by))
+
+    def choose(self, mode: ModeName | None) -> tuple[str, ...]:
+        """The user's wish, None for automatic. Switching to another mode stops first."""
+        return self._switch(mode, self._automatic)
+
+    def _switch(self, wish: ModeName | None, automatic: ModeChoice) -> tuple[str, ...]:
+        before = self.choice.mode
+        self._wish, self._automatic = wish, automatic
+        if self.choice.mode == before:
+            return ()
+        messages = self.stop()
+        self._mode = _MODES[self.choice.mode](self._clock)
+        return messages
+
+    def _handle(self, kind: Kind, key: str) -> tuple[str, ...]:
+        if drive_key(key) is None:
+            return ()
+        late = self.tick()  # a key may have timed out unnoticed just before it is pressed again
+        self._mode.handle(kind, key)
+        return late + self._changes()
+
+    def _changes(self) -> tuple[str, ...]:
+        before, after = self._state.held, self._mode.strengths()
+        self._state = DriveState(MappingProxyType(after))
+        up = [named(name).released for name in before if name not in after]
+        return (*up, *(named(name).pressed for name in after if name not in before))

@@ -1,0 +1,119 @@
+"""Textual's Linux driver with KeyParser, key release on request, and a terminal that is sane on every way out.
+
+Give it to the app: ``App(driver_class=KeyDriver)``.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import threading
+from codecs import getincrementaldecoder
+from typing import TYPE_CHECKING, Any, Final
+
+from textual import constants
+from textual.app import App
+from textual.drivers.linux_driver import LinuxDriver
+
+from kit.tui.input.guard import TerminalGuard
+from kit.tui.input.parser import KeyboardAnswer, KeyParser
+from kit.tui.input.protocol import ASK_ATTRIBUTES, ASK_FLAGS, RELEASES_OFF, RELEASES_ON
+
+if TYPE_CHECKING:
+    from textual.message import Message
+
+_LAST_WORDS: Final = 0.25
+"""Seconds to wait, when leaving, for what the terminal has already sent."""
+_HUNG_UP: Final = 129
+"""Exit status of a process whose terminal went away: 128 + SIGHUP."""
+
+
+class KeyDriver(LinuxDriver):
+    """The terminal as the kit uses it."""
+
+    def __init__(
+        self,
+        app: App[Any],
+        *,
+        debug: bool = False,
+        mouse: bool = True,
+        size: tuple[int, int] | None = None,
+    ) -> None:
+        super().__init__(app, debug=debug, mouse=mouse, size=size)
+        assert self._file is not None, "a full-screen app needs its standard error"
+        self._guard = TerminalGuard(self.fileno, self._file.fileno())
+        self._reporting = False
+        self._answers = False
+        self._answered = threading.Event()
+
+    def report_releases(self, on: bool) -> bool:
+        """Asks the terminal for key release events, or for none; says whether an answer is to be expected.
+
+        The answer arrives as KeyboardAnswer, at the screen. Only a screen that drives should ask: elsewhere
+        the releases are noise, and each costs bytes.
+        """
+        if constants.DISABLE_KITTY_KEY or on == self._reporting:
+            return False
+        self._reporting = on
+        self.write(RELEASES_ON + ASK_FLAGS + ASK_ATTRIBUTES if on else RELEASES_OFF)
+        self.flush()
+        return on
+
+    def write(self, data: str) -> None:
+        """Writes to the terminal while the app has it; afterwards nobody reads, so there is nothing to do."""
+        if self._guard.armed and self._writer_thread is not None:
+            super().write(data)
+
+    def start_application_mode(self) -> None:
+        self._guard.arm()
+        super().start_application_mode()  # type: ignore[no-untyped-call]  # LinuxDriver leaves it untyped
+        if self._reporting:  # back from a suspension: the flags went with the screen
+            self._reporting = False
+            self.report_releases(True)
+
+    def stop_application_mode(self) -> None:
+        if not self._guard.armed:
+            return
+        self._await_last_words()
+        self.write("\x1b[?1016l")  # LinuxDriver asks for the mouse in pixels and does not take it back
+        super().stop_application_mode()
+        self.close()  # waits until all is written: what is still queued when the process ends is lost
+        self._guard.disarm()
+
+    def _await_last_words(self) -> None:
+        """Lets the release of the key that quit arrive here, and not as text in the shell."""
+        if self._answers and self._key_thread is not None and self._key_thread.is_alive():
+            self._answered.clear()
+            self.write((RELEASES_OFF if self._reporting else "") + ASK_ATTRIBUTES)
+            self._answered.wait(_LAST_WORDS)
+
+    def process_message(self, message: Message) -> None:
+        if isinstance(message, KeyboardAnswer):
+            self._answers = True
+            self._answered.set()
+        super().process_message(message)
+
+    def run_input_thread(self) -> None:
+        """Reads keys until the app stops, the main thread is gone, or the terminal is."""
+        parser = KeyParser(self._debug)
+        decode = getincrementaldecoder("utf-8")("replace").decode
+        while not self.exit_event.is_set() and threading.main_thread().is_alive():
+            if select.select([self.fileno], [], [], 0.1)[0]:
+                try:
+                    data = os.read(self.fileno, 4096)
+                except OSError:
+                    data = b""
+                if not data:
+                    self._app.call_later(self._app.exit, return_code=_HUNG_UP)
+                    return
+                if text := decode(data):
+                    for message in parser.feed(text):
+                        self.process_message(message)
+            for message in parser.tick():
+                self.process_message(message)
+
+
+def key_driver(app: App[Any]) -> KeyDriver | None:
+    """The app's driver, if it is ours: in tests without a terminal it is not."""
+    driver = app._driver
+    return driver if isinstance(driver, KeyDriver) else None

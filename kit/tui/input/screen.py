@@ -1,0 +1,147 @@
+"""A Textual screen that drives: asks for key releases while it is active, and stops when it is not."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from textual import events
+from textual.app import App
+from textual.screen import Screen
+from textual.timer import Timer
+
+from kit.tui.input.drive import Drive, DriveState, ModeName
+from kit.tui.input.driver import key_driver
+from kit.tui.input.keys import base_key, drive_key
+from kit.tui.input.modes import Clock, Kind
+from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
+from kit.tui.terminal import TerminalDecision
+
+_NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
+    {None: "latch", "latch": "repeat", "repeat": None, "exact": None}
+)
+
+
+class DriveScreen(Screen[None]):
+    """Subclasses override ``drove``; they may bind keys that do not drive, as any screen may.
+
+    Keys of the drive table come here first and go no further, unless a focused widget takes them (an input
+    field does).
+    """
+
+    def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
+        super().__init__()
+        self.drive: Final = Drive(clock)
+        self._terminal = terminal
+        self._clock = clock
+        self._shown = self.drive.state
+        self._released: dict[str, float] = {}
+        self._alarm: Timer | None = None
+        self._alarm_time = math.inf
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        """Called at once when what the keys ask for has changed: messages like ``p_up``, and strengths."""
+
+    def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
+        """Called for every key that arrives, with the messages it causes, before ``drove``; kind None: a timeout."""
+
+    def mode_changed(self) -> None:
+        """Called when ``drive.status`` may read differently."""
+
+    def action_next_drive_mode(self) -> None:
+        """Automatic, then latch, then repeat, then automatic again."""
+        self._tell(self.drive.choose(_NEXT[self.drive.wish]))
+        self.mode_changed()
+
+    def stop_driving(self) -> None:
+        """All keys up, at once: for a pause, say."""
+        self._tell(self.drive.stop())
+
+    def on_mount(self) -> None:
+        self.watch(self.app, "app_focus", self._focus_changed, init=False)
+        self.app.app_suspend_signal.subscribe(self, self._suspended)
+
+    def on_screen_resume(self) -> None:
+        self._report_releases(True)
+
+    def on_screen_suspend(self) -> None:
+        self._report_releases(False)
+        self.stop_driving()
+
+    def _report_releases(self, on: bool) -> None:
+        asked = self._terminal is None or self._terminal.ask_keyboard.value
+        driver = key_driver(self.app)
+        if driver is not None and asked:
+            driver.report_releases(on)
+
+    def _focus_changed(self, focus: bool) -> None:
+        if not focus:
+            self.stop_driving()
+
+    def _suspended(self, app: App[object]) -> None:
+        self.stop_driving()
+
+    def on_keyboard_answer(self, event: KeyboardAnswer) -> None:
+        hidden_by = self._terminal.between.value if self._terminal else None
+        self._tell(self.drive.terminal_answered(event.flags, hidden_by))
+        self.mode_changed()
+
+    def on_key(self, event: events.Key) -> None:
+        if drive_key(event.key) is None:
+            self._hear(Kind.PRESS, event.key, ())
+            return
+        event.stop()
+        event.prevent_default()
+        if (
+            self.app.app_focus
+        ):  # or it was on its way when the focus went, and its release is for another window
+            messages = self.drive.press(event.key)
+            if event.time < self._released.get(
+                base_key(event.key), -math.inf
+            ):  # overtaken by its own release
+                messages += self.drive.release(event.key)
+            self._hear(Kind.PRESS, event.key, messages)
+
+    def on_key_repeated(self, event: KeyRepeated) -> None:
+        self._hear(Kind.REPEAT, event.key, self.drive.repeat(event.key))
+        if (
+            drive_key(event.key) is None
+        ):  # it does what another press does, as where repeats are not told apart
+            self.app.post_message(events.Key(event.key, event.character))
+
+    def on_key_released(self, event: KeyReleased) -> None:
+        self._released[base_key(event.key)] = event.time
+        self._hear(Kind.RELEASE, event.key, self.drive.release(event.key))
+
+    def _hear(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
+        self.heard(kind, key, messages)
+        self._tell(messages)
+
+    def _tell(self, messages: tuple[str, ...]) -> None:
+        state = self.drive.state
+        if messages or state != self._shown:
+            self._shown = state
+            self.drove(messages, state)
+        self._set_alarm()
+
+    def _set_alarm(self) -> None:
+        """One timer, for the next timeout; none while no key is down, so that an idle screen does nothing.
+
+        One that rings too early finds nothing to do and sets the next.
+        """
+        deadline = self.drive.deadline
+        if deadline is None or deadline >= self._alarm_time:
+            return
+        if self._alarm is not None:
+            self._alarm.stop()
+        self._alarm_time = deadline
+        self._alarm = self.set_timer(max(0.0, deadline - self._clock()), self._ring)
+
+    def _ring(self) -> None:
+        self._alarm, self._alarm_time = None, math.inf
+        if messages := self.drive.tick():
+            self.heard(None, "", messages)
+        self._tell(messages)

@@ -1,0 +1,104 @@
+"""The key test: press keys and see what arrives, what the kit makes of it, and in which mode."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar, Final
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.widgets import Static
+
+from kit.tui.input.drive import DriveState
+from kit.tui.input.keys import DRIVE_KEYS, DriveKey
+from kit.tui.input.modes import Clock, Kind
+from kit.tui.input.screen import DriveScreen
+from kit.tui.terminal import TerminalDecision
+
+_TABLE_ROWS: Final = 7
+_KEPT: Final = 50
+"""Lines of the log: more than any screen shows."""
+_WORDS: Final = MappingProxyType(
+    {Kind.PRESS: "press", Kind.REPEAT: "repeat", Kind.RELEASE: "release", None: "timeout"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """One line of the log: what came, how long [s] after the one before, and the messages it caused."""
+
+    kind: Kind | None
+    key: str
+    gap: float | None
+    messages: tuple[str, ...]
+
+    def __str__(self) -> str:
+        gap = f"+{1000 * self.gap:.0f} ms" if self.gap is not None and self.gap < 10 else ""
+        return f"{gap:>8}  {_WORDS[self.kind]:<8} {self.key:<18} {' '.join(self.messages)}".rstrip()
+
+
+class KeyTestScreen(DriveScreen):
+    """Shows what a key press becomes on this terminal. In ASCII, and drawn only when something comes."""
+
+    CSS = """
+    KeyTestScreen Static { width: 1fr; height: auto; padding: 0 1; }
+    KeyTestScreen #title { text-style: bold; }
+    KeyTestScreen #mode { height: 2; }
+    KeyTestScreen #log { height: 1fr; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        ("m", "next_drive_mode", "Another mode"),
+        ("x", "close", "Close"),
+    ]
+
+    def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
+        super().__init__(terminal, clock)
+        self._log: deque[Arrival] = deque(maxlen=_KEPT)
+        self._last: float | None = None
+
+    def compose(self) -> ComposeResult:
+        yield Static(
+            "Key test: press keys, hold keys       M another mode   X close", id="title", markup=False
+        )
+        yield Static(self._mode_text(), id="mode", markup=False)
+        yield Static(self._table_text(), id="keys", markup=False)
+        yield Static(id="log", markup=False)
+
+    def action_close(self) -> None:
+        self.dismiss()
+
+    def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
+        now = self._clock()
+        self._log.appendleft(Arrival(kind, key, None if self._last is None else now - self._last, messages))
+        self._last = now
+        self.query_one("#log", Static).update("\n".join(map(str, self._log)))
+        self.mode_changed()
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        self.query_one("#keys", Static).update(self._table_text())
+
+    def mode_changed(self) -> None:
+        self.query_one("#mode", Static).update(self._mode_text())
+
+    def _mode_text(self) -> str:
+        if self.drive.timeouts is None:
+            return self.drive.status
+        first, later = (round(1000 * seconds) for seconds in self.drive.timeouts)
+        return f"{self.drive.status}\nup when silent for {first} ms after a press, {later} ms after a repeat"
+
+    def _table_text(self) -> str:
+        held = self.drive.state.held
+        cells = [_cell(row, held.get(row.name, 0.0)) for row in DRIVE_KEYS]
+        right = [*cells[_TABLE_ROWS:], *[""] * _TABLE_ROWS]
+        return "\n".join(
+            f"{one}  {two}".rstrip() for one, two in zip(cells[:_TABLE_ROWS], right, strict=False)
+        )
+
+
+def _cell(row: DriveKey, strength: float) -> str:
+    """A key, a bar of up to four for how strongly it pushes, and its message."""
+    bar = "#" * max(round(4 * strength), 1 if strength else 0)
+    return f"{row.label:<11} [{bar:<4}] {row.pressed:<9}"

@@ -1,0 +1,248 @@
+"""What this terminal gets: decided once, before Textual is imported, each decision with its reason.
+
+Textual itself does not refuse a dumb terminal, sends braille to the Linux console, and takes NO_COLOR out of
+the environment; so the questions are asked here. Pure but for ``TerminalFacts.here``.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Final, Generic, Literal, TextIO, TypeVar
+
+Glyphs = Literal["braille", "block", "ascii"]
+Colour = Literal["none", "ansi16", "256", "truecolour"]
+Room = Literal["full", "compact", "too small"]
+Between = Literal["tmux", "screen", "mosh"]
+T = TypeVar("T")
+
+FULL_SIZE: Final = (80, 24)
+LEAST_SIZE: Final = (60, 18)
+"""Columns and rows. Below FULL_SIZE panels are left out, below LEAST_SIZE there is one message."""
+
+_COLOUR_WISHES: Final[Mapping[str, Colour]] = MappingProxyType(
+    {"none": "none", "16": "ansi16", "256": "256", "true": "truecolour"}
+)
+COLOUR_CHOICES: Final = tuple(_COLOUR_WISHES)
+"""The values of ``--color``."""
+GLYPH_CHOICES: Final[tuple[Glyphs, ...]] = ("braille", "block", "ascii")
+"""The values of ``--glyphs``."""
+
+_NO_SCREEN: Final = frozenset({"", "dumb", "unknown"})
+_ASCII_ONLY: Final = ("linux", "vt1", "vt2", "vt3", "vt4", "vt5", "ansi")
+"""How the names of terminals begin that have no braille and no blocks."""
+_COLOURLESS: Final = ("vt1", "vt2", "vt3", "vt4", "vt5")
+_SAMPLE: Final = "⣿█─"
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalFacts:
+    """What the process was given."""
+
+    stdin_tty: bool = True
+    stdout_tty: bool = True
+    stderr_tty: bool = True
+    encoding: str = "utf-8"
+    """Of standard error: that is where Textual draws."""
+    size: tuple[int, int] = FULL_SIZE
+    """Columns and rows."""
+
+    @classmethod
+    def here(cls) -> TerminalFacts:
+        """As it is for this process."""
+        try:
+            size = tuple(os.get_terminal_size(sys.__stderr__.fileno())) if sys.__stderr__ else (0, 0)
+        except (OSError, ValueError):
+            size = (0, 0)
+        columns, rows = size
+        return cls(
+            stdin_tty=_is_tty(sys.__stdin__),
+            stdout_tty=_is_tty(sys.__stdout__),
+            stderr_tty=_is_tty(sys.__stderr__),
+            encoding=(sys.__stderr__.encoding if sys.__stderr__ else None) or "ascii",
+            size=(columns or FULL_SIZE[0], rows or FULL_SIZE[1]),
+        )
+
+
+def _is_tty(stream: TextIO | None) -> bool:
+    try:
+        return stream is not None and stream.isatty()
+    except ValueError:  # closed
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalWishes:
+    """What the user asked for: ``--plain``, ``--glyphs``, ``--color``."""
+
+    plain: bool = False
+    glyphs: Glyphs | None = None
+    color: str | None = None
+    """One of COLOUR_CHOICES."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decision(Generic[T]):
+    """A value and, in a sentence, why."""
+
+    value: T
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalDecision:
+    """All that is decided about the terminal."""
+
+    plain: Decision[bool]
+    """Text line by line instead of a full screen."""
+    glyphs: Decision[Glyphs]
+    """What the world is drawn with; with ``ascii``, borders are ASCII too."""
+    colour: Decision[Colour]
+    remote: Decision[bool]
+    between: Decision[Between | None]
+    """The program between us and the terminal."""
+    ask_keyboard: Decision[bool]
+    """Whether to ask the terminal for key releases."""
+    room: Decision[Room]
+    size: tuple[int, int] = field(default=FULL_SIZE)
+
+    @property
+    def ansi(self) -> bool:
+        """Whether to draw in the terminal's own 16 colours, or in none: ``App(ansi_color=...)``."""
+        return self.colour.value in ("none", "ansi16")
+
+    @property
+    def theme(self) -> str:
+        """The Textual theme that goes with the colours."""
+        return "ansi-dark" if self.ansi else "textual-dark"
+
+    def environment(self) -> dict[str, str]:
+        """The environment variables that tell Textual; to be set before it is imported.
+
+        NO_COLOR is among them where there shall be no colour: Textual takes it out again when the app is
+        made, so whoever starts other programs later has to set it for them.
+        """
+        system = {"none": "standard", "ansi16": "standard", "256": "256", "truecolour": "truecolor"}
+        settings = {"TEXTUAL_COLOR_SYSTEM": system[self.colour.value]}
+        if self.colour.value == "none":
+            settings["NO_COLOR"] = "1"
+        if self.remote.value:
+            settings["TEXTUAL_ANIMATIONS"] = "none"
+        return settings
+
+
+def decide(
+    environ: Mapping[str, str], facts: TerminalFacts, wishes: TerminalWishes | None = None
+) -> TerminalDecision:
+    """Decides from the environment, the standard streams and the command line. Reads nothing else."""
+    wishes = wishes or TerminalWishes()
+    term = environ.get("TERM", "")
+    remote = _remote(environ)
+    between = _between(environ, term)
+    return TerminalDecision(
+        plain=_plain(term, facts, wishes),
+        glyphs=_glyphs(term, facts, wishes),
+        colour=_colour(environ, term, wishes, remote.value),
+        remote=remote,
+        between=between,
+        ask_keyboard=_ask_keyboard(environ, term),
+        room=_room(facts.size),
+        size=facts.size,
+    )
+
+
+def _plain(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision[bool]:
+    streams = (
+        ("Standard input", facts.stdin_tty),
+        ("Standard output", facts.stdout_tty),
+        ("Standard error", facts.stderr_tty),
+    )
+    away = [name for name, tty in streams if not tty]
+    if wishes.plain:
+        return Decision(True, "--plain was given.")
+    if away:
+        return Decision(True, f"{away[0]} is not a terminal.")
+    if term in _NO_SCREEN:
+        named = f"TERM is {term!r}" if term else "TERM is not set"
+        return Decision(True, f"{named}: such a terminal cannot move its cursor.")
+    return Decision(False, f"A terminal of type {term} on all three standard streams.")
+
+
+def _writes(encoding: str, text: str) -> bool:
+    try:
+        text.encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return True
+
+
+def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision[Glyphs]:
+    if not _writes(facts.encoding, _SAMPLE):
+        return Decision("ascii", f"Standard error is encoded as {facts.encoding}, which has no braille.")
+    if wishes.glyphs:
+        return Decision(wishes.glyphs, f"--glyphs {wishes.glyphs} was given.")
+    if term.startswith(_ASCII_ONLY):
+        return Decision("ascii", f"A terminal of type {term} has no font for braille.")
+    return Decision(
+        "braille", f"Standard error is encoded as {facts.encoding}, and {term} should have the font."
+    )
+
+
+def _colour(environ: Mapping[str, str], term: str, wishes: TerminalWishes, remote: bool) -> Decision[Colour]:
+    if wishes.color:
+        return Decision(_COLOUR_WISHES[wishes.color], f"--color {wishes.color} was given.")
+    if environ.get("NO_COLOR"):
+        return Decision("none", "NO_COLOR is set.")
+    if term.startswith(_COLOURLESS) or term.endswith(("-m", "-mono")):
+        return Decision("none", f"A terminal of type {term} has no colours.")
+    if remote:
+        return Decision(
+            "ansi16", "Over SSH: 16 colours take less than half the bytes that true colours take."
+        )
+    if environ.get("COLORTERM") in ("truecolor", "24bit"):
+        return Decision("truecolour", "COLORTERM says that the terminal has true colours.")
+    if "256color" in term:
+        return Decision("256", f"A terminal of type {term} has 256 colours.")
+    return Decision("ansi16", "Nothing says that the terminal has more than 16 colours.")
+
+
+def _remote(environ: Mapping[str, str]) -> Decision[bool]:
+    for name in ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT"):
+        if environ.get(name):
+            return Decision(True, f"{name} is set.")
+    return Decision(False, "No SSH variable is set.")
+
+
+def _between(environ: Mapping[str, str], term: str) -> Decision[Between | None]:
+    if environ.get("TMUX") or term.startswith("tmux"):
+        return Decision("tmux", "TMUX is set." if environ.get("TMUX") else f"TERM is {term}.")
+    if environ.get("STY") or term.startswith("screen"):
+        return Decision("screen", "STY is set." if environ.get("STY") else f"TERM is {term}.")
+    if environ.get("NCURSES_NO_UTF8_ACS") == "1" and _remote(environ).value:
+        return Decision("mosh", "NCURSES_NO_UTF8_ACS is 1, as mosh sets it.")
+    return Decision(None, "Neither tmux, screen nor mosh has left a sign.")
+
+
+def _ask_keyboard(environ: Mapping[str, str], term: str) -> Decision[bool]:
+    if environ.get("TEXTUAL_DISABLE_KITTY_KEY") == "1":
+        return Decision(False, "TEXTUAL_DISABLE_KITTY_KEY is 1.")
+    if term.startswith(_ASCII_ONLY):
+        return Decision(False, f"A terminal of type {term} would print the question.")
+    return Decision(True, "A terminal that does not know the question ignores it.")
+
+
+def _room(size: tuple[int, int]) -> Decision[Room]:
+    def holds(least: tuple[int, int]) -> bool:
+        return size[0] >= least[0] and size[1] >= least[1]
+
+    here = f"{size[0]}x{size[1]}"
+    if holds(FULL_SIZE):
+        return Decision("full", f"{here} holds the whole screen of {FULL_SIZE[0]}x{FULL_SIZE[1]}.")
+    if holds(LEAST_SIZE):
+        return Decision("compact", f"{here} is less than {FULL_SIZE[0]}x{FULL_SIZE[1]}: panels are left out.")
+    return Decision(
+        "too small", f"{here} is less than {LEAST_SIZE[0]}x{LEAST_SIZE[1]}: make the window larger."
+    )

@@ -1,0 +1,181 @@
+"""A terminal to run the kit's apps in: a real pseudo-terminal, and on our side of it what a terminal would do."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import pty
+import re
+import select
+import struct
+import subprocess
+import sys
+import termios
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PROGRAMS = Path(__file__).parent / "programs"
+
+KITTY_ATTRIBUTES = b"\x1b[?62;52;c"
+LONG_ATTRIBUTES = b"\x1b[?61;4;6;7;14;21;22;23;24;28;32;42;52c"
+"""Windows Terminal's: longer than what Textual's parser looks at."""
+
+
+class Modes:
+    """What an app has switched on in a terminal: private modes, and keyboard flags, one stack for each screen."""
+
+    _SEQUENCE = re.compile(rb"\x1b\[\?([\d;]+)([hl])|\x1b\[([<>=?])([\d;]*)u")
+
+    def __init__(self) -> None:
+        self.on: set[int] = {7, 25}
+        self.stacks: dict[bool, list[int]] = {False: [], True: []}
+        self.flags: dict[bool, int] = {False: 0, True: 0}
+
+    @property
+    def alternate(self) -> bool:
+        return 1049 in self.on
+
+    @property
+    def keyboard(self) -> int:
+        return self.flags[self.alternate]
+
+    def see(self, data: bytes) -> None:
+        for match in self._SEQUENCE.finditer(data):
+            if match[2]:
+                change = self.on.update if match[2] == b"h" else self.on.difference_update
+                change(int(number) for number in match[1].split(b";"))
+            else:
+                self._keyboard(match[3], [int(number or 0) for number in match[4].split(b";")])
+
+    def _keyboard(self, verb: bytes, numbers: list[int]) -> None:
+        screen = self.alternate
+        if verb == b">":
+            self.stacks[screen].append(self.flags[screen])
+            self.flags[screen] = numbers[0]
+        elif verb == b"<":
+            self.flags[screen] = self.stacks[screen].pop() if self.stacks[screen] else -1
+        elif verb == b"=":
+            old, (new, how) = self.flags[screen], numbers
+            self.flags[screen] = {1: new, 2: old | new, 3: old & ~new}[how]
+
+
+class Terminal:
+    """Our side of a pseudo-terminal, and a program on the other side.
+
+    ``kitty``: whether it knows the keyboard protocol. ``attributes``: its answer to ``CSI c``, None for silence.
+    The program may report to us with JSON lines on file descriptor 3.
+    """
+
+    def __init__(
+        self, *program: str, kitty: bool = True, attributes: bytes | None = KITTY_ATTRIBUTES
+    ) -> None:
+        self.kitty, self.attributes = kitty, attributes
+        self.modes = Modes()
+        self.output = b""
+        self.reports: list[Any] = []
+        self._answered = 0
+        self._pending = b""
+        self.fd, self.other_fd = pty.openpty()
+        fcntl.ioctl(self.other_fd, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+        self.attributes_before = termios.tcgetattr(self.other_fd)
+        self._reports_fd, report_fd = os.pipe()
+        self.process = subprocess.Popen(
+            [sys.executable, *program],
+            stdin=self.other_fd,
+            stdout=self.other_fd,
+            stderr=self.other_fd,
+            env={
+                **os.environ,
+                "TERM": "xterm-256color",
+                "REPORT": str(report_fd),
+                "TEXTUAL_ANIMATIONS": "none",
+            },
+            pass_fds=[report_fd],
+            start_new_session=True,
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # the child's own, as a shell would do
+        )
+        os.close(report_fd)
+
+    def send(self, data: bytes) -> None:
+        os.write(self.fd, data)
+
+    def pump(self, seconds: float = 0.0) -> None:
+        """Takes what the program says, for a while at most, and answers as a terminal does."""
+        readable = select.select([self.fd, self._reports_fd], [], [], seconds)[0]
+        if self.fd in readable:
+            with contextlib.suppress(OSError):
+                data = os.read(self.fd, 65536)
+                self.output += data
+                self.modes.see(data)
+                self._answer()
+        if self._reports_fd in readable:
+            self._pending += os.read(self._reports_fd, 65536)
+            *lines, self._pending = self._pending.split(b"\n")
+            self.reports += [json.loads(line) for line in lines]
+
+    def _answer(self) -> None:
+        for match in re.compile(rb"\x1b\[\?u|\x1b\[c|\x1b\[6n").finditer(self.output, self._answered):
+            self._answered = match.end()
+            if match[0] == b"\x1b[?u" and self.kitty:
+                self.send(b"\x1b[?%du" % self.modes.keyboard)
+            elif match[0] == b"\x1b[c" and self.attributes:
+                self.send(self.attributes)
+            elif match[0] == b"\x1b[6n":
+                self.send(b"\x1b[12;34R")
+
+    def until(self, condition: Callable[[], object], what: str, limit: float = 20.0) -> None:
+        end = time.monotonic() + limit
+        while not condition():
+            assert time.monotonic() < end, (
+                f"waited in vain for {what}; reports {self.reports}, end {self.output[-400:]!r}"
+            )
+            self.pump(0.02)
+
+    def until_reported(self, *wanted: Any) -> None:
+        """Waits for these reports, in this order, whatever comes between; forgets all up to the last."""
+        for report in wanted:
+            self.until(lambda report=report: report in self.reports, repr(report))  # type: ignore[misc]  # mypy on lambdas
+            del self.reports[: self.reports.index(report) + 1]
+
+    def wait(self) -> int:
+        """The program's exit status, when it has ended and all its output is here."""
+        self.until(lambda: self.process.poll() is not None, "the end")
+        self.pump(0.05)
+        return int(self.process.returncode)
+
+    def assert_sane(self) -> None:
+        """As before the program: nothing switched on, nothing left to read."""
+        assert self.modes.on == {7, 25}
+        assert self.modes.stacks == {False: [], True: []}
+        assert set(self.modes.flags.values()) == {0}
+        assert termios.tcgetattr(self.other_fd) == self.attributes_before
+        os.set_blocking(self.other_fd, False)
+        with pytest.raises(BlockingIOError):
+            os.read(self.other_fd, 1)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        for descriptor in (self.fd, self.other_fd, self._reports_fd):
+            with contextlib.suppress(OSError):
+                os.close(descriptor)
+
+
+@pytest.fixture
+def terminal() -> Iterator[Callable[..., Terminal]]:
+    """Runs one of the programs beside this file in a terminal of its own."""
+    with contextlib.ExitStack() as stack:
+
+        def run(program: str, *arguments: str, **traits: Any) -> Terminal:
+            made = Terminal(str(PROGRAMS / program), *arguments, **traits)
+            stack.callback(made.close)
+            return made
+
+        yield run

@@ -1,0 +1,222 @@
+"""The driver in a real pseudo-terminal: what keys become in an app, and a sane terminal on every way out."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import re
+import signal
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from textual.app import App
+from textual.driver import Driver
+from textual.drivers import linux_driver
+from textual.drivers._writer_thread import WriterThread
+from textual.drivers.linux_driver import LinuxDriver
+
+from kit.tui.input.driver import key_driver
+from kit.tui.input.protocol import RELEASES_OFF, RELEASES_ON
+
+Run = Callable[..., Any]
+LONG_ATTRIBUTES = b"\x1b[?61;4;6;7;14;21;22;23;24;28;32;42;52c"
+
+
+@pytest.fixture
+def driving(terminal: Run) -> Any:
+    """An app on its drive screen, in a terminal that reports releases."""
+    made = terminal("drive_app.py")
+    made.until_reported(["mode", "exact"])
+    return made
+
+
+def test_keys_arrive_as_presses_repeats_and_releases(driving: Any) -> None:
+    """One session, because starting an app takes longer than all keys together."""
+    conversation: list[tuple[bytes, list[list[object]]]] = [
+        (b"\x1b[119;;119u", [["press", "w", "p_up"]]),
+        (b"\x1b[119;1:2;119u", [["repeat", "w"]]),
+        (b"\x1b[119;1:3u", [["release", "w", "r_up"]]),
+        (b"\x1b[A", [["press", "up", "p_up"]]),
+        (b"\x1b[1;1:2A", [["repeat", "up"]]),
+        (b"\x1b[1;2:3A", [["release", "up", "r_up"]]),
+        (b"\x1b[97;2;65u", [["press", "A", "p_left"]]),
+        (b"\x1b[97;1:3u", [["release", "A", "r_left"]]),
+        (b"\x1b[57441;2u", [["press", "left_shift", "p_shift_l"]]),
+        (b"\x1b[57441;1:3u", [["release", "left_shift", "r_shift_l"]]),
+        (b"\x1b[57448;5u", [["press", "right_control", "p_ctrl_r"]]),
+        (b"\x1b[57448;1:3u", [["release", "right_control", "r_ctrl_r"]]),
+        (b"\x1b[27u", [["press", "escape", "p_esc"]]),
+        (b"\x1b[27;1:3u", [["release", "escape", "r_esc"]]),
+        (b"\x1b[119;;119u\x1b[32;;32u", [["press", "w", "p_up"], ["press", "space", "r_up", "p_space"]]),
+        (b"\x1b[119;1:2;119u", [["repeat", "w"]]),
+        (b"\x1b[32;1:3u\x1b[119;1:3u", [["release", "space", "r_space"], ["release", "w"]]),
+        (b"k", [["press", "k"]]),
+        (b"\x1b[12;34R", [["cursor", 33, 11]]),
+        (b"\x1b[54;;54u", [["press", "6"], ["cursor", 33, 11]]),
+        (b"\x1b[200~wasd\x1b[201~", [["paste", "wasd"]]),
+        (b"\xff\xfe\xc3", []),
+        (b"\x1b[119;;119u", [["press", "w", "p_up"]]),
+        (b"\x1b[O", [["blur"]]),
+        (b"\x1b[I\x1b[119;1:3u", [["release", "w"]]),
+        (b"\x1b[119;;119u\x1b[O", [["blur"]]),
+        (b"\x1b[I\x1b[119;;119u\x1b[119;1:3u", [["press", "w", "p_up"], ["release", "w", "r_up"]]),
+    ]
+    for sent, reports in conversation:
+        driving.send(sent)
+        driving.until_reported(*reports)
+
+
+def test_answers_are_never_typed(terminal: Run) -> None:
+    app = terminal("drive_app.py", attributes=LONG_ATTRIBUTES)
+    app.until_reported(["mode", "exact"])
+    app.send(b"\x1b[?62;52;c" + b"\x1b[?27u" + LONG_ATTRIBUTES + b"\x1b[?31uw")
+    app.until_reported(["press", "w", "p_up"])
+    assert not [report for report in app.reports if report[0] == "press"]
+
+
+@pytest.mark.parametrize("traits", [{"kitty": False}, {"kitty": False, "attributes": LONG_ATTRIBUTES}])
+def test_a_terminal_without_the_protocol_gets_learned_repeats(
+    terminal: Run, traits: dict[str, object]
+) -> None:
+    app = terminal("drive_app.py", **traits)
+    app.until_reported(["mode", "repeat"])
+    app.send(b"\x1b[A")
+    app.until_reported(["press", "up", "p_up"], ["strength", {"up": 0.35}], ["timeout", "", "r_up"])
+    app.send(b"\x1bOC")
+    app.until_reported(["press", "right", "p_right"], ["timeout", "", "r_right"])
+
+
+def test_releases_are_asked_for_only_while_a_screen_drives(driving: Any) -> None:
+    assert driving.modes.keyboard == 27
+    driving.send(b"\x1b[119;;119u\x1b[52;;52u")
+    driving.until_reported(["press", "w", "p_up"])
+    driving.until(lambda: driving.modes.keyboard == 25, "the flag cleared")
+    driving.send(b"\x1b[119;;119u")
+    driving.until_reported(["elsewhere", "w"])
+    driving.send(b"\x1b[53;;53u")
+    driving.until_reported(["mode", "exact"])
+    assert driving.modes.keyboard == 27
+    driving.send(b"\x1b[119;;119u")
+    driving.until_reported(["press", "w", "p_up"])  # going away had released it
+
+
+def test_a_suspension_gives_the_terminal_back_and_takes_it_again(driving: Any) -> None:
+    driving.send(b"\x1b[119;;119u\x1b[56;;56u")
+    driving.until_reported(["press", "w", "p_up"], ["suspended"], ["mode", "exact"])
+    given_back = driving.output.index(b"\x1b[?1049l")
+    assert b"\x1b[<u" in driving.output[:given_back]
+    driving.send(b"\x1b[119;;119u")
+    driving.until_reported(["press", "w", "p_up"])
+    driving.send(b"\x1b[51;;51u")
+    driving.wait()
+    driving.assert_sane()
+
+
+def test_stopped_by_the_shell_and_continued(driving: Any) -> None:
+    os.kill(driving.process.pid, signal.SIGTSTP)
+    driving.until(lambda: driving.modes.on == {7, 25}, "the terminal given back")
+    driving.until(
+        lambda: os.waitid(os.P_PID, driving.process.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT), "the stop"
+    )
+    driving.assert_sane()
+    os.kill(driving.process.pid, signal.SIGCONT)
+    driving.until_reported(["mode", "exact"])
+    driving.send(b"\x1b[119;;119u")
+    driving.until_reported(["press", "w", "p_up"])
+
+
+def sends(text: bytes) -> Callable[[Any], None]:
+    return lambda app: app.send(text)
+
+
+def kills(number: int, times: int = 1) -> Callable[[Any], None]:
+    def kill(app: Any) -> None:
+        for _ in range(times):
+            os.kill(app.process.pid, number)
+
+    return kill
+
+
+WAYS_OUT: dict[str, tuple[Callable[[Any], None], set[int]]] = {
+    "exit": (sends(b"\x1b[51;;51u"), {0}),
+    "Textual's own quit key": (sends(b"\x1b[113;5u"), {0}),
+    "exit, and the key goes up a moment later": (sends(b"\x1b[51;;51u" + b"\x1b[51;1:3u"), {0}),
+    "an exception": (sends(b"\x1b[49;;49u"), {0, 1}),
+    "SystemExit": (sends(b"\x1b[50;;50u"), {3}),
+    "SIGTERM": (kills(signal.SIGTERM), {-signal.SIGTERM}),
+    "SIGHUP": (kills(signal.SIGHUP), {-signal.SIGHUP}),
+    "SIGQUIT": (kills(signal.SIGQUIT), {-signal.SIGQUIT}),
+    "SIGINT": (kills(signal.SIGINT), {0, -signal.SIGINT, 1, 130}),
+    "SIGINT twice": (kills(signal.SIGINT, times=2), {0, -signal.SIGINT, 1, 130}),
+    "SIGTERM twice": (kills(signal.SIGTERM, times=2), {-signal.SIGTERM}),
+}
+
+
+@pytest.mark.parametrize("drawing", [False, True], ids=["idle", "drawing"])
+@pytest.mark.parametrize("way", WAYS_OUT)
+def test_every_way_out_leaves_a_sane_terminal(driving: Any, way: str, drawing: bool) -> None:
+    leave, statuses = WAYS_OUT[way]
+    if drawing:
+        driving.send(b"7")
+        driving.until(lambda: driving.output.count(b"\x1b[1;1H") > 5, "frames")
+    leave(driving)
+    assert driving.wait() in statuses
+    driving.assert_sane()
+    *_, after = driving.output.rpartition(b"\x1b[?1049l")
+    drawn = re.sub(rb"\x1b\[\?\d+[hl]", b"", after)
+    assert b"\x1b[1;1H" not in drawn  # no frame on the user's own screen
+
+
+def test_the_terminal_goes_away(driving: Any) -> None:
+    """A dropped connection: the process ends, by the signal or because there is nobody to read from."""
+    os.close(driving.other_fd)
+    os.close(driving.fd)
+    driving.process.wait(20)
+    assert driving.process.returncode in {-signal.SIGHUP, 0, 129}
+
+
+# What we use of Textual beyond its public names. When one of these fails after an update of Textual, look here.
+
+
+def test_the_app_keeps_its_driver_in_a_private_name() -> None:
+    assert "self._driver" in inspect.getsource(App._build_driver)
+    assert key_driver(App()) is None
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["_file", "fileno", "exit_event", "_key_thread", "_writer_thread"],
+    ids=lambda name: name.strip("_"),
+)
+def test_the_linux_driver_has_the_attributes_we_use(name: str) -> None:
+    assert f"self.{name}" in inspect.getsource(LinuxDriver.__init__)
+
+
+@pytest.mark.parametrize("name", ["_app", "_debug"])
+def test_every_driver_has_the_attributes_we_use(name: str) -> None:
+    assert f"self.{name} = " in inspect.getsource(Driver.__init__)
+
+
+def test_the_linux_driver_starts_the_input_thread_through_the_method_we_replace() -> None:
+    assert "self.run_input_thread()" in inspect.getsource(LinuxDriver._run_input_thread)
+    assert "target=self._run_input_thread" in inspect.getsource(LinuxDriver.start_application_mode)
+
+
+def test_closing_the_driver_waits_until_all_is_written() -> None:
+    assert "self._writer_thread.stop()" in inspect.getsource(LinuxDriver.close)
+    assert "self.join()" in inspect.getsource(WriterThread.stop)
+
+
+def test_textual_pushes_the_flags_to_which_we_add_one() -> None:
+    assert linux_driver.KITTY_REPORT_EVENT_TYPES == 2
+    assert f"\x1b[={linux_driver.KITTY_REPORT_EVENT_TYPES};2u" == RELEASES_ON
+    assert f"\x1b[={linux_driver.KITTY_REPORT_EVENT_TYPES};3u" == RELEASES_OFF
+    source = inspect.getsource(LinuxDriver.start_application_mode)
+    assert "KITTY_REPORT_ALL_KEYS" in source
+    assert "KITTY_REPORT_EVENT_TYPES" not in source
+
+
+def test_textual_pops_the_flags_before_it_leaves_the_alternate_screen() -> None:
+    source = inspect.getsource(LinuxDriver.stop_application_mode)
+    assert source.index("[<u") < source.index("[?1049l")
