@@ -22,7 +22,7 @@ from kit.world.problems import Problem, Problems, quoted
 from kit.world.records import Place
 
 MAX_DEPTH = 64
-MAX_NODES = 200_000
+MAX_NODES = 100_000
 """Values in all files of one world together, counted each time a file or an alias is used."""
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -89,8 +89,8 @@ class Section:
         text = self._written(key, default)
         if text is not None and choices is not None and text not in choices:
             self._not_one_of(key, choices)
-            return _instead(default, next(iter(choices)))
-        return _instead(default, "") if text is None else text
+            text = None
+        return _instead(default, next(iter(choices or [""]))) if text is None else text
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
         """A text by which something is called: one line, not empty."""

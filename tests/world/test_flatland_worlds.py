@@ -1,0 +1,182 @@
+"""Flatland's own public worlds: the good ones load with their known numbers, the bad ones are refused rightly.
+
+They lie beside the project, not in it; without them these tests are skipped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from kit.geometry import Pose
+from kit.world.loading import load_world
+from kit.world.problems import WorldError
+from kit.world.reading import DeviceReader, ModelScope, Section
+from kit.world.records import World
+
+FLATLAND = Path(__file__).resolve().parents[3] / "shared" / "flatland_worlds" / "avidbots-flatland"
+LOAD = "flatland_server/test/load_world_tests"
+MANAGER = "flatland_server/test/plugin_manager_tests"
+PLUGINS = "flatland_plugins/test"
+
+pytestmark = pytest.mark.skipif(not FLATLAND.is_dir(), reason=f"Flatland's worlds are not at {FLATLAND}")
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """What is known of a good world: of each layer entry its names and walls, of each model its parts."""
+
+    layers: tuple[tuple[tuple[str, ...], int | None], ...]
+    models: tuple[tuple[str, int, int, tuple[str, ...]], ...]
+
+
+ONE_MAP = ((("layer_1",), 8),)
+TWO_MAPS = ((("layer_1",), 8), (("layer_2",), 8))
+DUMMY_MAP = ((("2d",), 8),)
+
+GOOD = {
+    f"{LOAD}/simple_test_A/world.yaml": Numbers(
+        ((("2d",), 12), (("3d", "4d", "5d"), 16), (("lines",), 3), (("robot",), None)),
+        (("turtlebot1", 5, 4, ()), ("turtlebot2", 5, 4, ()), ("chair1", 1, 0, ()), ("person1", 1, 0, ())),
+    ),
+    f"{MANAGER}/load_dummy_test/world.yaml": Numbers(
+        DUMMY_MAP, (("turtlebot1", 1, 0, ("DummyModelPlugin",)),)
+    ),
+    f"{MANAGER}/collision_test/world.yaml": Numbers(
+        DUMMY_MAP, (("turtlebot1", 1, 0, ()), ("person1", 1, 0, ()))
+    ),
+    f"{PLUGINS}/laser_tests/range_test/world.yaml": Numbers(TWO_MAPS, (("robot1", 1, 0, ("Laser",) * 3),)),
+    f"{PLUGINS}/laser_tests/range_test/world.cw.yaml": Numbers(TWO_MAPS, (("robot1", 1, 0, ("Laser",)),)),
+    f"{PLUGINS}/laser_tests/range_test/world.cw.asymmetrical.yaml": Numbers(
+        TWO_MAPS, (("robot1", 1, 0, ("Laser", "Laser", "ModelTfPublisher")),)
+    ),
+    f"{PLUGINS}/laser_tests/intensity_test/world.yaml": Numbers(
+        (*TWO_MAPS, (("reflectance",), 4)), (("robot1", 1, 0, ("Laser",) * 3),)
+    ),
+    f"{PLUGINS}/bumper_tests/collision_test/world.yaml": Numbers(
+        ((("layer_1",), 4),), (("robot1", 2, 1, ("Bumper", "Bumper")),)
+    ),
+    f"{PLUGINS}/model_tf_publisher_tests/tf_publish_test_A/world.yaml": Numbers(
+        ONE_MAP, (("robot1", 6, 1, ("ModelTfPublisher",)),)
+    ),
+    f"{PLUGINS}/model_tf_publisher_tests/tf_publish_test_B/world.yaml": Numbers(
+        ONE_MAP, (("robot1", 6, 1, ("ModelTfPublisher",)),)
+    ),
+    **{
+        f"{PLUGINS}/tween_tests/{mode}.world.yaml": Numbers(ONE_MAP, (("robot1", 1, 0, ("Tween",)),))
+        for mode in ("once", "yoyo", "loop")
+    },
+    f"{PLUGINS}/update_timer_test/world.yaml": Numbers(ONE_MAP, (("robot1", 1, 0, ()),)),
+}
+
+BAD: dict[str, tuple[str, int, tuple[str, ...]]] = {
+    # world: the file and line of the mistake, and words that its message must contain
+    f"{LOAD}/random_path": ("world.yaml", 1, ("no such file",)),
+    f"{LOAD}/world_invalid_A": ("world.yaml", 1, ("properties", "missing")),
+    f"{LOAD}/world_invalid_B": ("world.yaml", 5, ("color", "4")),
+    f"{LOAD}/world_invalid_C": ("world.yaml", 6, ("unknown", "random_param_1")),
+    f"{LOAD}/world_invalid_D": ("world.yaml", 5, ("layer", "already exists")),
+    f"{LOAD}/world_invalid_E": ("world.yaml", 12, ("turtlebot", "already exists")),
+    f"{LOAD}/world_invalid_F": ("world.yaml", 14, ("16", "3", "14")),
+    f"{LOAD}/map_invalid_A": ("map.yaml", 1, ("origin", "missing")),
+    f"{LOAD}/map_invalid_B": ("map.yaml", 1, ("random_map.png",)),
+    f"{LOAD}/map_invalid_C": ("map_lines.yaml", 2, ("random_file.dat",)),
+    f"{LOAD}/map_invalid_D": ("map_lines.dat", 6, ("segment",)),
+    f"{LOAD}/map_invalid_E": ("map_lines.yaml", 1, ("scale", "missing")),
+    f"{LOAD}/model_invalid_A": ("turtlebot.model.yaml", 5, ("bodies", "list")),
+    f"{LOAD}/model_invalid_B": ("turtlebot.model.yaml", 14, ("points", "3")),
+    f"{LOAD}/model_invalid_C": ("turtlebot.model.yaml", 54, ("anchor", "2")),
+    f"{LOAD}/model_invalid_D": ("turtlebot.model.yaml", 45, ("left_wheel_123",)),
+    f"{LOAD}/model_invalid_E": ("turtlebot.model.yaml", 26, ("random_layer",)),
+    f"{LOAD}/model_invalid_F": ("turtlebot.model.yaml", 13, ("unknown", "random_paramter")),
+    f"{LOAD}/model_invalid_G": ("turtlebot.model.yaml", 8, ("unknown", "random_paramter")),
+    f"{LOAD}/model_invalid_H": ("turtlebot.model.yaml", 13, ("base", "already exists")),
+    f"{LOAD}/model_invalid_I": ("turtlebot.model.yaml", 38, ("wheel_weld", "already exists")),
+    f"{LOAD}/model_invalid_J": ("turtlebot.model.yaml", 13, ("points", "8")),
+    f"{MANAGER}/invalid_plugin_yaml": ("turtlebot.model.yaml", 16, ("name", "missing")),
+    f"{MANAGER}/duplicate_plugin": ("turtlebot.model.yaml", 23, ("dummy_test_plugin", "already exists")),
+    f"{MANAGER}/nonexistent_plugin": ("turtlebot.model.yaml", 16, ("RandomPlugin",)),
+    f"{MANAGER}/plugin_throws_exception": (
+        "turtlebot.model.yaml",
+        20,
+        ("dummy_test_123456", "wrong_message"),
+    ),
+    f"{PLUGINS}/laser_tests/invalid_A": ("robot.model.yaml", 14, ("range", "missing")),
+    f"{PLUGINS}/laser_tests/invalid_B": ("robot.model.yaml", 19, ("max", "min")),
+    f"{PLUGINS}/bumper_tests/invalid_A": ("robot.model.yaml", 23, ("random_body",)),
+    f"{PLUGINS}/model_tf_publisher_tests/invalid_A": ("robot.model.yaml", 16, ("random_body",)),
+    f"{PLUGINS}/model_tf_publisher_tests/invalid_B": ("robot.model.yaml", 16, ("random_body_1",)),
+}
+
+
+@pytest.fixture
+def all_devices() -> Mapping[str, DeviceReader]:
+    """The kit's own plugins, and the one that only Flatland's tests have."""
+    from kit.sim.plugins import readers
+
+    return {**readers, "DummyModelPlugin": _read_dummy}
+
+
+def _read_dummy(section: Section, scope: ModelScope) -> str:
+    """A plugin that takes one value only of each of its parameters."""
+    section.number("dummy_param_float")
+    section.integer("dummy_param_int")
+    return section.text("dummy_param_string", choices=["dummy_test_123456"])
+
+
+@pytest.mark.parametrize("world", GOOD)
+def test_good_world_has_its_known_numbers(world: str, all_devices: Mapping[str, DeviceReader]) -> None:
+    loaded = load_world(FLATLAND / world, root=FLATLAND, devices=all_devices)
+    assert _numbers(loaded) == GOOD[world]
+
+
+def _numbers(world: World) -> Numbers:
+    return Numbers(
+        tuple(
+            (layer.names, None if layer.walls is None else len(layer.walls.local)) for layer in world.layers
+        ),
+        tuple(
+            (model.name, len(model.bodies), len(model.joints), tuple(plugin.type for plugin in model.plugins))
+            for model in world.models
+        ),
+    )
+
+
+@pytest.mark.parametrize("world", BAD)
+def test_bad_world_is_refused_for_its_cause(world: str, all_devices: Mapping[str, DeviceReader]) -> None:
+    file, line, words = BAD[world]
+    folder = FLATLAND / world
+    with pytest.raises(WorldError) as caught:
+        load_world(folder / "world.yaml", root=FLATLAND, devices=all_devices)
+    here = [p.message for p in caught.value.problems if (p.place.file, p.place.line) == (folder / file, line)]
+    assert any(all(word in message for word in words) for message in here), str(caught.value)
+
+
+def test_every_world_there_is_tested() -> None:
+    worlds = {path.relative_to(FLATLAND).as_posix() for path in FLATLAND.rglob("*world*.yaml")}
+    assert worlds == {*GOOD, *(f"{folder}/world.yaml" for folder in BAD)} - {f"{LOAD}/random_path/world.yaml"}
+
+
+def test_where_models_and_maps_stand() -> None:
+    simple = load_world(FLATLAND / LOAD / "simple_test_A/world.yaml")
+    assert (simple.velocity_iterations, simple.position_iterations) == (11, 12)
+    assert [(model.namespace, model.pose) for model in simple.models] == [
+        ("", Pose()),
+        ("robot2", Pose(3, 4.5, 3.14159)),
+        ("", Pose(1.2, 3.5, 2.123)),
+        ("", Pose(0, 1, 2)),
+    ]
+    tf = load_world(
+        FLATLAND / PLUGINS / "model_tf_publisher_tests/tf_publish_test_A/world.yaml", root=FLATLAND
+    )
+    assert tf.models[0].namespace == "my_robot"
+    assert tf.models[0].pose == Pose(8, 6, -0.575958653)
+    dummy = load_world(FLATLAND / MANAGER / "load_dummy_test/world.yaml")
+    assert dummy.models[0].plugins[0].params == {
+        "dummy_param_float": 0.123456,
+        "dummy_param_int": 123456,
+        "dummy_param_string": "dummy_test_123456",
+    }
