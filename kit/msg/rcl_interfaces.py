@@ -13,11 +13,12 @@ from kit.msg.fields import (
     int64_array,
     string,
     uint8,
+    uint8_array,
     uint32,
     uint64,
     zero,
 )
-from kit.msg.message import Message
+from kit.msg.message import Message, Service
 
 
 class FloatingPointRange(Message):
@@ -112,3 +113,54 @@ class ParameterType(Message):
 class SetParametersResult(Message):
     successful: boolean = zero
     reason: string = zero
+
+
+class DescribeParameters(Service):
+    class Request(Message):
+        names: list[string] = zero
+
+    class Response(Message):
+        descriptors: list[ParameterDescriptor] = zero
+
+
+class GetParameters(Service):
+    class Request(Message):
+        names: list[string] = zero
+
+    class Response(Message):
+        values: list[ParameterValue] = zero
+
+
+class GetParameterTypes(Service):
+    class Request(Message):
+        names: list[string] = zero
+
+    class Response(Message):
+        types: uint8_array = zero
+
+
+class ListParameters(Service):
+    class Request(Message):
+        DEPTH_RECURSIVE: ClassVar[uint64] = 0
+
+        prefixes: list[string] = zero
+        depth: uint64 = zero
+
+    class Response(Message):
+        result: ListParametersResult = zero
+
+
+class SetParameters(Service):
+    class Request(Message):
+        parameters: list[Parameter] = zero
+
+    class Response(Message):
+        results: list[SetParametersResult] = zero
+
+
+class SetParametersAtomically(Service):
+    class Request(Message):
+        parameters: list[Parameter] = zero
+
+    class Response(Message):
+        result: SetParametersResult = zero

@@ -1,0 +1,91 @@
+"""What publishers, subscriptions, services and clients share: a node, a name, an end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+from kit.ros.event_handler import QoSIncompatibility
+from kit.ros.exceptions import InvalidHandle
+
+if TYPE_CHECKING:
+    from kit.ros.callback_groups import CallbackGroup
+    from kit.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+    from kit.ros.handle import NodeHandle
+    from kit.ros.node import Node
+
+
+class Destroyable:
+    """Something that a node made and that can be done away with; also as a context manager."""
+
+    _handle: NodeHandle
+    _destroyed = False
+
+    @property
+    def handle(self) -> NodeHandle:
+        """What the library knows of its node."""
+        return self._handle
+
+    @property
+    def node(self) -> Node:
+        """Whose it is."""
+        return self._handle.node
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()
+
+    def destroy(self) -> None:
+        """Takes it out of the graph. Using it afterwards raises InvalidHandle."""
+        if not self._destroyed:
+            self._destroyed = True
+            with self._handle.graph.lock:
+                self._leave()
+                self._handle.forget(self)
+
+    def _leave(self) -> None:
+        """Undoes what making it did outside its node."""
+        raise NotImplementedError
+
+    def _must_exist(self) -> None:
+        if self._destroyed:
+            raise InvalidHandle(f"cannot use {self}: it has been destroyed")
+
+
+class Entity(Destroyable):
+    """Something with a callback."""
+
+    callback_group: CallbackGroup
+
+    def destroy(self) -> None:
+        super().destroy()
+        self.callback_group.entities.discard(self)
+
+    def take(self) -> Any:
+        """See ``agenda.Item``."""
+        raise NotImplementedError
+
+    def run(self, taken: Any) -> Any:
+        """See ``agenda.Item``."""
+        raise NotImplementedError
+
+    def discard_queue(self) -> None:
+        """Forgets the work that waits in it. With the graph's lock held."""
+
+
+def report_incompatible(
+    handle: NodeHandle,
+    callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
+    info: QoSIncompatibility,
+    warning: str,
+) -> None:
+    """Calls the event callback for it, or else warns."""
+    if callbacks is not None and callbacks.incompatible_qos is not None:
+        from kit.ros.task import Task
+
+        task: Task[Any] = Task(callbacks.incompatible_qos, (info,))
+        task.belong_to(handle)
+        handle.agenda.post(task)
+    elif callbacks is None or callbacks.use_default_callbacks:
+        handle.logger.warning(warning)

@@ -1,0 +1,168 @@
+"""The errors of the conversation: rclpy's own, under its names, and those that explain what ROS 2 leaves unsaid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kit.ros.node import Node
+    from kit.ros.parameter import Parameter
+
+
+class NotInitializedException(Exception):
+    """Something was asked of a context before ``rclpy.init()`` or after ``rclpy.shutdown()``."""
+
+    def __init__(self, *what: object) -> None:
+        super().__init__("rclpy.init() has not been called", *what)
+
+
+class NoTypeSupportImportedException(Exception):
+    """A message class was needed, and this is none."""
+
+
+class InvalidHandle(Exception):
+    """A publisher, subscription, client, service, timer or node was used after it had been destroyed."""
+
+
+class ROSInterruptException(Exception):
+    """A sleeping rate or clock was woken by ``rclpy.shutdown()``."""
+
+    def __init__(self) -> None:
+        super().__init__("rclpy.shutdown() has been called")
+
+
+class TimerCancelledError(Exception):
+    """A cancelled timer was called."""
+
+
+class TimeoutException(Exception):
+    """The time given for a wait is over."""
+
+
+class ShutdownException(Exception):
+    """The executor was shut down."""
+
+
+class ExternalShutdownException(Exception):
+    """The context was shut down from outside: a signal, another thread, the end of a run."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*(args or ("the context has been shut down",)))
+
+
+class ConditionReachedException(Exception):
+    """The future that was waited for is done."""
+
+
+class WouldDeadlock(RuntimeError):
+    """A call that would wait for ever: on a robot it hangs silently; here it says why."""
+
+
+class NodeFailure(RuntimeError):
+    """A callback of ``node`` raised ``cause`` (also ``__cause__``) while nodes ran in lock-step."""
+
+    def __init__(self, node: Node | None, cause: BaseException) -> None:
+        self.node = node
+        self.cause = cause
+        self.__cause__ = cause
+        name = node.get_fully_qualified_name() if node is not None else "a task"
+        super().__init__(f"{name} failed: {type(cause).__name__}: {cause}")
+
+
+class NameValidationException(Exception):
+    """A name that ROS 2 does not allow; ``invalid_index`` is where it goes wrong."""
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {' ' * invalid_index}^")
+        self.name_type = name_type
+        self.name = name
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
+
+
+class InvalidNamespaceException(NameValidationException):
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameException(NameValidationException):
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class InvalidRosArguments(ValueError):
+    """What follows ``--ros-args`` makes no sense; the message says which part and what would."""
+
+
+class ParameterException(Exception):
+    """Something is wrong with parameters."""
+
+    def __init__(self, message: str, parameters: str | Iterable[str]) -> None:
+        names = [parameters] if isinstance(parameters, str) else list(parameters)
+        super().__init__(message, names)
+
+    def __str__(self) -> str:
+        message, names = self.args
+        return f"{message}: {', '.join(names)}"
+
+
+class ParameterNotDeclaredException(ParameterException):
+    def __init__(self, parameters: str | Iterable[str], near: str = "") -> None:
+        hint = f" (did you mean '{near}'?)" if near else ""
+        super().__init__(f"Invalid access to undeclared parameter(s){hint}", parameters)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    def __init__(self, parameters: str | Iterable[str]) -> None:
+        super().__init__("Parameter(s) already declared", parameters)
+
+
+class ParameterImmutableException(ParameterException):
+    def __init__(self, parameters: str | Iterable[str]) -> None:
+        super().__init__("Attempted to modify read-only parameter(s)", parameters)
+
+
+class ParameterUninitializedException(ParameterException):
+    """A parameter was declared with a type only, and nobody gave it a value."""
+
+    def __init__(self, parameters: str | Iterable[str]) -> None:
+        super().__init__("The parameter is not initialized", parameters)
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter name that ROS 2 does not allow."""
+
+    def __init__(self, parameter: str) -> None:
+        super().__init__("Invalid parameter name", parameter)
+
+
+class InvalidParameterTypeException(ParameterException):
+    def __init__(self, desired_parameter: Parameter, expected_type: str) -> None:
+        super().__init__(
+            f"Trying to set parameter '{desired_parameter.name}' to '{desired_parameter.value}' of type "
+            f"'{desired_parameter.type_.name}', expecting type '{expected_type}'",
+            desired_parameter.name,
+        )
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class InvalidParameterValueException(ParameterException):
+    def __init__(self, parameter: str, value: object, reason: str) -> None:
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter)
+
+
+class NodeNameNonExistentError(RuntimeError):
+    """Something was asked about a node that is not in the graph."""

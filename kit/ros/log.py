@@ -1,0 +1,189 @@
+"""Log lines: loggers, their levels and filters, and the sink they end in."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.instants import S_TO_NS
+
+if TYPE_CHECKING:
+    from kit.ros.clock import Clock
+
+
+class LoggingSeverity(IntEnum):
+    UNSET = 0
+    DEBUG = 10
+    INFO = 20
+    WARN = 30
+    ERROR = 40
+    FATAL = 50
+
+
+@dataclass(frozen=True, slots=True)
+class LogRecord:
+    """One line of a log."""
+
+    time_ns: int
+    """The graph's time: in a simulation, simulation time."""
+    severity: LoggingSeverity
+    name: str
+    """The logger's: its node's full name with dots."""
+    text: str
+    file: str
+    function: str
+    line: int
+
+    def __str__(self) -> str:
+        """As ROS 2 prints it: ``[INFO] [12.340000000] [node]: text``."""
+        seconds, nanoseconds = divmod(self.time_ns, S_TO_NS)
+        return f"[{self.severity.name}] [{seconds}.{nanoseconds:09d}] [{self.name}]: {self.text}"
+
+
+LogSink = Callable[[LogRecord], None]
+"""Where log lines go. Called by whichever thread logs."""
+
+
+def log_to_stderr(record: LogRecord) -> None:
+    """The sink of a program that stands alone."""
+    sys.stderr.write(f"{record}\n")
+    sys.stderr.flush()
+
+
+@dataclass
+class Log:
+    """The loggers' common ground: levels by logger name, the clock and the sink."""
+
+    now_ns: Callable[[], int]
+    sink: LogSink = log_to_stderr
+    levels: dict[str, LoggingSeverity] = field(default_factory=dict)
+    level: LoggingSeverity = LoggingSeverity.INFO
+    """Of loggers for which, and for whose ancestors, none is set."""
+
+    def effective_level(self, name: str) -> LoggingSeverity:
+        while name:
+            if name in self.levels:
+                return self.levels[name]
+            name = name.rpartition(".")[0]
+        return self.level
+
+    def warning(self, name: str, text: str) -> None:
+        """A warning of the library's own, beside any logger."""
+        if self.effective_level(name) <= LoggingSeverity.WARN:
+            self.sink(LogRecord(self.now_ns(), LoggingSeverity.WARN, name, text, "", "", 0))
+
+
+@dataclass(slots=True)
+class _Site:
+    """What one call site has logged so far."""
+
+    count: int = 0
+    last_ns: int | None = None
+
+
+class RcutilsLogger:
+    """A named logger: ``node.get_logger().info("text", throttle_duration_sec=1.0)``.
+
+    ``once``, ``skip_first`` and ``throttle_duration_sec`` count per line of code that calls.
+    """
+
+    def __init__(self, name: str, log: Log, publish: LogSink | None = None) -> None:
+        self.name = name
+        self._log = log
+        self.publish = publish
+        """A second place for its lines: the node's ``/rosout``."""
+        self._sites: dict[tuple[str, int], _Site] = {}
+
+    def get_child(self, name: str) -> RcutilsLogger:
+        """The logger ``parent.name``; it obeys its parent's level until it is given its own."""
+        if not name:
+            raise ValueError("Child logger name must not be empty.")
+        return RcutilsLogger(f"{self.name}.{name}" if self.name else name, self._log, self.publish)
+
+    def set_level(self, level: LoggingSeverity | int) -> None:
+        """Lines below this level are dropped. UNSET: as the parent logger."""
+        severity = LoggingSeverity(level)
+        if severity is LoggingSeverity.UNSET:
+            self._log.levels.pop(self.name, None)
+        else:
+            self._log.levels[self.name] = severity
+
+    def get_effective_level(self) -> LoggingSeverity:
+        return self._log.effective_level(self.name)
+
+    def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
+        return severity >= self.get_effective_level()
+
+    def log(self, message: str, severity: LoggingSeverity | int, **kwargs: Any) -> bool:
+        """Logs a line if level and filters let it through, and says whether they did."""
+        return self._write(message, LoggingSeverity(severity), kwargs)
+
+    def debug(self, message: str, **kwargs: Any) -> bool:
+        return self._write(message, LoggingSeverity.DEBUG, kwargs)
+
+    def info(self, message: str, **kwargs: Any) -> bool:
+        return self._write(message, LoggingSeverity.INFO, kwargs)
+
+    def warning(self, message: str, **kwargs: Any) -> bool:
+        return self._write(message, LoggingSeverity.WARN, kwargs)
+
+    warn = warning
+
+    def error(self, message: str, **kwargs: Any) -> bool:
+        return self._write(message, LoggingSeverity.ERROR, kwargs)
+
+    def fatal(self, message: str, **kwargs: Any) -> bool:
+        return self._write(message, LoggingSeverity.FATAL, kwargs)
+
+    def _write(self, message: str, severity: LoggingSeverity, filters: dict[str, Any]) -> bool:
+        if severity < self.get_effective_level():
+            return False
+        caller = sys._getframe(2)
+        place = caller.f_code.co_filename, caller.f_lineno
+        if filters and not self._passes(place, **filters):
+            return False
+        record = LogRecord(
+            self._log.now_ns(), severity, self.name, str(message), place[0], caller.f_code.co_name, place[1]
+        )
+        self._log.sink(record)
+        if self.publish is not None:
+            self.publish(record)
+        return True
+
+    def _passes(
+        self,
+        place: tuple[str, int],
+        *,
+        once: bool = False,
+        skip_first: bool = False,
+        throttle_duration_sec: float | None = None,
+        throttle_time_source_type: Clock | None = None,
+    ) -> bool:
+        site = self._sites.setdefault(place, _Site())
+        site.count += 1
+        if once and site.count > 1:
+            return False
+        if skip_first and site.count == 1:
+            return False
+        if throttle_duration_sec is None:
+            return True
+        clock = throttle_time_source_type
+        now = self._log.now_ns() if clock is None else clock.now().nanoseconds
+        last = site.last_ns
+        # A clock that went backwards starts the wait anew.
+        if last is not None and last <= now < last + int(throttle_duration_sec * S_TO_NS):
+            return False
+        site.last_ns = now
+        return True
+
+
+def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
+    """The severity called ``debug``, ``INFO``, ... Raises RuntimeError if there is none."""
+    try:
+        return LoggingSeverity[log_severity.upper()]
+    except KeyError:
+        names = ", ".join(level.name.lower() for level in LoggingSeverity)
+        raise RuntimeError(f"there is no log level '{log_severity}'; there are: {names}") from None
