@@ -53,7 +53,7 @@ class ModeChoice:
     reason: str
 
 
-UNASKED: Final = ModeChoice("repeat", "the terminal has not said whether it reports releases")
+UNASKED: Final = ModeChoice("repeat", "the terminal has not answered yet")
 
 
 def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoice:
@@ -63,7 +63,7 @@ def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoic
     """
     if reports_releases(flags):
         return ModeChoice("exact", "this terminal reports key releases")
-    return ModeChoice("repeat", f"{hidden_by or 'this terminal'} does not report key releases")
+    return ModeChoice("repeat", f"{hidden_by or 'this terminal'} reports no key releases")
 
 
 class Drive:

@@ -94,12 +94,12 @@ class TerminalGuard:
         if not self._armed:
             return
         self._armed = False
-        terminal = os.dup(self._output)
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, self._output)
+        terminal = self._output
+        with suppress(OSError):  # closed: nobody can draw then, and the input is still to be restored
+            terminal = os.dup(self._output)
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._output)
         restore_terminal(self._input, terminal, self._attributes)
-        os.close(nowhere)
-        os.close(terminal)
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         previous = self._previous.get(number)

@@ -15,7 +15,7 @@ LONGEST_DELAY: Final = 1.1
 _DELAY_WEIGHT: Final = 0.3
 _PERIOD_WEIGHT: Final = 0.1
 _JITTER_WEIGHT: Final = 0.05
-_HICCUP_WINDOW: Final = 5.0
+_STUMBLE_WINDOW: Final = 5.0
 
 
 class Rhythm:
@@ -26,11 +26,11 @@ class Rhythm:
         self.period = 0.06
         self.jitter = 0.01
         self.uneven = False
-        """Twice within five seconds a held key fell silent for more than three periods: a bad link."""
+        """Twice within five seconds a held key was silent for so long that it counted as released: a bad link."""
         self._last = 0.0
         self._repeats = 0
         self._pause: tuple[float, bool] | None = None
-        self._hiccup = -_HICCUP_WINDOW
+        self._stumbled = -_STUMBLE_WINDOW
 
     @property
     def first_timeout(self) -> float:
@@ -64,10 +64,19 @@ class Rhythm:
             self._pause = None
             self._repeats = 2
             if was_repeating:
-                self.uneven |= now - self._hiccup < _HICCUP_WINDOW
-                self._hiccup = now
+                self._stumble(pause, now)
             else:
                 self.delay += _DELAY_WEIGHT * (pause - self.delay)
         if self._repeats >= 2:  # a single quick gap is a double tap
-            self.jitter += _JITTER_WEIGHT * (abs(gap - self.period) - self.jitter)
-            self.period += _PERIOD_WEIGHT * (gap - self.period)
+            self._learn(gap)
+
+    def _stumble(self, pause: float, now: float) -> None:
+        """A held key was silent for a while."""
+        if pause > self.next_timeout:
+            self.uneven |= now - self._stumbled < _STUMBLE_WINDOW
+            self._stumbled = now
+        self._learn(pause)
+
+    def _learn(self, gap: float) -> None:
+        self.jitter += _JITTER_WEIGHT * (abs(gap - self.period) - self.jitter)
+        self.period += _PERIOD_WEIGHT * (gap - self.period)

@@ -20,17 +20,21 @@ from typing import Any
 
 import pytest
 
+_ENTER = """
+import fcntl, runpy, sys, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+del sys.argv[0]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+"""Makes the terminal the program's own, as a login does, and becomes the program."""
+
 PROGRAMS = Path(__file__).parent / "programs"
 
 KITTY_ATTRIBUTES = b"\x1b[?62;52;c"
-LONG_ATTRIBUTES = b"\x1b[?61;4;6;7;14;21;22;23;24;28;32;42;52c"
-"""Windows Terminal's: longer than what Textual's parser looks at."""
 
 
 class Modes:
     """What an app has switched on in a terminal: private modes, and keyboard flags, one stack for each screen."""
-
-    _SEQUENCE = re.compile(rb"\x1b\[\?([\d;]+)([hl])|\x1b\[([<>=?])([\d;]*)u")
 
     def __init__(self) -> None:
         self.on: set[int] = {7, 25}
@@ -45,15 +49,12 @@ class Modes:
     def keyboard(self) -> int:
         return self.flags[self.alternate]
 
-    def see(self, data: bytes) -> None:
-        for match in self._SEQUENCE.finditer(data):
-            if match[2]:
-                change = self.on.update if match[2] == b"h" else self.on.difference_update
-                change(int(number) for number in match[1].split(b";"))
-            else:
-                self._keyboard(match[3], [int(number or 0) for number in match[4].split(b";")])
+    def private(self, numbers: list[int], on: bool) -> None:
+        """``CSI ? numbers h`` or ``l``."""
+        (self.on.update if on else self.on.difference_update)(numbers)
 
-    def _keyboard(self, verb: bytes, numbers: list[int]) -> None:
+    def flag(self, verb: bytes, numbers: list[int]) -> None:
+        """``CSI > numbers u`` and its like."""
         screen = self.alternate
         if verb == b">":
             self.stacks[screen].append(self.flags[screen])
@@ -69,8 +70,12 @@ class Terminal:
     """Our side of a pseudo-terminal, and a program on the other side.
 
     ``kitty``: whether it knows the keyboard protocol. ``attributes``: its answer to ``CSI c``, None for silence.
-    The program may report to us with JSON lines on file descriptor 3.
+    The program may report to us with JSON lines, to the file descriptor named by REPORT in its environment.
     """
+
+    _SEQUENCE = re.compile(
+        rb"\x1b\[(?:(?P<question>\?u|c|6n)|\?(?P<switched>[\d;]+)(?P<switch>[hl])|(?P<verb>[<>=])(?P<flags>[\d;]*)u)"
+    )
 
     def __init__(
         self, *program: str, kitty: bool = True, attributes: bytes | None = KITTY_ATTRIBUTES
@@ -79,14 +84,14 @@ class Terminal:
         self.modes = Modes()
         self.output = b""
         self.reports: list[Any] = []
-        self._answered = 0
+        self._followed = 0
         self._pending = b""
         self.fd, self.other_fd = pty.openpty()
         fcntl.ioctl(self.other_fd, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
         self.attributes_before = termios.tcgetattr(self.other_fd)
         self._reports_fd, report_fd = os.pipe()
         self.process = subprocess.Popen(
-            [sys.executable, *program],
+            [sys.executable, "-c", _ENTER, *program],
             stdin=self.other_fd,
             stdout=self.other_fd,
             stderr=self.other_fd,
@@ -98,7 +103,6 @@ class Terminal:
             },
             pass_fds=[report_fd],
             start_new_session=True,
-            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # the child's own, as a shell would do
         )
         os.close(report_fd)
 
@@ -110,23 +114,29 @@ class Terminal:
         readable = select.select([self.fd, self._reports_fd], [], [], seconds)[0]
         if self.fd in readable:
             with contextlib.suppress(OSError):
-                data = os.read(self.fd, 65536)
-                self.output += data
-                self.modes.see(data)
-                self._answer()
+                self.output += os.read(self.fd, 65536)
+                self._follow()
         if self._reports_fd in readable:
             self._pending += os.read(self._reports_fd, 65536)
             *lines, self._pending = self._pending.split(b"\n")
             self.reports += [json.loads(line) for line in lines]
 
-    def _answer(self) -> None:
-        for match in re.compile(rb"\x1b\[\?u|\x1b\[c|\x1b\[6n").finditer(self.output, self._answered):
-            self._answered = match.end()
-            if match[0] == b"\x1b[?u" and self.kitty:
+    def _follow(self) -> None:
+        """Does what is new in the output, and answers each question as things are at that moment."""
+        for match in self._SEQUENCE.finditer(self.output, self._followed):
+            self._followed = match.end()
+            numbers = [
+                int(number or 0) for number in (match["switched"] or match["flags"] or b"").split(b";")
+            ]
+            if match["switch"]:
+                self.modes.private(numbers, match["switch"] == b"h")
+            elif match["verb"]:
+                self.modes.flag(match["verb"], numbers)
+            elif match["question"] == b"?u" and self.kitty:
                 self.send(b"\x1b[?%du" % self.modes.keyboard)
-            elif match[0] == b"\x1b[c" and self.attributes:
+            elif match["question"] == b"c" and self.attributes:
                 self.send(self.attributes)
-            elif match[0] == b"\x1b[6n":
+            elif match["question"] == b"6n":
                 self.send(b"\x1b[12;34R")
 
     def until(self, condition: Callable[[], object], what: str, limit: float = 20.0) -> None:

@@ -21,6 +21,7 @@ from kit.tui.input.protocol import RELEASES_OFF, RELEASES_ON
 
 Run = Callable[..., Any]
 LONG_ATTRIBUTES = b"\x1b[?61;4;6;7;14;21;22;23;24;28;32;42;52c"
+"""Windows Terminal's: longer than what Textual's parser looks at."""
 
 
 @pytest.fixture

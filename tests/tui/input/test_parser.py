@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import pytest
 from textual import events
@@ -94,7 +95,7 @@ def summary(text: str, *, piecewise: bool = False) -> list[object]:
     return [one(event) for event in parse(text, piecewise=piecewise)]
 
 
-CASES: dict[str, list[object]] = (
+CASES: dict[str, Any] = (
     {text: [("down", key)] for text, key in PRESSES.items()}
     | {text: [("up", key)] for text, key in RELEASES.items()}
     | {text: [("again", *what)] for text, what in REPEATS.items()}
