@@ -36,6 +36,9 @@ class Plugin:
     def reset(self, seed: int) -> None:
         """Back to how it was when built, with noise that depends on ``seed`` alone."""
 
+    def moved(self) -> None:
+        """Called after a service has put its model elsewhere."""
+
     def accept(self, topic: str, message: Any) -> None:
         """Takes a message that arrived on one of its subscribed topics."""
 

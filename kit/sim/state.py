@@ -32,6 +32,14 @@ class Contact:
     force: float
     """Mean impulse over the step divided by its length [N]; a rough figure."""
 
+    @property
+    def reversed(self) -> Contact:
+        """The same, seen from the other side."""
+        x, y = self.normal
+        return Contact(
+            self.entity_b, self.body_b, self.entity_a, self.body_a, self.points, (-x, -y), self.force
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class SimulationState:

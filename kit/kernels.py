@@ -1,0 +1,452 @@
+"""All compiled code of the project: every formula once, as a scalar function; loops over arrays below.
+
+It is one file because numba's disk cache does not notice an edit in another one. Lengths in metres, angles
+in radians, counter-clockwise. Nothing here allocates more than a few rays' worth of scratch, and nothing
+depends on the order in which worlds, rays or walls are taken: one world and many give the same bits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias, TypeVar, cast
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Single: TypeAlias = np.float32
+Bits: TypeAlias = np.uint64
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Integers = NDArray[np.int64]
+
+
+def jit(function: Function) -> Function:
+    """Compiles on first use and remembers it on disk.
+
+    A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
+    ``fastmath`` stays off, for it gives other bits on other processors.
+    """
+    return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
+
+
+# --- motion -----------------------------------------------------------------------------------------------
+
+
+@jit
+def mean_velocity(
+    theta: float, forward: float, lateral: float, turn: float, dt: float
+) -> tuple[float, float]:
+    """The chord of an arc, as a velocity [m/s] in the world: where a constant twist leads in ``dt``, over ``dt``.
+
+    ``theta``: heading at the start; ``forward``, ``lateral`` [m/s], ``turn`` [rad/s]: the twist, in the body's
+    own frame. A body that keeps it runs along a circle; the chord points along the heading at half time and
+    is shorter than the arc by sin(h) / h, h = turn * dt / 2.
+    """
+    half = 0.5 * turn * dt
+    shrink = math.sin(half) / half if half != 0.0 else 1.0
+    cos, sin = shrink * math.cos(theta + half), shrink * math.sin(theta + half)
+    return cos * forward - sin * lateral, sin * forward + cos * lateral
+
+
+@jit
+def twist_step(
+    x: float, y: float, theta: float, forward: float, lateral: float, turn: float, dt: float
+) -> tuple[float, float, float]:
+    """The pose after ``dt`` of a constant twist: exact, so that ten short steps lead where a long one does."""
+    vx, vy = mean_velocity(theta, forward, lateral, turn, dt)
+    return x + vx * dt, y + vy * dt, theta + turn * dt
+
+
+@jit
+def tricycle_twist(speed: float, steering: float, wheelbase: float) -> tuple[float, float]:
+    """Forward [m/s] and turn rate [rad/s] at the rear axle of a front-driven tricycle.
+
+    ``speed``: of the front wheel's rim; ``steering``: its angle. The front wheel's axle and the rear one
+    meet in the centre of the turn (bicycle model).
+    """
+    return speed * math.cos(steering), speed * math.sin(steering) / wheelbase
+
+
+@jit
+def approach(current: float, target: float, limit: float, dt: float) -> float:
+    """``current`` moved towards ``target`` by at most ``limit * dt``; all the way if ``limit`` is 0 (none)."""
+    if limit <= 0.0:
+        return target
+    return current + min(max(target - current, -limit * dt), limit * dt)
+
+
+@jit
+def limited_speed(
+    current: float, target: float, acceleration: float, deceleration: float, top: float, dt: float
+) -> float:
+    """The speed after ``dt`` of a motor asked for ``target``; a limit of 0 is none.
+
+    Gaining speed is limited by ``acceleration``, losing it by ``deceleration``; on the way through zero the
+    step is shared: first it brakes, and what is left of ``dt`` it accelerates.
+    """
+    if top > 0.0:
+        target = min(max(target, -top), top)
+    if current * target >= 0.0:
+        return approach(current, target, deceleration if abs(target) < abs(current) else acceleration, dt)
+    braking = abs(current) / deceleration if deceleration > 0.0 else 0.0
+    if braking >= dt:
+        return approach(current, 0.0, deceleration, dt)
+    return approach(0.0, target, acceleration, dt - braking)
+
+
+# --- rays: distance to the nearest thing so far -----------------------------------------------------------
+# In single precision, relative to the sensor. Branch-free, so that the loops over rays vectorise.
+
+
+@jit
+def ray_segment(
+    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, far: Single
+) -> Single:
+    """How far the ray ``(cos, sin)`` from the origin runs to the segment a-b, or ``far`` if not nearer.
+
+    It crosses the segment where a and b lie on different sides of it: cross(ray, a) * cross(ray, b) <= 0.
+    Two segments that share an end share that product's factor, so no ray slips between them. A ray along
+    the segment meets nothing (0 / 0), as in Box2D.
+    """
+    a = cos * ay - sin * ax
+    b = cos * by - sin * bx
+    distance = (ax * by - ay * bx) / (b - a)
+    return distance if (a * b <= 0) & (distance >= 0) & (distance < far) else far
+
+
+@jit
+def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, far: Single) -> Single:
+    """The same for the circle about ``(x, y)``. A ray that starts inside does not meet it."""
+    along = cos * x + sin * y
+    across = cos * y - sin * x
+    distance = along - np.sqrt(radius * radius - across * across)  # nan where it misses: no comparison holds
+    return distance if (distance >= 0) & (distance < far) else far
+
+
+# --- points, segments, convex polygons --------------------------------------------------------------------
+# ``corners``: (k, 2), counter-clockwise.
+
+
+@jit
+def point_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Distance from a point to the segment a-b, which may be a point too."""
+    dx, dy = bx - ax, by - ay
+    length2 = dx * dx + dy * dy
+    t = ((x - ax) * dx + (y - ay) * dy) / length2 if length2 > 0.0 else 0.0
+    t = min(max(t, 0.0), 1.0)
+    return math.hypot(ax + t * dx - x, ay + t * dy - y)
+
+
+@jit
+def point_in_polygon(x: float, y: float, corners: Floats) -> bool:
+    """Whether the point lies inside a convex polygon or on its rim."""
+    last = corners.shape[0] - 1
+    for i in range(corners.shape[0]):
+        j = i - 1 if i else last
+        ex, ey = corners[i, 0] - corners[j, 0], corners[i, 1] - corners[j, 1]
+        if ex * (y - corners[j, 1]) - ey * (x - corners[j, 0]) < 0.0:
+            return False
+    return True
+
+
+@jit
+def point_polygon(x: float, y: float, corners: Floats) -> float:
+    """Distance from a point to a convex polygon; 0 inside."""
+    if point_in_polygon(x, y, corners):
+        return 0.0
+    nearest = math.inf
+    last = corners.shape[0] - 1
+    for i in range(corners.shape[0]):
+        j = i - 1 if i else last
+        nearest = min(
+            nearest, point_segment(x, y, corners[j, 0], corners[j, 1], corners[i, 0], corners[i, 1])
+        )
+    return nearest
+
+
+@jit
+def segment_meets_polygon(ax: float, ay: float, bx: float, by: float, corners: Floats) -> bool:
+    """Whether the segment a-b and a convex polygon have a point in common.
+
+    Cyrus and Beck (1978): each edge cuts off the part of the segment that lies outside of it.
+    """
+    enters, leaves = 0.0, 1.0
+    last = corners.shape[0] - 1
+    for i in range(corners.shape[0]):
+        j = i - 1 if i else last
+        ex, ey = corners[i, 0] - corners[j, 0], corners[i, 1] - corners[j, 1]
+        inside = ex * (ay - corners[j, 1]) - ey * (ax - corners[j, 0])
+        slope = ex * (by - ay) - ey * (bx - ax)
+        if slope > 0.0:
+            enters = max(enters, -inside / slope)
+        elif slope < 0.0:
+            leaves = min(leaves, -inside / slope)
+        elif inside < 0.0:
+            return False
+    return enters <= leaves
+
+
+@jit
+def segment_polygon(ax: float, ay: float, bx: float, by: float, corners: Floats) -> float:
+    """Distance between the segment a-b and a convex polygon; 0 where they meet."""
+    if segment_meets_polygon(ax, ay, bx, by, corners):
+        return 0.0
+    nearest = min(point_polygon(ax, ay, corners), point_polygon(bx, by, corners))
+    for i in range(corners.shape[0]):
+        nearest = min(nearest, point_segment(corners[i, 0], corners[i, 1], ax, ay, bx, by))
+    return nearest
+
+
+# --- noise: a value for every (key, counter) --------------------------------------------------------------
+
+
+@jit
+def scrambled(z: Bits) -> Bits:
+    """64 bits, well mixed: the finaliser of splitmix64 (Steele, Lea and Flood 2014)."""
+    z = (z ^ (z >> Bits(30))) * Bits(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> Bits(27))) * Bits(0x94D049BB133111EB)
+    return z ^ (z >> Bits(31))
+
+
+@jit
+def random_bits(key: int, counter: int) -> Bits:
+    """64 bits that depend on ``(key, counter)`` alone: whoever draws first, draws the same."""
+    golden = Bits(0x9E3779B97F4A7C15)
+    return scrambled(scrambled(Bits(key) + golden) + Bits(counter) * golden)
+
+
+@jit
+def uniform(key: int, counter: int) -> float:
+    """Uniform in [0, 1), 53 bits."""
+    return float(random_bits(key, counter) >> Bits(11)) * (1.0 / 9007199254740992.0)
+
+
+@jit
+def normal(key: int, counter: int) -> float:
+    """Standard normal: Box and Muller (1958), from the two halves of one draw; never beyond 6.8."""
+    bits = random_bits(key, counter)
+    first = (float(bits >> Bits(32)) + 0.5) * (1.0 / 4294967296.0)
+    second = float(bits & Bits(0xFFFFFFFF)) * (1.0 / 4294967296.0)
+    return math.sqrt(-2.0 * math.log(first)) * math.cos(2.0 * math.pi * second)
+
+
+# --- what a lidar sees ------------------------------------------------------------------------------------
+
+
+class Segments(NamedTuple):
+    """Walls, sorted into blocks of neighbours, each within a circle; made by ``in_blocks``."""
+
+    ends: Floats
+    """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
+    starts: Integers
+    """(blocks + 1): block k is ``ends[starts[k]:starts[k + 1]]``."""
+    circles: Floats
+    """(blocks, 3) ``x y radius``, each containing its block."""
+
+
+class Shapes(NamedTuple):
+    """Circles and convex polygons, in world coordinates or in those of their bodies, and their layer bits."""
+
+    circles: Floats
+    """(circles, 3) ``x y radius``."""
+    circle_bits: Integers
+    corners: Floats
+    """(corners, 2), polygon after polygon, counter-clockwise."""
+    starts: Integers
+    """(polygons + 1): polygon k is ``corners[starts[k]:starts[k + 1]]``."""
+    polygon_bits: Integers
+
+
+class Beams(NamedTuple):
+    """The directions of a lidar's rays in its own frame, ``(rays,)`` each."""
+
+    cos: Floats
+    sin: Floats
+
+
+def in_blocks(ends: Floats, size: int = 16) -> Segments:
+    """Walls ``(n, 4)`` as a lidar wants them: halved along the longer side until no block exceeds ``size``.
+
+    A scan then looks at a block only where some ray meets its circle; measured best at 8 to 32.
+    """
+    middles = 0.5 * (ends[:, :2] + ends[:, 2:])
+    blocks, waiting = [], [np.arange(len(ends))]
+    while waiting:
+        block = waiting.pop()
+        if len(block) <= size:
+            blocks.append(block)
+            continue
+        longer = int(np.argmax(np.ptp(middles[block], axis=0)))
+        block = block[np.argsort(middles[block, longer], kind="stable")]
+        waiting += [block[len(block) // 2 :], block[: len(block) // 2]]
+    starts = np.cumsum([0] + [len(block) for block in blocks], dtype=np.int64)
+    ordered = np.ascontiguousarray(ends[np.concatenate(blocks)], dtype=np.float64)
+    circles = np.zeros((len(blocks), 3))
+    for k in range(len(blocks) if len(ends) else 0):
+        points = ordered[starts[k] : starts[k + 1]].reshape(-1, 2)
+        circles[k, :2] = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        circles[k, 2] = np.hypot(*(points - circles[k, :2]).T).max()
+    return Segments(ordered, starts, circles)
+
+
+@jit
+def rays_meeting(
+    cos: Singles, sin: Singles, x: Single, y: Single, radius: Single, far: Singles
+) -> tuple[int, int]:
+    """The first and one past the last ray that meets a disc nearer than ``far``; (rays, 0) if there is none.
+
+    The disc is taken a little larger than it is, to make up for single precision.
+    """
+    rays = np.int32(cos.shape[0])
+    first, end = rays, np.int32(0)
+    radius += Single(1e-5) * (Single(1) + abs(x) + abs(y) + radius)
+    for i in range(rays):
+        along = cos[i] * x + sin[i] * y
+        across = cos[i] * y - sin[i] * x
+        meets = (abs(across) <= radius) & (along >= -radius) & (along - radius < far[i])
+        ray = np.int32(i)
+        first = min(first, ray if meets else rays)
+        end = max(end, ray + np.int32(1) if meets else np.int32(0))
+    return int(first), int(end)
+
+
+@jit
+def meet_segment(
+    cos: Singles, sin: Singles, ax: float, ay: float, bx: float, by: float, ranges: Singles
+) -> None:
+    """Shortens every range to the segment a-b, given relative to the sensor."""
+    x1, y1, x2, y2 = Single(ax), Single(ay), Single(bx), Single(by)
+    for i in range(ranges.shape[0]):
+        ranges[i] = ray_segment(cos[i], sin[i], x1, y1, x2, y2, ranges[i])
+
+
+@jit
+def meet_walls(x: float, y: float, cos: Singles, sin: Singles, walls: Segments, ranges: Singles) -> None:
+    """Shortens every range to the nearest wall."""
+    for k in range(walls.circles.shape[0]):
+        cx, cy = Single(walls.circles[k, 0] - x), Single(walls.circles[k, 1] - y)
+        first, end = rays_meeting(cos, sin, cx, cy, Single(walls.circles[k, 2]), ranges)
+        if first >= end:
+            continue
+        near_cos, near_sin, near = cos[first:end], sin[first:end], ranges[first:end]
+        for j in range(walls.starts[k], walls.starts[k + 1]):
+            ax, ay = walls.ends[j, 0] - x, walls.ends[j, 1] - y
+            bx, by = walls.ends[j, 2] - x, walls.ends[j, 3] - y
+            meet_segment(near_cos, near_sin, ax, ay, bx, by, near)
+
+
+@jit
+def meet_shapes(
+    x: float, y: float, cos: Singles, sin: Singles, shapes: Shapes, bits: int, ranges: Singles
+) -> None:
+    """Shortens every range to the nearest shape on one of the layers ``bits``, but for those around the sensor."""
+    for k in range(shapes.circles.shape[0]):
+        if shapes.circle_bits[k] & bits == 0:
+            continue
+        cx, cy = Single(shapes.circles[k, 0] - x), Single(shapes.circles[k, 1] - y)
+        radius = Single(shapes.circles[k, 2])
+        for i in range(ranges.shape[0]):
+            ranges[i] = ray_circle(cos[i], sin[i], cx, cy, radius, ranges[i])
+    for k in range(shapes.polygon_bits.shape[0]):
+        corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
+        if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
+            continue
+        a = corners[corners.shape[0] - 1]
+        for j in range(corners.shape[0]):
+            b = corners[j]
+            meet_segment(cos, sin, a[0] - x, a[1] - y, b[0] - x, b[1] - y, ranges)
+            a = b
+
+
+@jit
+def scan(
+    pose: tuple[float, float, float],
+    beams: Beams,
+    reach: float,
+    walls: Segments,
+    shapes: Shapes,
+    bits: int,
+    ranges: Singles,
+) -> None:
+    """Fills ``ranges`` (rays,) with the distance along each ray to the nearest wall or shape; NaN beyond reach.
+
+    Exact: positions are subtracted in double precision, the rest is single precision (errors below a micrometre
+    per metre). ``walls`` are all seen; ``shapes`` where their layer bits meet ``bits``; a shape around the
+    sensor is not seen. Rays are the inner loop, for there vector instructions take 4 to 16 at once.
+    """
+    x, y, theta = pose
+    turn_cos, turn_sin = math.cos(theta), math.sin(theta)
+    cos, sin = np.empty_like(ranges), np.empty_like(ranges)
+    for i in range(ranges.shape[0]):
+        cos[i] = turn_cos * beams.cos[i] - turn_sin * beams.sin[i]
+        sin[i] = turn_sin * beams.cos[i] + turn_cos * beams.sin[i]
+    far = Single(reach)
+    ranges[:] = far
+    meet_walls(x, y, cos, sin, walls, ranges)
+    meet_shapes(x, y, cos, sin, shapes, bits, ranges)
+    for i in range(ranges.shape[0]):
+        if ranges[i] >= far:
+            ranges[i] = np.nan
+
+
+@jit
+def add_noise(ranges: Singles, deviation: float, key: int, first: int) -> None:
+    """Adds normal noise: ray i draws number ``first + i`` of ``key``. NaN stays NaN."""
+    for i in range(ranges.shape[0]):
+        ranges[i] += Single(deviation * normal(key, first + i))
+
+
+@jit
+def sector_minima(ranges: Singles, far: float, minima: Floats) -> None:
+    """Fills ``minima`` with the shortest range of each sector, ``far`` where a sector sees nothing.
+
+    Sectors have ``rays // sectors`` rays each, the last also those left over.
+    """
+    width = ranges.shape[0] // minima.shape[0]
+    minima[:] = far
+    for i in range(ranges.shape[0]):
+        sector = min(i // width, minima.shape[0] - 1)
+        if ranges[i] < minima[sector]:
+            minima[sector] = ranges[i]
+
+
+@jit
+def place_shapes(
+    poses: Floats, circle_body: Integers, corner_body: Integers, local: Shapes, world: Shapes
+) -> None:
+    """Fills ``world`` with the shapes of ``local``, each carried by its body's pose.
+
+    ``poses``: (bodies, 3) ``x y theta``; ``circle_body``, ``corner_body``: which body a circle or corner is on.
+    """
+    for k in range(local.circles.shape[0]):
+        x, y, theta = poses[circle_body[k]]
+        cos, sin = math.cos(theta), math.sin(theta)
+        world.circles[k, 0] = x + cos * local.circles[k, 0] - sin * local.circles[k, 1]
+        world.circles[k, 1] = y + sin * local.circles[k, 0] + cos * local.circles[k, 1]
+        world.circles[k, 2] = local.circles[k, 2]
+    for k in range(local.corners.shape[0]):
+        x, y, theta = poses[corner_body[k]]
+        cos, sin = math.cos(theta), math.sin(theta)
+        world.corners[k, 0] = x + cos * local.corners[k, 0] - sin * local.corners[k, 1]
+        world.corners[k, 1] = y + sin * local.corners[k, 0] + cos * local.corners[k, 1]
+
+
+def warm() -> None:
+    """Compiles, or loads from disk, what the interactive world calls: seconds the first time, then moments."""
+    ranges = np.ones(2, dtype=np.float32)
+    walls = in_blocks(np.array([[1.0, -1.0, 1.0, 1.0]]))
+    none, ints = np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
+    shapes = Shapes(np.zeros((0, 3)), ints, none, np.zeros(1, dtype=np.int64), ints)
+    scan((0.0, 0.0, 0.0), Beams(np.ones(2), np.zeros(2)), 2.0, walls, shapes, 1, ranges)
+    add_noise(ranges, 0.0, 1, 0)
+    place_shapes(np.zeros((1, 3)), ints, ints, shapes, shapes)
+    sector_minima(ranges, 2.0, np.zeros(1))
+    twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
+    mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
+    tricycle_twist(1.0, 0.0, 1.0)
+    limited_speed(0.0, 1.0, 1.0, 1.0, 1.0, 0.1)
+    normal(1, 0)
+    uniform(1, 0)

@@ -1,0 +1,159 @@
+"""The bodies of a model as pymunk has them, and as devices handle them.
+
+A drive's velocity is the chord of the exact arc, so that where a robot gets to does not depend on the length
+of the step, and turning on the spot does not drift.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import pymunk
+
+from kit import kernels
+from kit.geometry import Pose
+from kit.world.records import Body
+
+Twist = tuple[float, float, float]
+"""Forward and to the left [m/s], turn [rad/s], in a body's own frame."""
+
+
+@dataclass(eq=False, slots=True)
+class Rigid:
+    """One pymunk body: a body of a model, or several that stiff welds make one."""
+
+    body: pymunk.Body
+    reach: float
+    """Its farthest point from the centre of mass [m]."""
+    stride: float
+    """How far it may move at once and still not pass through a wall [m]."""
+    top_speed: float
+    """Nothing commands it to be faster [m/s] ..."""
+    top_turn: float
+    """... or to turn faster [rad/s]."""
+    is_static: bool
+    linear_damping: float
+    angular_damping: float
+    command: Twist | None = None
+    """What a drive asks for in the next step, of the centre of mass."""
+
+    @property
+    def pose(self) -> Pose:
+        """Of its origin, in the world."""
+        x, y = self.body.position
+        return Pose(x, y, self.body.angle)
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """The centre of mass in its own frame [m]."""
+        x, y = self.body.center_of_gravity
+        return x, y
+
+    def place(self, pose: Pose) -> None:
+        """Puts it there. Velocities stay."""
+        self.body.angle = pose.theta
+        self.body.position = pose.x, pose.y
+        if self.is_static and self.body.space is not None:
+            self.body.space.reindex_shapes_for_body(self.body)
+
+    def speed(self) -> float:
+        """No point of it is faster in the next step [m/s], unless something hits it."""
+        if self.command is not None:
+            forward, lateral, turn = self.command
+            return math.hypot(forward, lateral) + abs(turn) * self.reach
+        return self.body.velocity.length + abs(self.body.angular_velocity) * self.reach
+
+    def accelerate(self, dt: float) -> None:
+        """Takes on the velocity of the next ``dt``, before contacts act on it."""
+        body = self.body
+        if self.command is not None:
+            body.velocity = kernels.mean_velocity(body.angle, *self.command, dt)
+            body.angular_velocity = self.command[2]
+        if self.linear_damping:
+            body.velocity /= 1.0 + dt * self.linear_damping
+        if self.angular_damping:
+            body.angular_velocity /= 1.0 + dt * self.angular_damping
+
+    def move(self, dt: float) -> None:
+        """Follows its velocity for ``dt``, after contacts acted on it; at most a stride."""
+        body = self.body
+        distance = (body.velocity.length + abs(body.angular_velocity) * self.reach) * dt
+        if distance > self.stride:
+            body.velocity *= self.stride / distance
+            body.angular_velocity *= self.stride / distance
+        pymunk.Body.update_position(body, dt)
+
+
+@dataclass(eq=False, slots=True)
+class PhysicalBody:
+    """A body of a model in the simulation. Poses and velocities are those of its origin, wherever its mass is."""
+
+    model: str
+    description: Body
+    rigid: Rigid
+    offset: Pose
+    """Its pose in the frame of the rigid body."""
+    shapes: list[pymunk.Shape] = field(default_factory=list)
+    """One per footprint."""
+
+    @property
+    def name(self) -> str:
+        return self.description.name
+
+    @property
+    def pose(self) -> Pose:
+        """In the world."""
+        return self.rigid.pose.compose(self.offset)
+
+    @property
+    def velocity(self) -> tuple[float, float, float]:
+        """In the world frame: m/s, m/s, rad/s."""
+        x, y = self._from_center()
+        vx, vy = self.rigid.body.velocity
+        turn = self.rigid.body.angular_velocity
+        return vx - turn * y, vy + turn * x, turn
+
+    @property
+    def twist(self) -> Twist:
+        """The velocity in the body's own frame."""
+        vx, vy, turn = self.velocity
+        theta = self.pose.theta
+        cos, sin = math.cos(theta), math.sin(theta)
+        return cos * vx + sin * vy, cos * vy - sin * vx, turn
+
+    def set_velocity(self, vx: float, vy: float, turn: float) -> None:
+        """Sets the velocity in the world frame once; from there on nature takes its course."""
+        x, y = self._from_center()
+        self.rigid.body.velocity = (
+            clipped(vx + turn * y, self.rigid.top_speed),
+            clipped(vy - turn * x, self.rigid.top_speed),
+        )
+        self.rigid.body.angular_velocity = clipped(turn, self.rigid.top_turn)
+
+    def drive(self, forward: float, lateral: float, turn: float) -> None:
+        """Moves the body with this twist for one step, whatever it weighs, as far as contacts let it."""
+        forward, lateral = clipped(forward, self.rigid.top_speed), clipped(lateral, self.rigid.top_speed)
+        turn = clipped(turn, self.rigid.top_turn)
+        x, y = self.rigid.center
+        cos, sin = math.cos(self.offset.theta), math.sin(self.offset.theta)
+        self.rigid.command = (
+            cos * forward - sin * lateral - turn * (y - self.offset.y),
+            sin * forward + cos * lateral + turn * (x - self.offset.x),
+            turn,
+        )
+
+    def place(self, pose: Pose) -> None:
+        """Puts the body, and what is stiffly welded to it, there. Velocities stay."""
+        self.rigid.place(pose.compose(self.offset.relative(Pose())))
+
+    def _from_center(self) -> tuple[float, float]:
+        """The origin as seen from the centre of mass, in the world frame [m]."""
+        cx, cy = self.rigid.center
+        theta = self.rigid.body.angle
+        return Pose(0.0, 0.0, theta).point(self.offset.x - cx, self.offset.y - cy)
+
+
+def clipped(value: float, limit: float) -> float:
+    """``value``, or the limit that it exceeds."""
+    return min(max(value, -limit), limit)

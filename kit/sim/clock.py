@@ -1,0 +1,48 @@
+"""Simulated time, and what happens at a rate of its own."""
+
+from __future__ import annotations
+
+import math
+
+from kit.msg.builtin_interfaces import Time
+
+NEVER = 2.0**31 - 1.0
+"""The period [s] of rate 0: the first update, at time 0, is the only one."""
+
+
+class Clock:
+    """Counts steps. Time is computed from the count, so that it does not drift."""
+
+    def __init__(self, step_size: float) -> None:
+        self.step_size = step_size
+        """[s]"""
+        self.tick = 0
+
+    @property
+    def time_ns(self) -> int:
+        return round(self.tick * self.step_size * 1e9)
+
+    @property
+    def stamp(self) -> Time:
+        """Now, as messages carry it."""
+        seconds, nanoseconds = divmod(self.time_ns, 1_000_000_000)
+        return Time(sec=seconds, nanosec=nanoseconds)
+
+
+class UpdateTimer:
+    """Says in which steps something with a rate is due: where a multiple of its period falls into the step.
+
+    ``rate`` [Hz]: inf means every step, 0 only the very first. As in Flatland, time is compared from the middle
+    of the step, so that a multiple that rounding moves a little still falls into its own step.
+    """
+
+    def __init__(self, rate: float, clock: Clock) -> None:
+        self._clock = clock
+        self._every_step = math.isinf(rate)
+        self._period = 1.0 / rate if rate > 0.0 else NEVER
+
+    def due(self) -> bool:
+        if self._every_step:
+            return True
+        step = self._clock.step_size
+        return math.fmod((self._clock.tick + 0.5) * step, self._period) < step

@@ -1,0 +1,192 @@
+"""What a drive says about its motion: odometry, ground truth, twist, and where the odometry frame is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit import kernels
+from kit.geometry import Pose
+from kit.msg import geometry_msgs, nav_msgs
+from kit.msg.std_msgs import Header
+from kit.msg.tf2_msgs import TFMessage
+from kit.sim.bodies import PhysicalBody, Twist
+from kit.sim.clock import UpdateTimer
+from kit.sim.keys import read_rate, read_topic, read_variances
+from kit.sim.messages import TF_TOPIC, pose_message, transform, transforms, twist_message
+from kit.sim.noise import Noise, stream_of
+from kit.sim.plugin import Outgoing
+from kit.sim.site import Publisher, Site
+from kit.world.reading import Section
+
+Covariances = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Of pose and twist, (36,) each."""
+
+_EXACT: Covariances = np.zeros(36), np.zeros(36)
+
+MODES = MappingProxyType({"ideal": False, "encoders": True})
+
+
+@dataclass(frozen=True, slots=True)
+class OdometryParams:
+    """The keys that all drives share; see ``Odometry``."""
+
+    odom_topic: str
+    ground_truth_topic: str
+    twist_topic: str
+    odom_frame: str
+    ground_truth_frame: str
+    rate: float
+    publish_odom: bool
+    publish_twist: bool
+    publish_tf: bool
+    pose_noise: tuple[float, ...]
+    """Variances of x, y [m^2], yaw [rad^2]."""
+    twist_noise: tuple[float, ...]
+    """Variances of forward, lateral [m^2/s^2], turn [rad^2/s^2]."""
+    pose_covariance: tuple[float, ...]
+    """36 numbers, row by row."""
+    twist_covariance: tuple[float, ...]
+    encoders: bool
+    wheel_separation: float
+    """[m]"""
+    wheel_error: float
+    """Standard deviation of a wheel's radius, as a fraction."""
+    wheel_slip: float
+    """Standard deviation of the way a wheel seems to have gone, in m per root of a metre."""
+
+
+def read_odometry(section: Section) -> OdometryParams:
+    odom_frame = section.name("odom_frame_id", "odom")
+    pose_noise = read_variances(section, "odom_pose_noise")
+    twist_noise = read_variances(section, "odom_twist_noise")
+    return OdometryParams(
+        odom_topic=read_topic(section, "odom_pub", "odometry/filtered"),
+        ground_truth_topic=read_topic(section, "ground_truth_pub", "odometry/ground_truth"),
+        twist_topic=read_topic(section, "twist_pub", "twist"),
+        odom_frame=odom_frame,
+        ground_truth_frame=section.name("ground_truth_frame_id", odom_frame),
+        rate=read_rate(section, "pub_rate"),
+        publish_odom=section.flag("enable_odom_pub", True),
+        publish_twist=section.flag("enable_twist_pub", True),
+        publish_tf=section.flag("enable_odom_tf_pub", True),
+        pose_noise=pose_noise,
+        twist_noise=twist_noise,
+        pose_covariance=section.numbers("odom_pose_covariance", _on_diagonal(pose_noise), length=36),
+        twist_covariance=section.numbers("odom_twist_covariance", _on_diagonal(twist_noise), length=36),
+        encoders=section.choice("odometry", MODES, "ideal"),
+        wheel_separation=section.number("wheel_separation", 0.145, above=0),
+        wheel_error=section.number("wheel_error", 0.005, minimum=0),
+        wheel_slip=section.number("wheel_slip", 0.002, minimum=0),
+    )
+
+
+def _on_diagonal(variances: Sequence[float]) -> tuple[float, ...]:
+    """6 x 6, in ROS's order x, y, z, roll, pitch, yaw."""
+    x, y, yaw = variances
+    return tuple(float(v) for v in np.diag([x, y, 0.0, 0.0, 0.0, yaw]).ravel())
+
+
+class Odometry:
+    """Reports the motion of one body that a drive moves.
+
+    Ground truth is the true pose; ``odometry: ideal`` is the same, plus white noise with the given variances. With
+    ``odometry: encoders`` it is what encoders on two wheels, ``wheel_separation`` apart, make of the commanded
+    motion, and drifts: the radius of each wheel is wrong by a fraction drawn once, and every way is
+    measured with an error that grows with the root of its length. Against a wall the wheels slip, and the
+    encoders count on; lifted and put elsewhere (``move_model``), they do not notice.
+
+    Poses are those before the step, twists those just commanded, in the body's own frame: Flatland's ROS 2 port
+    gives them in the world frame, against the definition of nav_msgs/Odometry.
+    """
+
+    def __init__(self, params: OdometryParams, site: Site, body: PhysicalBody, ahead: float = 0.0) -> None:
+        """``ahead``: how far the body's origin lies before the axle of the two wheels [m]."""
+        self._params = params
+        self._body = body
+        self._ahead = ahead
+        self._clock = site.clock
+        self._timer = UpdateTimer(params.rate, site.clock)
+        self._base_frame = site.model.frame(body.name)
+        self._odom_frame = site.model.frame(params.odom_frame)
+        self._truth_frame = site.model.frame(params.ground_truth_frame)
+        self._odom = site.publisher(params.odom_topic, nav_msgs.Odometry)
+        self._truth = site.publisher(params.ground_truth_topic, nav_msgs.Odometry)
+        self._twist = site.publisher(params.twist_topic, geometry_msgs.TwistStamped)
+        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        enabled = {
+            self._odom: params.publish_odom,
+            self._truth: params.publish_odom,
+            self._twist: params.publish_twist,
+            self._tf: params.publish_tf,
+        }
+        self._covariances = np.array(params.pose_covariance), np.array(params.twist_covariance)
+        self._enabled = [publisher for publisher, is_on in enabled.items() if is_on]
+        self.endpoints = [publisher.endpoint for publisher in self._enabled]
+
+    def reset(self, seed: int) -> None:
+        self._noise = Noise(seed)
+        wheels = Noise(stream_of(seed, "wheel radius"))
+        self._wheel_errors = [wheels.normal(side, self._params.wheel_error) for side in (0, 1)]
+        self._slips = Noise(stream_of(seed, "wheel slip"))
+        self._counted = self._body.pose
+        """Where the encoders believe the body is."""
+
+    def step(self, twist: Twist, dt: float) -> list[Outgoing]:
+        """What is to be said now, before the body moves with ``twist`` for ``dt``."""
+        sent = self._report(twist) if self._timer.due() else []
+        if self._params.encoders:
+            self._count(twist, dt)
+        return sent
+
+    def _count(self, twist: Twist, dt: float) -> None:
+        """Follows the motion as the encoders see it."""
+        half = self._params.wheel_separation / 2
+        left, right = (
+            self._measured(side, (twist[0] - twist[2] * offset) * dt)
+            for side, offset in enumerate((half, -half))
+        )
+        forward, turn = (left + right) / 2 / dt, (right - left) / (2 * half) / dt
+        self._counted = Pose(*kernels.twist_step(*self._counted, forward, turn * self._ahead, turn, dt))
+
+    def _measured(self, side: int, way: float) -> float:
+        """The way [m] that a wheel went, by its encoder."""
+        slip = self._slips.normal(2 * self._clock.tick + side, self._params.wheel_slip)
+        return way * (1.0 + self._wheel_errors[side]) + slip * math.sqrt(abs(way))
+
+    def _report(self, twist: Twist) -> list[Outgoing]:
+        true = self._body.pose
+        pose = self._noisy(0, self._counted if self._params.encoders else true, self._params.pose_noise)
+        noisy_twist = self._noisy(3, twist, self._params.twist_noise)
+        header = Header(stamp=self._clock.stamp, frame_id=self._base_frame)
+        makers: dict[Publisher, Callable[[], object]] = {
+            self._odom: lambda: self._message(self._odom_frame, Pose(*pose), noisy_twist, self._covariances),
+            self._truth: lambda: self._message(self._truth_frame, true, twist, _EXACT),
+            self._twist: lambda: geometry_msgs.TwistStamped(header=header, twist=twist_message(*noisy_twist)),
+            self._tf: lambda: transforms(
+                transform(self._clock.stamp, self._odom_frame, self._base_frame, Pose(*pose))
+            ),
+        }
+        return [sent for publisher in self._enabled for sent in publisher.send(makers[publisher])]
+
+    def _noisy(self, first: int, values: Twist | Pose, variances: Sequence[float]) -> Twist:
+        """Three values with normal noise; ``first`` numbers them within a step."""
+        a, b, c = (
+            value + self._noise.normal(6 * self._clock.tick + first + i, math.sqrt(variance))
+            for i, (value, variance) in enumerate(zip(values, variances, strict=True))
+        )
+        return a, b, c
+
+    def _message(self, frame: str, pose: Pose, twist: Twist, covariances: Covariances) -> nav_msgs.Odometry:
+        of_pose, of_twist = covariances
+        return nav_msgs.Odometry(
+            header=Header(stamp=self._clock.stamp, frame_id=frame),
+            child_frame_id=self._base_frame,
+            pose=geometry_msgs.PoseWithCovariance(pose=pose_message(pose), covariance=of_pose.copy()),
+            twist=geometry_msgs.TwistWithCovariance(twist=twist_message(*twist), covariance=of_twist.copy()),
+        )

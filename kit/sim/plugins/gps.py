@@ -1,0 +1,121 @@
+"""Satellite navigation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from kit.geometry import Pose
+from kit.msg.sensor_msgs import NavSatFix
+from kit.msg.std_msgs import Header
+from kit.msg.tf2_msgs import TFMessage
+from kit.sim.clock import UpdateTimer
+from kit.sim.keys import read_rate, read_topic
+from kit.sim.messages import TF_TOPIC, transform, transforms
+from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.site import Device, Site
+from kit.world.reading import ModelScope, Section
+
+EQUATOR = 6378137.0
+"""WGS 84's semi-major axis [m] ..."""
+FLATTENING = 1.0 / 298.257223563
+"""... and flattening."""
+
+
+@dataclass(frozen=True, slots=True)
+class GpsParams:
+    body: str
+    topic: str
+    frame: str
+    broadcast_tf: bool
+    rate: float
+    latitude: float
+    longitude: float
+    origin: Pose
+
+    def build(self, site: Site) -> Gps:
+        return Gps(self, site)
+
+
+def read(section: Section, scope: ModelScope) -> GpsParams:
+    return GpsParams(
+        body=scope.body(section, "body"),
+        topic=read_topic(section, "topic", "gps/fix"),
+        frame=section.name("frame", ""),
+        broadcast_tf=section.flag("broadcast_tf", True),
+        rate=read_rate(section, "update_rate", 10.0),
+        latitude=section.number("ref_lat", 0.0, minimum=-90, maximum=90),
+        longitude=section.number("ref_lon", 0.0, minimum=-180, maximum=180),
+        origin=section.pose("origin", Pose()),
+    )
+
+
+class Gps(Plugin):
+    """Publishes sensor_msgs/NavSatFix: latitude and longitude [degrees], before the step; altitude 0.
+
+    ================= =======================================================================
+    body              the body that carries the antenna, ``origin`` where on it
+    topic, frame      gps/fix, and the plugin's name
+    update_rate       fixes per second (10)
+    ref_lat, ref_lon  where the world's origin lies on earth [degrees]; x points east, y north
+    broadcast_tf      whether to publish where its frame is on /tf (true)
+    ================= =======================================================================
+    """
+
+    def __init__(self, params: GpsParams, site: Site) -> None:
+        self._params = params
+        self._site = site
+        self._body = site.bodies[params.body]
+        self._timer = UpdateTimer(params.rate, site.clock)
+        self._frame = site.model.frame(params.frame or site.name)
+        self._fix = site.publisher(params.topic, NavSatFix)
+        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self.endpoints = [self._fix.endpoint, *([self._tf.endpoint] if params.broadcast_tf else [])]
+
+    def before_step(self, dt: float) -> Iterable[Outgoing]:
+        if not self._timer.due():
+            return ()
+        return self._fix.send(self._message) + (
+            self._tf.send(self._transform) if self._params.broadcast_tf else []
+        )
+
+    def _message(self) -> NavSatFix:
+        place = self._body.pose.compose(self._params.origin)
+        latitude, longitude = on_earth(place.x, place.y, self._params.latitude, self._params.longitude)
+        header = Header(stamp=self._site.clock.stamp, frame_id=self._frame)
+        return NavSatFix(header=header, latitude=latitude, longitude=longitude)
+
+    def _transform(self) -> TFMessage:
+        parent = self._site.model.frame(self._body.name)
+        return transforms(transform(self._site.clock.stamp, parent, self._frame, self._params.origin))
+
+
+def on_earth(east: float, north: float, ref_latitude: float, ref_longitude: float) -> tuple[float, float]:
+    """Latitude and longitude [degrees] of a point on the plane that touches WGS 84 at the reference [degrees].
+
+    By way of earth-centred coordinates; back to the ellipsoid with Bowring's formula (1976), whose error near
+    the ground is far below a millimetre.
+    """
+    latitude, longitude = math.radians(ref_latitude), math.radians(ref_longitude)
+    eccentricity2 = FLATTENING * (2.0 - FLATTENING)
+    normal = EQUATOR / math.sqrt(1.0 - eccentricity2 * math.sin(latitude) ** 2)
+    outward = (
+        normal * math.cos(latitude) - math.sin(latitude) * north
+    )  # away from the axis, at the reference's side
+    axial = normal * (1.0 - eccentricity2) * math.sin(latitude) + math.cos(latitude) * north
+    radius = math.hypot(outward, east)
+    pole = EQUATOR * (1.0 - FLATTENING)
+    reduced = math.atan2(axial * EQUATOR, radius * pole)
+    return (
+        math.degrees(
+            math.atan2(
+                axial + eccentricity2 / (1.0 - eccentricity2) * pole * math.sin(reduced) ** 3,
+                radius - eccentricity2 * EQUATOR * math.cos(reduced) ** 3,
+            )
+        ),
+        math.degrees(longitude + math.atan2(east, outward)),
+    )
+
+
+DEVICE = Device("Gps", read)

@@ -1,0 +1,170 @@
+"""An inertial measurement unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kit.geometry import Pose
+from kit.msg import sensor_msgs
+from kit.msg.geometry_msgs import Vector3
+from kit.msg.std_msgs import Header
+from kit.msg.tf2_msgs import TFMessage
+from kit.sim.clock import UpdateTimer
+from kit.sim.keys import read_rate, read_topic, read_variances
+from kit.sim.messages import TF_TOPIC, quaternion, transform, transforms
+from kit.sim.noise import Noise
+from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.site import Device, Site
+from kit.world.reading import ModelScope, Section
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """Three components of one quantity: the variances of their noise, and the covariance given with them."""
+
+    noise: tuple[float, ...]
+    covariance: tuple[float, ...]
+    """9 numbers, row by row."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImuParams:
+    body: str
+    enabled: bool
+    frame: str
+    topic: str
+    ground_truth_topic: str
+    orientation: Channel
+    angular_velocity: Channel
+    linear_acceleration: Channel
+    rate: float
+    broadcast_tf: bool
+
+    def build(self, site: Site) -> Imu:
+        return Imu(self, site)
+
+
+def read(section: Section, scope: ModelScope) -> ImuParams:
+    return ImuParams(
+        body=scope.body(section, "body"),
+        enabled=section.flag("enable_imu_pub", True),
+        frame=section.name("imu_frame_id", "imu"),
+        topic=read_topic(section, "imu_pub", "imu/filtered"),
+        ground_truth_topic=read_topic(section, "ground_truth_pub", "imu/ground_truth"),
+        orientation=_channel(section, "orientation"),
+        angular_velocity=_channel(section, "angular_velocity"),
+        linear_acceleration=_channel(section, "linear_acceleration"),
+        rate=read_rate(section, "pub_rate"),
+        broadcast_tf=section.flag("broadcast_tf", True),
+    )
+
+
+def _channel(section: Section, quantity: str) -> Channel:
+    noise = read_variances(section, f"{quantity}_noise")
+    diagonal = [float(value) for value in np.diag(noise).ravel()]
+    return Channel(noise, section.numbers(f"{quantity}_covariance", diagonal, length=9))
+
+
+_EXACT = Channel((0.0, 0.0, 0.0), (0.0,) * 9)
+
+
+class Imu(Plugin):
+    """Publishes sensor_msgs/Imu after the step, twice: with noise and as it is.
+
+    ======================= ====================================================================
+    body                    the body that carries it
+    imu_pub                 imu/filtered, unless ``enable_imu_pub`` is false
+    ground_truth_pub        imu/ground_truth
+    imu_frame_id            imu
+    pub_rate                messages per second; at every step by default
+    broadcast_tf            whether to publish where its frame is on /tf (true)
+    orientation_noise       variances of roll, pitch, yaw; of the other two, of x, y, z:
+                            ``angular_velocity_noise``, ``linear_acceleration_noise``
+    orientation_covariance  9 numbers; the noise, by default; likewise for the other two
+    ======================= ====================================================================
+
+    Acceleration is the change of the body's velocity in this step over the step, in the body's own frame.
+    Flatland multiplies by the publishing rate instead, which is infinite by default, and has a sign wrong in y.
+    There is no gravity in a flat world.
+    """
+
+    def __init__(self, params: ImuParams, site: Site) -> None:
+        self._params = params
+        self._site = site
+        self._body = site.bodies[params.body]
+        self._timer = UpdateTimer(params.rate, site.clock)
+        self._frame = site.model.frame(params.frame)
+        self._imu = site.publisher(params.topic, sensor_msgs.Imu)
+        self._truth = site.publisher(params.ground_truth_topic, sensor_msgs.Imu)
+        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self.endpoints = [self._truth.endpoint]
+        if params.enabled:
+            self.endpoints.append(self._imu.endpoint)
+        if params.broadcast_tf:
+            self.endpoints.append(self._tf.endpoint)
+
+    def reset(self, seed: int) -> None:
+        self._noise = Noise(seed)
+        self._before = self._body.velocity
+
+    def after_step(self, dt: float) -> Iterable[Outgoing]:
+        before, now = self._before, self._body.velocity
+        self._before = now
+        if not self._timer.due():
+            return ()
+        ax, ay = (now[0] - before[0]) / dt, (now[1] - before[1]) / dt
+        theta = self._body.pose.theta
+        cos, sin = math.cos(theta), math.sin(theta)
+        measured = theta, now[2], cos * ax + sin * ay, cos * ay - sin * ax
+        sent = self._truth.send(lambda: self._message(*measured, _EXACT, _EXACT, _EXACT))
+        if self._params.enabled:
+            channels = (
+                self._params.orientation,
+                self._params.angular_velocity,
+                self._params.linear_acceleration,
+            )
+            sent += self._imu.send(lambda: self._message(*measured, *channels))
+        if self._params.broadcast_tf:
+            sent += self._tf.send(self._transform)
+        return sent
+
+    def _message(
+        self,
+        theta: float,
+        turn: float,
+        ax: float,
+        ay: float,
+        orientation: Channel,
+        angular_velocity: Channel,
+        linear_acceleration: Channel,
+    ) -> sensor_msgs.Imu:
+        _, _, yaw = self._noisy(0, (0.0, 0.0, theta), orientation.noise)
+        wx, wy, wz = self._noisy(3, (0.0, 0.0, turn), angular_velocity.noise)
+        ax, ay, az = self._noisy(6, (ax, ay, 0.0), linear_acceleration.noise)
+        return sensor_msgs.Imu(
+            header=Header(stamp=self._site.clock.stamp, frame_id=self._frame),
+            orientation=quaternion(yaw),
+            orientation_covariance=np.array(orientation.covariance),
+            angular_velocity=Vector3(x=wx, y=wy, z=wz),
+            angular_velocity_covariance=np.array(angular_velocity.covariance),
+            linear_acceleration=Vector3(x=ax, y=ay, z=az),
+            linear_acceleration_covariance=np.array(linear_acceleration.covariance),
+        )
+
+    def _noisy(self, first: int, values: Sequence[float], variances: Sequence[float]) -> list[float]:
+        """Three values with normal noise; ``first`` numbers them within a step."""
+        return [
+            value + self._noise.normal(9 * self._site.clock.tick + first + i, math.sqrt(variance))
+            for i, (value, variance) in enumerate(zip(values, variances, strict=True))
+        ]
+
+    def _transform(self) -> TFMessage:
+        parent = self._site.model.frame(self._body.name)
+        return transforms(transform(self._site.clock.stamp, parent, self._frame, Pose()))
+
+
+DEVICE = Device("Imu", read)

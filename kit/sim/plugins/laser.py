@@ -1,0 +1,180 @@
+"""A laser scanner."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit import kernels
+from kit.geometry import Pose
+from kit.msg.sensor_msgs import LaserScan
+from kit.msg.std_msgs import Header
+from kit.msg.tf2_msgs import TFMessage
+from kit.sim.clock import UpdateTimer
+from kit.sim.keys import read_rate, read_topic
+from kit.sim.messages import TF_TOPIC, transform, transforms
+from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.site import Device, Site
+from kit.sim.surroundings import ScanView
+from kit.world.reading import ModelScope, Section
+from kit.world.records import Sight
+
+MAX_RAYS = 10_000
+
+REFLECTANCE = "reflectance"
+"""The layer whose walls and footprints shine."""
+
+SAME_PLACE = 1e-3
+"""Two hits this near to each other [m] are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaserParams:
+    sight: Sight
+    """The body that carries it, the layers it sees, and where it sits on the body."""
+    reach: float
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    directions: tuple[float, ...]
+    """Of each ray, in the laser's frame [rad]."""
+    topic: str
+    frame: str
+    broadcast_tf: bool
+    always_publish: bool
+    rate: float
+    noise: float
+    reflecting: int
+    """The bit of the layer "reflectance"; 0 where the world has none."""
+
+    def build(self, site: Site) -> Laser:
+        return Laser(self, site)
+
+
+def read(section: Section, scope: ModelScope) -> LaserParams:
+    angles = section.section("angle")
+    low = angles.number("min")
+    high = angles.number("max")
+    increment = angles.number("increment", above=0)
+    angles.finish()
+    if high < low:
+        angles.error('"max" must not be below "min"', "max")
+    rays = math.floor((max(high, low) - low) / increment + 0.5) + 1
+    if rays > MAX_RAYS:
+        angles.error(f"{rays} rays are too many: at most {MAX_RAYS}", "increment")
+        rays = 1
+    directions = [low + i * increment for i in range(rays)]
+    if section.flag("upside_down", False):
+        directions = [-direction for direction in directions]
+    if section.flag("flipped", False):
+        directions.reverse()
+    return LaserParams(
+        sight=Sight(scope.body(section, "body"), scope.layers(section), section.pose("origin", Pose())),
+        reach=section.number("range", above=0),
+        angle_min=low,
+        angle_max=high,
+        angle_increment=increment,
+        directions=tuple(directions),
+        topic=read_topic(section, "topic", "scan"),
+        frame=section.name("frame", ""),
+        broadcast_tf=section.flag("broadcast_tf", True),
+        always_publish=section.flag("always_publish", False),
+        rate=read_rate(section, "update_rate"),
+        noise=section.number("noise_std_dev", 0.0, minimum=0),
+        reflecting=scope.layer_bits.get(REFLECTANCE, 0),
+    )
+
+
+class Laser(Plugin):
+    """Publishes sensor_msgs/LaserScan: how far it is, in each direction, to the nearest wall or footprint.
+
+    It looks before the step, at all rays at one instant. Ray i points to ``angle.min + i * increment``,
+    counter-clockwise; there are ``round((max - min) / increment) + 1``.
+
+    =============== =============================================================================
+    body, range     the body that carries it; how far it sees [m]
+    angle           ``min``, ``max``, ``increment`` [rad]
+    topic, frame    by default ``scan`` and the plugin's name
+    origin          where it sits on the body, ``[x, y, theta]``
+    layers          what it sees: whatever is in one of these layers (all of them by default)
+    update_rate     scans per second; at every step by default
+    noise_std_dev   standard deviation of the noise on each hit [m]
+    broadcast_tf    whether to publish where its frame is on /tf (true)
+    always_publish  also when nobody listens (false)
+    upside_down     mounted upside down: ray i points to the negative of its angle (false)
+    flipped         the message lists the rays from last to first (false)
+    =============== =============================================================================
+
+    NaN where nothing is in range. Sensor footprints are invisible, and so is a footprint around the laser; the
+    rest of its own robot is not. Noise depends on the seed, the laser, the step and the ray alone.
+
+    Where the world has a layer named ``reflectance``, intensities are 255 where the ray ends at something in that
+    layer, else 0. In Flatland anything reflecting behind the first wall could shine through it; not here.
+    """
+
+    def __init__(self, params: LaserParams, site: Site) -> None:
+        self._params = params
+        self._site = site
+        self._body = site.bodies[params.sight.body]
+        self._timer = UpdateTimer(params.rate, site.clock)
+        directions = np.array(params.directions)
+        self._beams = kernels.Beams(np.cos(directions), np.sin(directions))
+        self._frame = site.model.frame(params.frame or site.name)
+        self._scan = site.publisher(params.topic, LaserScan)
+        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self.endpoints = [self._scan.endpoint, *([self._tf.endpoint] if params.broadcast_tf else [])]
+
+    def reset(self, seed: int) -> None:
+        self._stream = seed
+
+    def before_step(self, dt: float) -> Iterable[Outgoing]:
+        if not self._timer.due():
+            return ()
+        sent = []
+        if self._params.always_publish or self._scan.wanted:
+            sent.append(Outgoing(self._scan.topic, self._look()))
+        if self._params.broadcast_tf:
+            sent += self._tf.send(self._transform)
+        return sent
+
+    def _look(self) -> LaserScan:
+        params = self._params
+        pose = self._body.pose.compose(params.sight.origin)
+        ranges = self._site.surroundings.scan(pose, self._beams, params.reach, params.sight.bits)
+        intensities = self._intensities(pose, ranges) if params.reflecting else array("f")
+        if params.noise:
+            kernels.add_noise(ranges, params.noise, self._stream, self._site.clock.tick * len(ranges))
+        view = ScanView(self._site.model.name, self._site.name, pose, self._beams, ranges)
+        self._site.surroundings.views[view.model, view.plugin] = view
+        return LaserScan(
+            header=Header(stamp=self._site.clock.stamp, frame_id=self._frame),
+            angle_min=params.angle_min,
+            angle_max=params.angle_max,
+            angle_increment=params.angle_increment,
+            range_max=params.reach,
+            ranges=array("f", ranges.tobytes()),
+            intensities=intensities,
+        )
+
+    def _intensities(self, pose: Pose, ranges: NDArray[np.float32]) -> array[float]:
+        """255 where the nearest thing reflects."""
+        params = self._params
+        shining = self._site.surroundings.scan(
+            pose, self._beams, params.reach, params.sight.bits, params.reflecting
+        )
+        return array(
+            "f",
+            [255.0 if near <= hit + SAME_PLACE else 0.0 for near, hit in zip(shining, ranges, strict=True)],
+        )
+
+    def _transform(self) -> TFMessage:
+        parent = self._site.model.frame(self._body.name)
+        return transforms(transform(self._site.clock.stamp, parent, self._frame, self._params.sight.origin))
+
+
+DEVICE = Device("Laser", read)

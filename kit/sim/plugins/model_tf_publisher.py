@@ -1,0 +1,78 @@
+"""Where a model's bodies are, for tf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from kit.msg.tf2_msgs import TFMessage
+from kit.sim.clock import UpdateTimer
+from kit.sim.keys import read_rate
+from kit.sim.messages import TF_TOPIC, transform, transforms
+from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.site import Device, Site
+from kit.world.reading import ModelScope, Section
+
+
+@dataclass(frozen=True, slots=True)
+class ModelTfPublisherParams:
+    reference: str
+    world_frame: str | None
+    """None where the world is not published."""
+    rate: float
+    exclude: frozenset[str]
+
+    def build(self, site: Site) -> ModelTfPublisher:
+        return ModelTfPublisher(self, site)
+
+
+def read(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
+    world_frame = section.name("world_frame_id", "map")
+    first = scope.model.bodies[0].name if scope.model.bodies else ""
+    return ModelTfPublisherParams(
+        reference=scope.body(section, "reference", first),
+        world_frame=world_frame if section.flag("publish_tf_world", False) else None,
+        rate=read_rate(section, "update_rate"),
+        exclude=frozenset(scope.bodies(section, "exclude")),
+    )
+
+
+class ModelTfPublisher(Plugin):
+    """Publishes on /tf where the model's bodies are, before each step.
+
+    ================= =========================================================================
+    reference         the body in whose frame the others are given (the first)
+    publish_tf_world  also where the reference is in the world (false)
+    world_frame_id    the world's frame (map)
+    update_rate       updates per second; at every step by default
+    exclude           names of bodies that are left out
+    ================= =========================================================================
+
+    Frames are named ``namespace_body``.
+    """
+
+    def __init__(self, params: ModelTfPublisherParams, site: Site) -> None:
+        self._params = params
+        self._site = site
+        self._reference = site.bodies[params.reference]
+        self._timer = UpdateTimer(params.rate, site.clock)
+        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self.endpoints = [self._tf.endpoint]
+
+    def before_step(self, dt: float) -> Iterable[Outgoing]:
+        return self._tf.send(self._transforms) if self._timer.due() else ()
+
+    def _transforms(self) -> TFMessage:
+        stamp, frame = self._site.clock.stamp, self._site.model.frame
+        parent, pose = frame(self._params.reference), self._reference.pose
+        found = [
+            transform(stamp, parent, frame(body.name), pose.relative(body.pose))
+            for body in self._site.bodies.values()
+            if body is not self._reference and body.name not in self._params.exclude
+        ]
+        if self._params.world_frame is not None:
+            found.append(transform(stamp, frame(self._params.world_frame), parent, pose))
+        return transforms(*found)
+
+
+DEVICE = Device("ModelTfPublisher", read)

@@ -1,0 +1,183 @@
+"""A body that goes to and fro by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from kit.geometry import Pose
+from kit.msg.std_msgs import Bool
+from kit.sim.keys import read_topic
+from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.site import Device, Site
+from kit.world.reading import ModelScope, Section
+
+Easing = Callable[[float], float]
+"""From the share of the time that is over, 0 to 1, to the share of the way: 0 at 0 and 1 at 1."""
+
+
+def _power(exponent: int) -> Easing:
+    return lambda t: t**exponent
+
+
+def _back(t: float) -> float:
+    """Draws back by a tenth of the way first."""
+    return t * t * (2.70158 * t - 1.70158)
+
+
+def _elastic(t: float) -> float:
+    """A spring that swings, with growing swings and a period of 0.3."""
+    return t if t in (0.0, 1.0) else -(2.0 ** (10.0 * (t - 1.0))) * math.sin((t - 1.075) * math.tau / 0.3)
+
+
+def _dropped(t: float) -> float:
+    """A ball that falls to 1 and bounces three times: parabolas, each half as wide as the one before."""
+    bottoms = ((0.0, 0.0), (1.5, 0.75), (2.25, 0.9375), (2.625, 0.984375))
+    return min(7.5625 * (t - middle / 2.75) ** 2 + height for middle, height in bottoms)
+
+
+def _in(curve: Easing) -> Easing:
+    return curve
+
+
+def _out(curve: Easing) -> Easing:
+    """The same backwards: slow at the end."""
+    return lambda t: 1.0 - curve(1.0 - t)
+
+
+def _in_out(curve: Easing) -> Easing:
+    """Half of it, and half of it backwards."""
+    return lambda t: 0.5 * curve(2.0 * t) if t < 0.5 else 1.0 - 0.5 * curve(2.0 - 2.0 * t)
+
+
+_CURVES: Mapping[str, Easing] = {
+    "quadratic": _power(2),
+    "cubic": _power(3),
+    "quartic": _power(4),
+    "quintic": _power(5),
+    "exponential": lambda t: 0.0 if t == 0.0 else 2.0 ** (10.0 * (t - 1.0)),
+    "circular": lambda t: 1.0 - math.sqrt(1.0 - t * t),
+    "back": _back,
+    "elastic": _elastic,
+    "bounce": _out(_dropped),
+}
+_ENDS = {"In": _in, "Out": _out, "InOut": _in_out}
+
+EASINGS: Mapping[str, Easing] = MappingProxyType(
+    {"linear": lambda t: t}
+    | {f"{name}{end}": shaped(curve) for name, curve in _CURVES.items() for end, shaped in _ENDS.items()}
+)
+
+Progress = Callable[[float], float]
+"""From the time over the duration to the share of the time that is over, 0 to 1."""
+
+
+def _once(turns: float) -> float:
+    return min(turns, 1.0)
+
+
+def _loop(turns: float) -> float:
+    """Jumps back to the start after the end, which it reaches."""
+    return turns - math.ceil(turns) + 1.0 if turns > 0.0 else 0.0
+
+
+def _yoyo(turns: float) -> float:
+    return 1.0 - abs(turns % 2.0 - 1.0)
+
+
+MODES: Mapping[str, Progress | None] = MappingProxyType(
+    {"yoyo": _yoyo, "loop": _loop, "once": _once, "trigger": None}
+)
+"""None: driven to and fro by messages."""
+
+
+@dataclass(frozen=True, slots=True)
+class TweenParams:
+    body: str
+    progress: Progress | None
+    duration: float
+    delta: Pose
+    easing: Easing
+    trigger_topic: str
+
+    def build(self, site: Site) -> Tween:
+        return Tween(self, site)
+
+
+def read(section: Section, scope: ModelScope) -> TweenParams:
+    progress = section.choice("mode", MODES, "yoyo")
+    trigger_topic = read_topic(section, "trigger_topic", "")
+    if progress is None and not trigger_topic:
+        section.error('mode: trigger needs a "trigger_topic"', "mode")
+    return TweenParams(
+        body=scope.body(section, "body"),
+        progress=progress,
+        duration=section.number("duration", 1.0, above=0),
+        delta=section.pose("delta", Pose()),
+        easing=section.choice("easing", EASINGS, "linear"),
+        trigger_topic=trigger_topic,
+    )
+
+
+class Tween(Plugin):
+    """Puts a body, before every step, at a place between where it stood and ``delta`` from there.
+
+    ============== ===========================================================================
+    body           the body it moves
+    mode           ``yoyo`` to and fro (default), ``loop`` always from the start, ``once``, or
+                   ``trigger``: forward after a true on the trigger topic, back after a false
+    duration       of one way [s] (1)
+    delta          ``[x, y, theta]``, along the world's axes
+    easing         ``linear``, or one of quadratic, cubic, quartic, quintic, exponential, circular, back,
+                   elastic and bounce, with In, Out or InOut after it: ``quadraticInOut``
+    trigger_topic  a topic of std_msgs/Bool
+    ============== ===========================================================================
+
+    The body passes through everything. In Flatland it does not obey ``move_model`` and stands still at
+    steps below a millisecond; here it goes on from where it was put, at steps of any length.
+    """
+
+    def __init__(self, params: TweenParams, site: Site) -> None:
+        self._params = params
+        self._physics = site.physics
+        self._body = site.bodies[params.body]
+        self._start = self._body.pose
+        if params.trigger_topic:
+            self.endpoints = [site.subscription(params.trigger_topic, Bool)]
+
+    def reset(self, seed: int) -> None:
+        self._steps = 0
+        self._share = 0.0
+        self._forward = False
+
+    def moved(self) -> None:
+        pose, way = self._body.pose, self._way()
+        self._start = Pose(pose.x - way.x, pose.y - way.y, pose.theta - way.theta)
+
+    def accept(self, topic: str, message: Any) -> None:
+        self._forward = message.data
+
+    def before_step(self, dt: float) -> Iterable[Outgoing]:
+        self._steps += 1
+        part = dt / self._params.duration
+        if self._params.progress is not None:
+            self._share = self._params.progress(self._steps * part)
+        else:
+            self._share = min(self._share + part, 1.0) if self._forward else max(self._share - part, 0.0)
+        way = self._way()
+        self._physics.place(
+            self._body,
+            Pose(self._start.x + way.x, self._start.y + way.y, self._start.theta + way.theta),
+        )
+        return ()
+
+    def _way(self) -> Pose:
+        """How far from the start it is."""
+        share = self._params.easing(self._share)
+        return Pose(*(share * component for component in self._params.delta))
+
+
+DEVICE = Device("Tween", read)
