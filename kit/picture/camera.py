@@ -18,6 +18,10 @@ ZOOM_STEP = math.sqrt(2.0)
 FINEST_CELL, COARSEST_CELL = 0.002, 20.0
 """The limits of zoom: the width of a character [m]."""
 
+MARGIN = 0.45
+"""Characters to spare around what is fitted in. Not one half, which would put the outermost walls between two
+dots, on one side of them here and on the other there."""
+
 CALM_ZONE = 0.5
 """The middle share of the picture in which a followed robot moves without the picture moving."""
 
@@ -37,7 +41,7 @@ class Camera:
 
     @classmethod
     def fit(
-        cls, bounds: Bounds, columns: int, rows: int, aspect: float = CELL_ASPECT, margin: float = 0.5
+        cls, bounds: Bounds, columns: int, rows: int, aspect: float = CELL_ASPECT, margin: float = MARGIN
     ) -> Camera:
         """The camera that shows all of ``bounds``, as large as it can, with ``margin`` characters to spare on
         every side."""
@@ -47,7 +51,7 @@ class Camera:
         return cls(
             (bounds.left + bounds.right) / 2,
             (bounds.bottom + bounds.top) / 2,
-            min(max(cell, FINEST_CELL), COARSEST_CELL),
+            max(cell, FINEST_CELL),
             columns,
             rows,
             aspect,

@@ -15,10 +15,6 @@ from kit.picture.roles import ROBOTS, TRAILS, Role
 from kit.picture.scene import Body, FloatArray, Path, Scene
 from kit.picture.stamps import SMALLEST_OUTLINE, Stamps, rows_across
 
-SOLID_WALL = 0.08
-"""Two wall lines one dot apart are drawn as one wall if the dot is at most this large [m]; no robot of the
-kit passes such a gap."""
-
 NOSE = 0.25
 """How far a robot's heading line reaches beyond its hull: this share of its length, or two characters' widths
 if that is more."""
@@ -32,16 +28,20 @@ _PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
 
 class Painter:
     """Draws scenes with one encoder. Keeps the walls as drawn last, and draws them again only when the
-    array or the camera is another one."""
+    array or the camera is another one.
+
+    What no robot of the scene fits through is drawn solid, where dots are fine enough to tell. So the two
+    faces of a thin wall make one wall, instead of now two lines and now one.
+    """
 
     def __init__(self, encoder: Encoder) -> None:
         self.encoder = encoder
         self._walls: FloatArray | None = None
-        self._camera: Camera | None = None
+        self._view: tuple[Camera, float] | None = None
         self._static = raster.blank(0, 0)
 
     def paint(self, scene: Scene, camera: Camera) -> Frame:
-        canvas = _Canvas(self._standing(scene.walls, camera).copy(), camera, self.encoder)
+        canvas = _Canvas(self._standing(scene, camera).copy(), camera, self.encoder)
         canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
             canvas.draw_path(path)
@@ -59,24 +59,34 @@ class Painter:
         Stamps(frame, camera, self.encoder.symbols).put_all(scene)
         return frame
 
-    def _standing(self, walls: FloatArray, camera: Camera) -> Grid:
-        if walls is not self._walls or camera != self._camera:
-            self._static = _draw_walls(walls, camera, self.encoder)
-            self._walls, self._camera = walls, camera
+    def _standing(self, scene: Scene, camera: Camera) -> Grid:
+        """What stands still."""
+        view = camera, _passage(scene)
+        if scene.walls is not self._walls or view != self._view:
+            self._static = _draw_walls(scene.walls, *view, self.encoder)
+            self._walls, self._view = scene.walls, view
         return self._static
 
 
-def _draw_walls(walls: FloatArray, camera: Camera, encoder: Encoder) -> Grid:
-    canvas = _Canvas(
-        raster.blank(camera.columns * encoder.across, camera.rows * encoder.down), camera, encoder
-    )
+def _passage(scene: Scene) -> float:
+    """The narrowest gap [m] that a robot of the scene fits through, to the millimetre; 0 without robots."""
+    extents = [robot.extent for robot in scene.robots]
+    widths = [min(extent.width, extent.height) for extent in extents]
+    return round(min(filter(math.isfinite, widths), default=0.0), 3)
+
+
+def _draw_walls(walls: FloatArray, camera: Camera, passage: float, encoder: Encoder) -> Grid:
+    # With a rim around the picture, for walls of which one face is just outside it.
+    rim_x, rim_y = math.ceil(passage / camera.cell), math.ceil(passage / camera.cell_height)
+    wide = camera.resized(camera.columns + 2 * rim_x, camera.rows + 2 * rim_y)
+    canvas = _Canvas(raster.blank(wide.columns * encoder.across, wide.rows * encoder.down), wide, encoder)
     canvas.draw_lines(walls, Role.WALL)
-    raster.close_gaps(
-        canvas.grid,
-        across=camera.cell / encoder.across <= SOLID_WALL,
-        down=camera.cell_height / encoder.down <= SOLID_WALL,
-    )
-    return canvas.grid
+    # Lines n dots apart have n - 1 dots between them.
+    across = int(passage / camera.cell * encoder.across) - 1
+    down = int(passage / camera.cell_height * encoder.down) - 1
+    raster.close_gaps(canvas.grid, across, down, Role.WALL)
+    top, left = rim_y * encoder.down, rim_x * encoder.across
+    return canvas.grid[top : top + camera.rows * encoder.down, left : left + camera.columns * encoder.across]
 
 
 class _Canvas:

@@ -90,17 +90,22 @@ def filled_dots(corners: FloatArray, width: int, height: int) -> Dots:
     return rows.ravel()[inside], columns.ravel()[inside]
 
 
-def close_gaps(grid: Grid, across: bool, down: bool) -> None:
-    """Fills single empty dots between two drawn ones, along the axes named: the two faces of a thin wall
-    become one solid wall instead of now two lines and now one.
-    """
-    drawn = grid.copy()
-    if across:
-        between = (drawn[:, 1:-1] == 0) & (drawn[:, :-2] > 0) & (drawn[:, 2:] > 0)
-        grid[:, 1:-1][between] = np.maximum(drawn[:, :-2], drawn[:, 2:])[between]
-    if down:
-        between = (drawn[1:-1] == 0) & (drawn[:-2] > 0) & (drawn[2:] > 0)
-        grid[1:-1][between] = np.maximum(drawn[:-2], drawn[2:])[between]
+def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
+    """Fills up to so many empty dots between two drawn ones of a row, and of a column."""
+    between = _in_gap(grid > 0, across) | _in_gap(grid.T > 0, down).T
+    grid[between] = role
+
+
+def _in_gap(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
+    """Per row: the dots in a run of at most ``longest`` that are not drawn, between two that are."""
+    if longest < 1 or not drawn.size:
+        return np.zeros_like(drawn)
+    length = drawn.shape[1]
+    at = np.arange(length)
+    before = np.maximum.accumulate(np.where(drawn, at, -length), axis=1)
+    after = np.minimum.accumulate(np.where(drawn, at, 2 * length)[:, ::-1], axis=1)[:, ::-1]
+    gaps: NDArray[np.bool_] = ~drawn & (after - before - 1 <= min(longest, length))
+    return gaps
 
 
 def _clipped(segments: FloatArray, width: int, height: int) -> FloatArray:

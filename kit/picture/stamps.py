@@ -85,7 +85,7 @@ class Stamps:
             if base is not None:
                 eighth = round(theta / math.tau * 8) * math.tau / 8
                 ahead = base[0] - round(math.sin(eighth)), base[1] + round(math.cos(eighth))
-                self._put(ahead, _direction(self._symbols.noses, theta), role)
+                self._put(ahead, _direction(self._symbols.noses, theta), role, over=Role.ROBOT)
         self._put(cell, _direction(arrows, theta), role)
         if named:
             # Below, or above if it would cover the heading line there.

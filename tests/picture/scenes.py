@@ -82,7 +82,9 @@ def scan(walls: FloatArray, pose: Pose, noise: np.random.Generator | None = None
     return pose[:2] + ranges[hit, None] * rays[hit]
 
 
-def drive(fps: float = 20.0, speed: float = 0.5, turning: float = 1.5, scan_rate: float = 10.0) -> Iterator[Scene]:
+def drive(
+    fps: float = 20.0, speed: float = 0.5, turning: float = 1.5, scan_rate: float = 10.0
+) -> Iterator[Scene]:
     """The robot along its route for ever, frame by frame, its lidar seen at ``scan_rate`` and with noise."""
     walls, noise, trail = maze(), np.random.default_rng(7), Trail()
     scene = Scene(walls)
