@@ -269,12 +269,20 @@ class MultiThreadedExecutor(Executor):
         return super()._pick()
 
     def _do(self, work: Work) -> None:
-        job = self._pool.submit(self.agenda.perform, work)
+        with self._graph.lock:
+            self._graph.busy += 1
+        job = self._pool.submit(self._perform, work)
         self._jobs.add(job)
         job.add_done_callback(self._done)
 
+    def _perform(self, work: Work) -> None:
+        self._graph.performing.pooled = True
+        self.agenda.perform(work)
+
     def _done(self, job: Job[None]) -> None:
         self._jobs.discard(job)
+        with self._graph.lock:
+            self._graph.busy -= 1
         if not job.cancelled():
             problem = job.exception()
             if problem is not None:

@@ -21,7 +21,7 @@ import threading
 import time
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from kit.ros.agenda import Agenda, Item, Work
 from kit.ros.exceptions import NodeFailure, WouldDeadlock
@@ -59,10 +59,22 @@ copy it to keep it. Called with the graph's lock held: be quick.
 """
 
 
+class Look(NamedTuple):
+    """What a waiting thread saw when it looked last. A pump waits until nobody has anything left to see."""
+
+    until_ns: int | None
+    """When it goes on by itself."""
+    change: int
+    """``Graph.changes`` at that time."""
+    pooled: bool
+    """Whether it is a thread of a MultiThreadedExecutor, and so one of ``Graph.busy``."""
+
+
 class _Performing(threading.local):
     """What the current thread is doing at the moment."""
 
     work: tuple[Agenda, Item] | None = None
+    pooled = False
 
 
 class Graph:
@@ -84,8 +96,15 @@ class Graph:
         """The lock-step nodes'."""
         self._simulated_ns = start_ns
         self._system_offset_ns = time.time_ns() - time.monotonic_ns()
+        self.changes = 0
+        """Counts what may have given a waiting thread something to do."""
+        self.looks: dict[int, Look] = {}
+        """The waiting threads."""
+        self.busy = 0
+        """Callbacks in threads of their own."""
+        self.somebody_waits = threading.Condition(self.lock)
+        """Notified when another thread waits: for a pump."""
         self._changed = threading.Condition(self.lock)
-        self._waiting = 0
         self._pumping = False
         self._jumps = 0
         self._driver: int | None = None
@@ -194,13 +213,16 @@ class Graph:
     def notify(self) -> None:
         """Has everybody who waits look again."""
         with self.lock:
-            if self._waiting:
+            self.changes += 1
+            if self.looks:
                 self._changed.notify_all()
 
     def _wait_once(self, until_ns: int | None) -> None:
-        self._waiting += 1
+        me = threading.get_ident()
+        self.looks[me] = Look(until_ns, self.changes, self.performing.pooled)
         try:
             if self.pump is None or self._pumping:
+                self.somebody_waits.notify_all()
                 timeout = None if until_ns is None or self.is_simulated else (until_ns - self.now_ns) / 1e9
                 self._changed.wait(timeout)
                 return
@@ -213,7 +235,7 @@ class Graph:
                 self._pumping = False
                 self._changed.notify_all()
         finally:
-            self._waiting -= 1
+            del self.looks[me]
 
     def _refuse_to_hang(self, what: str) -> None:
         work = self.performing.work

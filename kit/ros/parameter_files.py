@@ -16,6 +16,7 @@ import yaml
 from yaml import MappingNode, Mark, ScalarNode, SequenceNode
 from yaml import Node as YamlNode
 
+from kit.msg.rcl_interfaces import ParameterValue
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.parameter import GivenParameters, Parameter
 
@@ -127,3 +128,8 @@ def _plain(text: str) -> Any:
     if _FLOAT.fullmatch(text):
         return float(text)
     return _SPECIAL.get(text.lower(), text)
+
+
+def get_parameter_value(string_value: str) -> ParameterValue:
+    """What a text means as a parameter, as a message."""
+    return Parameter("value", value=parse_value(string_value)).get_parameter_value()

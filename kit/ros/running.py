@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.arguments import split_ros_arguments
 from kit.ros.context import Context, get_default_context
 from kit.ros.executors import Executor, SingleThreadedExecutor
+from kit.ros.instants import S_TO_NS
+from kit.ros.log import LoggingSeverity, RcutilsLogger
 from kit.ros.node import Node
 from kit.ros.task import Future
 
@@ -183,3 +185,30 @@ def _install(context: Context, number: signal.Signals) -> None:
 
     signal.signal(number, handle)
     context.on_shutdown(restore)
+
+
+def get_logger(name: str) -> RcutilsLogger:
+    """A logger that belongs to no node."""
+    if not name:
+        raise ValueError("Logger name must not be empty")
+    return RcutilsLogger(name, get_default_context().graph.log)
+
+
+def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:
+    """Drops lines of the logger, and of its children, below this level."""
+    get_logger(name).set_level(level)
+
+
+def get_logger_level(name: str) -> LoggingSeverity:
+    """The level set for this very logger; UNSET if none is."""
+    return get_default_context().graph.log.levels.get(name, LoggingSeverity.UNSET)
+
+
+def get_logger_effective_level(name: str) -> LoggingSeverity:
+    """The level that holds for the logger: its own, its nearest ancestor's, or the default."""
+    return get_logger(name).get_effective_level()
+
+
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """Nanoseconds; -1 for ever, which None and negative numbers mean."""
+    return -1 if timeout_sec is None or timeout_sec < 0 else int(timeout_sec * S_TO_NS)

@@ -103,6 +103,8 @@ class Directory:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
+        self.version = 0
+        """Changes with every node and endpoint that comes or goes."""
         self.nodes: tuple[NodeHandle, ...] = ()
         self.topics: dict[str, Topic] = {}
         self.services: dict[str, list[Service[Any, Any]]] = {}
@@ -115,9 +117,11 @@ class Directory:
                 f"there is already a node called {handle.full_name}; two of one name get in each other's way",
             )
         self.nodes = (*self.nodes, handle)
+        self.version += 1
 
     def remove_node(self, handle: NodeHandle) -> None:
         self.nodes = tuple(other for other in self.nodes if other is not handle)
+        self.version += 1
 
     def node(self, name: str, namespace: str) -> NodeHandle | None:
         """The first node of this name."""
@@ -127,26 +131,32 @@ class Directory:
         return None
 
     def topic(self, name: str) -> Topic:
-        """The topic of this absolute name, made if need be."""
+        """The topic of this absolute name, made if need be, for an endpoint to be added to it."""
+        self.version += 1
         return self.topics.setdefault(name, Topic(name))
 
     def remove_end(self, end: Publisher[Any] | Subscription[Any]) -> None:
+        self.version += 1
         topic = self.topics[end.topic_name]
         topic.remove(end)
         if not topic.publishers and not topic.subscriptions:
             del self.topics[end.topic_name]
 
     def add_service(self, service: Service[Any, Any]) -> None:
+        self.version += 1
         self.services.setdefault(service.service_name, []).append(service)
         self._graph.notify()
 
     def remove_service(self, service: Service[Any, Any]) -> None:
+        self.version += 1
         _take_out(self.services, service.service_name, service)
 
     def add_client(self, client: Client[Any, Any]) -> None:
+        self.version += 1
         self.clients.setdefault(client.service_name, []).append(client)
 
     def remove_client(self, client: Client[Any, Any]) -> None:
+        self.version += 1
         _take_out(self.clients, client.service_name, client)
 
     def server(self, name: str, srv_type: type[Any]) -> Service[Any, Any] | None:

@@ -1,0 +1,13 @@
+"""ROS 2's conversation, without ROS: nodes, topics, services, parameters and timers in rclpy's shape.
+
+``graph`` is the middle of it. A program that imports ``rclpy``, ``std_msgs.msg`` and so on finds them in
+``names_folder()``, which whoever runs such a program puts first on its ``sys.path``; nobody else does, so an
+installed ROS 2 is never in the way.
+"""
+
+from pathlib import Path
+
+
+def names_folder() -> Path:
+    """The folder of packages under ROS 2's import names."""
+    return Path(__file__).parent / "names"

@@ -1,0 +1,3 @@
+from kit.msg.builtin_interfaces import Duration, Time
+
+__all__ = ["Duration", "Time"]

@@ -1,0 +1,3 @@
+from kit.msg.diagnostic_msgs import DiagnosticArray, DiagnosticStatus, KeyValue
+
+__all__ = ["DiagnosticArray", "DiagnosticStatus", "KeyValue"]

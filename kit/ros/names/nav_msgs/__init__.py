@@ -1,0 +1,1 @@
+"""ROS 2's nav_msgs: see ``kit.msg.nav_msgs``."""

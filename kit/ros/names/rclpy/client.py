@@ -1,0 +1,3 @@
+from kit.ros.client import Client
+
+__all__ = ["Client"]

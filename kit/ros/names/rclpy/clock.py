@@ -1,0 +1,4 @@
+from kit.ros.clock import Clock, ROSClock
+from kit.ros.instants import ClockType
+
+__all__ = ["Clock", "ClockType", "ROSClock"]

@@ -1,0 +1,3 @@
+from kit.ros.instants import ClockType
+
+__all__ = ["ClockType"]

@@ -1,0 +1,3 @@
+from kit.ros.context import Context
+
+__all__ = ["Context"]

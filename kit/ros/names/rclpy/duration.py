@@ -1,0 +1,3 @@
+from kit.ros.instants import Duration, Infinite
+
+__all__ = ["Duration", "Infinite"]

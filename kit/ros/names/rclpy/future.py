@@ -1,0 +1,3 @@
+from kit.ros.task import Future
+
+__all__ = ["Future"]

@@ -1,0 +1,3 @@
+from kit.ros.guard_condition import GuardCondition
+
+__all__ = ["GuardCondition"]

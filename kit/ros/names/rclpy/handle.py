@@ -1,0 +1,3 @@
+from kit.ros.exceptions import InvalidHandle
+
+__all__ = ["InvalidHandle"]

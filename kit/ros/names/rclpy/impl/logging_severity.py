@@ -1,0 +1,3 @@
+from kit.ros.log import LoggingSeverity
+
+__all__ = ["LoggingSeverity"]

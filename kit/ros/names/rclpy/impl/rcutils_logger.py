@@ -1,0 +1,3 @@
+from kit.ros.log import RcutilsLogger
+
+__all__ = ["RcutilsLogger"]

@@ -1,0 +1,3 @@
+from kit.ros.publisher import Publisher
+
+__all__ = ["Publisher"]

@@ -1,0 +1,13 @@
+from kit.ros.event_handler import (
+    PublisherEventCallbacks,
+    QoSOfferedIncompatibleQoSInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    SubscriptionEventCallbacks,
+)
+
+__all__ = [
+    "PublisherEventCallbacks",
+    "QoSOfferedIncompatibleQoSInfo",
+    "QoSRequestedIncompatibleQoSInfo",
+    "SubscriptionEventCallbacks",
+]

@@ -1,0 +1,3 @@
+from kit.ros.service import Service
+
+__all__ = ["Service"]

@@ -1,0 +1,3 @@
+from kit.ros.running import SignalHandlerOptions
+
+__all__ = ["SignalHandlerOptions"]

@@ -1,0 +1,3 @@
+from kit.ros.subscription import MessageInfo, Subscription
+
+__all__ = ["MessageInfo", "Subscription"]

@@ -1,0 +1,3 @@
+from kit.ros.task import Future, Task
+
+__all__ = ["Future", "Task"]

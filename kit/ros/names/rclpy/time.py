@@ -1,0 +1,3 @@
+from kit.ros.instants import Time
+
+__all__ = ["Time"]

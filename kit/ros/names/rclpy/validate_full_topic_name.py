@@ -1,0 +1,3 @@
+from kit.ros.naming import validate_full_topic_name
+
+__all__ = ["validate_full_topic_name"]

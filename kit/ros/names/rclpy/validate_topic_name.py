@@ -1,0 +1,3 @@
+from kit.ros.naming import TOPIC_SEPARATOR_STRING, validate_topic_name
+
+__all__ = ["TOPIC_SEPARATOR_STRING", "validate_topic_name"]

@@ -1,0 +1,3 @@
+from kit.ros.wait_for_message import wait_for_message
+
+__all__ = ["wait_for_message"]

@@ -1,0 +1,1 @@
+"""ROS 2's rosgraph_msgs: see ``kit.msg.rosgraph_msgs``."""

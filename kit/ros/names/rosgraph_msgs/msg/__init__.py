@@ -1,0 +1,3 @@
+from kit.msg.rosgraph_msgs import Clock
+
+__all__ = ["Clock"]
