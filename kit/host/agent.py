@@ -25,6 +25,7 @@ def work(role: str, channel: Channel) -> int:
     watch_stacks()
     conversation = Conversation(channel)
     _, start = conversation.next_question()
+    conversation.allow(start["start_s"])
     conversation.reply_s = start["reply_s"]
     program = Program(start["file"], start["source"].encode("latin-1"))
 

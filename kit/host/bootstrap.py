@@ -50,7 +50,7 @@ def main() -> int:
 
 
 def _watch(child: int, ended: int, folder: str) -> int:
-    """Waits for the end, cleans up, and returns the child's exit status, 128 + n for a signal n."""
+    """Waits for the end, cleans up, and returns the child's exit status: 128 + n for a signal n."""
     for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
         with suppress(OSError):
             signal.signal(number, signal.SIG_IGN)
@@ -70,9 +70,11 @@ def _watch(child: int, ended: int, folder: str) -> int:
     with suppress(OSError):
         os.killpg(child, signal.SIGKILL)
     end_descendants(os.getpid())
-    status = _collect(child) if status is None else status
+    _collect(child)
     remove_folder(folder)
-    code = os.waitstatus_to_exitcode(status or 0)
+    if status is None:  # the pipe was closed, by the kit or by the child
+        return LOST_PIPE
+    code = os.waitstatus_to_exitcode(status)
     return code if code >= 0 else 128 - code
 
 

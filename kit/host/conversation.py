@@ -32,6 +32,11 @@ class Conversation:
         self._open = False
         self._failure: Failure | None = None
         self.reply_s = 0.0
+        """How long an answer may take."""
+
+    def allow(self, seconds: float) -> None:
+        """Has Python say where it is when that long has passed without an answer."""
+        signal.setitimer(signal.ITIMER_REAL, seconds)
 
     def next_question(self) -> list[Json]:
         """Waits for the next question, and returns it without its number."""
@@ -45,12 +50,12 @@ class Conversation:
             self._seq, self._open = seq, True
         if self._failure is not None:
             self.fail(self._failure)
-        signal.setitimer(signal.ITIMER_REAL, self.reply_s)
+        self.allow(self.reply_s)
         return [kind, *content]
 
     def answer(self, kind: str, *content: Json) -> None:
         """Answers the question."""
-        signal.setitimer(signal.ITIMER_REAL, 0)
+        self.allow(0)
         sys.stdout.flush()
         with self._lock:
             self._open = False

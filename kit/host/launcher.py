@@ -69,7 +69,7 @@ class Child:
         self._file = file.absolute()
         self._limits = limits
         self._level = level
-        self._start = {**start, **_program(self._file), "reply_s": limits.reply_s, "start_s": limits.start_s}
+        self._start = {**start, **_program(self._file), "reply_s": limits.reply_s}
         self._seq = 0
         self._waited = 0.0
         self._output = Output(limits.output)
@@ -130,6 +130,7 @@ class Child:
         while self._answer is None:
             frame = self._receive(until)
             if isinstance(frame, Confined) and frame.level == self._level and self._start:
+                self._start["start_s"] = max(0.001, self._deadline - time.monotonic())
                 self._unsent += encode(["start", 0, self._start])
                 self._start = {}
             elif isinstance(frame, Refused):

@@ -1,0 +1,37 @@
+"""Student files, limits that make accidents end quickly, and what this machine can confine."""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from kit.host import landlock
+from kit.host.limits import MIB, Limits
+
+Student = Callable[[str], Path]
+
+QUICK = Limits(start_s=20.0, reply_s=1.0, memory=600 * MIB, output=4096, frame=64 * 1024)
+"""Short deadlines, but no shorter than a busy machine needs for honest code."""
+
+LINUX = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's /proc")
+LOCKS = pytest.mark.skipif(
+    sys.platform != "linux" or landlock.abi() < 3, reason="this kernel cannot lock a process in (Landlock)"
+)
+
+
+@pytest.fixture
+def student(tmp_path: Path) -> Student:
+    """Writes a student's file and returns its path."""
+    folder = tmp_path / "student"
+    folder.mkdir()
+
+    def write(source: str, name: str = "work.py") -> Path:
+        file = folder / name
+        file.write_text(textwrap.dedent(source), encoding="utf-8")
+        return file
+
+    return write

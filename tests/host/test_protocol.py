@@ -1,0 +1,96 @@
+"""What a child may say."""
+
+from __future__ import annotations
+
+import copy
+import random
+
+import pytest
+
+from kit.host.failure import Failure, FailureKind
+from kit.host.protocol import Confined, Ended, Event, Failed, Functions, Refused, Reply, Values, parse
+from kit.host.wire import Json, ProtocolError
+
+GOOD: list[tuple[list[Json], object]] = [
+    (["confined", 1], Confined(1)),
+    (["refused", "no"], Refused("no")),
+    (["reply", 3, None, []], Reply(3, None, ())),
+    (["reply", 3, 100, [["gone", 7], ["publish", 1, [0.5]]]], Reply(3, 100, (Event("gone", [7]), Event("publish", [1, [0.5]])))),
+    (["functions", 0, ["reward"]], Functions(0, ("reward",))),
+    (["values", 9, [1, 2.5]], Values(9, [1.0, 2.5])),
+    (["ended", 2, []], Ended(2, ())),
+    (["failed", 2, "exception", "E: x", "a.py", 3], Failed(2, Failure(FailureKind.EXCEPTION, "E: x", "a.py", 3))),
+    (["failed", 2, "exit", "left", None, None], Failed(2, Failure(FailureKind.EXIT, "left"))),
+]
+
+
+@pytest.mark.parametrize(("content", "frame"), GOOD, ids=[str(content[0]) for content, _ in GOOD])
+def test_good_frames(content: list[Json], frame: object) -> None:
+    assert parse(content) == frame
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        None,
+        [],
+        {},
+        "reply",
+        ["unheard of", 1],
+        [["reply"], 1, None, []],
+        ["reply", 1, None],
+        ["reply", 1, None, [], 0],
+        ["reply", True, None, []],
+        ["reply", -1, None, []],
+        ["reply", 1, 0.5, []],
+        ["reply", 1, -1, []],
+        ["reply", 1, None, None],
+        ["reply", 1, None, [[]]],
+        ["reply", 1, None, [[1]]],
+        ["values", 1, [True]],
+        ["values", 1, ["1"]],
+        ["values", 1, [None]],
+        ["values", 1, {"0": 1}],
+        ["values", 1, [float("inf")]],
+        ["functions", 0, ["x" * 1000]],
+        ["confined", 4],
+        ["confined", "1"],
+        ["failed", 1, "timeout", "a child cannot say this of itself", None, None],
+        ["failed", 1, "heroic", "", None, None],
+        ["failed", 1, "exit", "x" * 10_000, None, None],
+        ["failed", 1, "exit", "", "a.py", "3"],
+    ],
+    ids=str,
+)
+def test_bad_frames(content: Json) -> None:
+    with pytest.raises(ProtocolError):
+        parse(content)
+
+
+def test_a_thousand_broken_frames_are_understood_or_refused() -> None:
+    """One value of a good frame is exchanged for another one: the outcome is a frame or a refusal."""
+    chance = random.Random(1)
+    values: list[Json] = [None, True, -1, 0, 2**70, 0.5, float("nan"), float("inf"), "", "x" * 5000, [], [[]], {}, {"a": 1}]
+    for _ in range(1000):
+        content = copy.deepcopy(chance.choice(GOOD)[0])
+        target = content
+        while True:
+            at = chance.randrange(len(target))
+            if isinstance(target[at], list) and target[at] and chance.random() < 0.7:
+                target = target[at]
+            else:
+                break
+        target[at] = chance.choice(values)
+        try:
+            frame = parse(content)
+        except ProtocolError as problem:
+            assert str(problem).isprintable()  # noqa: PT017 - either outcome is right
+        else:
+            hash(frame.__class__)
+
+
+def test_a_childs_words_are_made_printable() -> None:
+    frame = parse(["failed", 1, "exception", "\x1b]0;title\x07", "a\n.py", 3])
+    assert isinstance(frame, Failed)
+    assert frame.failure.message.isprintable()
+    assert str(frame.failure).isprintable()
