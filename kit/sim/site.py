@@ -87,10 +87,14 @@ class WorldParams(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """A type of model plugin, as world files name it, and how its parameters are read."""
+    """A type of model plugin."""
 
     type: str
+    """As model files name it."""
     read: Callable[[Section, ModelScope], Params]
+    """Makes parameters of its section."""
+    example: str
+    """The least that a model file must say about it, for a model whose bodies and joints have plain names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,3 +103,4 @@ class WorldDevice:
 
     type: str
     read: Callable[[Section, WorldScope], WorldParams]
+    example: str

@@ -63,4 +63,4 @@ class BoolSensor(Plugin):
         return self._bool.send(lambda: Bool(data=touched))
 
 
-DEVICE = Device("BoolSensor", read)
+DEVICE = Device("BoolSensor", read, example="")

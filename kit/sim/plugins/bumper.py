@@ -94,4 +94,4 @@ def _collision(contact: Contact) -> Collision:
     )
 
 
-DEVICE = Device("Bumper", read)
+DEVICE = Device("Bumper", read, example="")

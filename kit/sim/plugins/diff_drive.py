@@ -87,4 +87,4 @@ class DiffDrive(Plugin):
         return sent
 
 
-DEVICE = Device("DiffDrive", read)
+DEVICE = Device("DiffDrive", read, example="body: base")

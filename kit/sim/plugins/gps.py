@@ -118,4 +118,4 @@ def on_earth(east: float, north: float, ref_latitude: float, ref_longitude: floa
     )
 
 
-DEVICE = Device("Gps", read)
+DEVICE = Device("Gps", read, example="body: base")

@@ -167,4 +167,4 @@ class Imu(Plugin):
         return transforms(transform(self._site.clock.stamp, parent, self._frame, Pose()))
 
 
-DEVICE = Device("Imu", read)
+DEVICE = Device("Imu", read, example="body: base")

@@ -177,4 +177,6 @@ class Laser(Plugin):
         return transforms(transform(self._site.clock.stamp, parent, self._frame, self._params.sight.origin))
 
 
-DEVICE = Device("Laser", read)
+DEVICE = Device(
+    "Laser", read, example="body: base\nrange: 10\nangle: {min: -3.14, max: 3.14, increment: 0.07}"
+)

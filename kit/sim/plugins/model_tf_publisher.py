@@ -75,4 +75,4 @@ class ModelTfPublisher(Plugin):
         return transforms(*found)
 
 
-DEVICE = Device("ModelTfPublisher", read)
+DEVICE = Device("ModelTfPublisher", read, example="")

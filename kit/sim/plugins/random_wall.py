@@ -91,4 +91,4 @@ class RandomWall(Plugin):
         return np.array([[*a, *(a + shift)], [*(a + shift), *(b + shift)], [*(b + shift), *b]])
 
 
-DEVICE = WorldDevice("RandomWall", read)
+DEVICE = WorldDevice("RandomWall", read, example="layer: walls\nrobot_name: robot")

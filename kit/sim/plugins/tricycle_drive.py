@@ -176,4 +176,8 @@ class TricycleDrive(Plugin):
         return sent
 
 
-DEVICE = Device("TricycleDrive", read)
+DEVICE = Device(
+    "TricycleDrive",
+    read,
+    example="body: base\nfront_wheel_joint: front\nrear_left_wheel_joint: left\nrear_right_wheel_joint: right",
+)

@@ -180,4 +180,4 @@ class Tween(Plugin):
         return Pose(*(share * component for component in self._params.delta))
 
 
-DEVICE = Device("Tween", read)
+DEVICE = Device("Tween", read, example="body: base")
