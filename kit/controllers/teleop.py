@@ -12,7 +12,7 @@ from flatland_msgs.srv import MoveModel
 from geometry_msgs.msg import Pose2D, Twist
 from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
-from std_msgs.msg import String
+from std_msgs.msg import Float32, String
 
 SIDES = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}  # [rad] from straight ahead
 HALF_WIDTH = math.radians(45)  # a ray this far from a side's middle, or nearer, belongs to it
@@ -27,11 +27,13 @@ class Teleop(Node):
         self.home = self.declare_parameter("home", [0.0, 0.0, -math.pi / 2]).value  # x, y, theta
         self.model = self.declare_parameter("model", "serp").value
         self.held: set[str] = set()
+        self.strength = 1.0  # below 1 while the terminal cannot tell whether a key is still down
         self.near: tuple[str, ...] = ()  # the sides on which a wall is near
 
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.move_model = self.create_client(MoveModel, "/move_model")
         self.create_subscription(String, "/teleopkeys", self.on_key, 10)
+        self.create_subscription(Float32, "/teleopkeys/strength", self.on_strength, 10)
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
         self.create_subscription(Collisions, "collisions", self.on_collisions, 10)
 
@@ -43,6 +45,10 @@ class Teleop(Node):
             self.held.discard(key)
         if key == "space":
             self.held.clear()
+        self.send()
+
+    def on_strength(self, message: Float32) -> None:
+        self.strength = message.data
         self.send()
 
     def on_scan(self, scan: LaserScan) -> None:
@@ -70,8 +76,8 @@ class Teleop(Node):
     def send(self) -> None:
         """Keys add up, and opposite keys cancel."""
         command = Twist()
-        command.linear.x = self.speed * (("up" in self.held) - ("down" in self.held))
-        command.angular.z = self.turn_rate * (("left" in self.held) - ("right" in self.held))
+        command.linear.x = self.strength * self.speed * (("up" in self.held) - ("down" in self.held))
+        command.angular.z = self.strength * self.turn_rate * (("left" in self.held) - ("right" in self.held))
         if self.near:
             command.linear.x /= 2
         self.drive.publish(command)

@@ -12,7 +12,7 @@ from kit.sim.loading import load_model
 from kit.sim.plugin import Endpoint, Outgoing
 from kit.sim.stage import Stage, StandingModel
 from kit.sim.state import BodyState, SimulationState
-from kit.sim.surroundings import Outline, ScanView, outlines
+from kit.sim.surroundings import Outline, ScanView, hull_distance, outlines
 from kit.world.problems import WorldError
 from kit.world.records import World
 
@@ -159,6 +159,25 @@ class Simulation:
             BodyState(body.model, body.name, body.pose, body.velocity) for body in self._stage.physics.bodies
         )
         return SimulationState(self.time_ns, self.tick, bodies, self._stage.physics.contacts())
+
+    def pose(self, model: str) -> Pose:
+        """Of the model's first body. KeyError if there is no such model."""
+        return self._stage.models[model].bodies[0].pose
+
+    def poses(self) -> list[Pose]:
+        """Of every model's first body, in load order."""
+        return [model.bodies[0].pose for model in self._stage.models.values()]
+
+    def touches(self, model: str) -> bool:
+        """Whether anything solid touches the model, as of the last step."""
+        physics = self._stage.physics
+        if not any(physics.is_touching(body) for body in self._stage.models[model].bodies):
+            return False
+        return any(model in (c.entity_a, c.entity_b) and c.points for c in physics.contacts())
+
+    def hull_distance(self, model: str, point: tuple[float, float]) -> float:
+        """From a point of the world to the nearest footprint of the model [m]; 0 inside."""
+        return hull_distance(self._stage.models[model].bodies, point)
 
     def outlines(self) -> tuple[Outline, ...]:
         """Every footprint where it is now."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -172,3 +173,18 @@ def outlines(bodies: Iterable[PhysicalBody]) -> tuple[Outline, ...]:
             points = tuple(pose.point(*point) for point in local)
             found.append(Outline(body.model, body.name, description.color, points, radius, footprint.sensor))
     return tuple(found)
+
+
+def hull_distance(bodies: Iterable[PhysicalBody], point: tuple[float, float]) -> float:
+    """From a point of the world to the nearest footprint [m]; 0 inside, infinite where there are none."""
+    nearest = math.inf
+    for body in bodies:
+        x, y, _ = body.pose.relative(Pose(*point))
+        for footprint in body.description.footprints:
+            shape = footprint.shape
+            if isinstance(shape, Circle):
+                away = max(0.0, math.hypot(x - shape.center[0], y - shape.center[1]) - shape.radius)
+            else:
+                away = kernels.point_polygon(x, y, np.array(shape.points))
+            nearest = min(nearest, away)
+    return nearest

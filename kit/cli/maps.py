@@ -1,0 +1,42 @@
+"""``kit maps``: the maps that come with the kit."""
+
+from __future__ import annotations
+
+import shutil
+
+import click
+
+from kit.cli import options
+
+
+@click.command()
+@click.argument("name", required=False)
+@click.option("--glyphs", type=click.Choice(("braille", "block", "ascii")), default="braille", show_default=True)
+def command(name: str | None, glyphs: str) -> None:
+    """List the maps, or show one as a picture with its starts and targets."""
+    from kit.world.catalogue import UnknownMap, all_maps, find_map
+
+    if name is None:
+        cards = all_maps()
+        width = max(len(card.name) for card in cards)
+        for card in cards:
+            click.echo(f"{card.name:{width}}  {card.summary}")
+        click.echo("\n`kit maps NAME` shows one, `kit play NAME` opens it.")
+        return
+    try:
+        card = find_map(name)
+    except UnknownMap as error:
+        options.fail(str(error))
+    from kit.picture.encode import ENCODERS
+    from kit.picture.text import plain_rows
+    from kit.session import Session, place_on_map
+    from kit.showing import Showing
+
+    columns, rows = shutil.get_terminal_size()
+    with Session(place_on_map(card)) as session:
+        scene = Showing(session).view().scene
+    click.echo(f"{card.title}: {card.summary}")
+    click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[glyphs](True))))
+    for case in card.cases:
+        x, y, theta = case.start
+        click.echo(f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of {case.target}")

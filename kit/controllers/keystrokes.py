@@ -1,0 +1,38 @@
+"""The keystroke publisher: what the driver's keys do, as messages for whoever wants to be driven."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from kit.msg.std_msgs import Float32, String
+from kit.ros.graph import Graph
+
+TOPIC = "/teleopkeys"
+STRENGTH_TOPIC = "/teleopkeys/strength"
+
+
+class KeystrokePublisher:
+    """Publishes ``p_up``, ``r_up`` and so on (pressed, released) on ``/teleopkeys``.
+
+    A terminal that reports no key release leaves open for a while whether a key is still down; how strongly
+    the keys push meanwhile, 0 to 1, goes to ``/teleopkeys/strength``.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        node = graph.create_node("TeleOpKeys")
+        self._keys = node.create_publisher(String, TOPIC, 10)
+        self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC, 10)
+        self._strength = 1.0
+
+    @property
+    def has_listener(self) -> bool:
+        """Whether a node listens to the keys."""
+        return self._graph.subscription_count(TOPIC) > 0
+
+    def publish(self, messages: Iterable[str], strength: float = 1.0) -> None:
+        if strength != self._strength:
+            self._strength = strength
+            self._strengths.publish(Float32(data=float(strength)))
+        for message in messages:
+            self._keys.publish(String(data=message))

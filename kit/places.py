@@ -1,0 +1,74 @@
+"""Where a drive takes place: a map of the catalogue or a world file, who drives in it, from where to where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from kit.geometry import Pose
+from kit.sim.loading import load
+from kit.world.catalogue import Case, MapCard, find_map
+from kit.world.records import World
+
+BEACON = "beacon"
+"""A model of this name stands where the case's target is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a session takes place: a world, who drives in it, and from where to where."""
+
+    title: str
+    world: World
+    robot: str | None
+    """The model that drives; None in a world without models."""
+    case: Case | None = None
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """All models that can drive, the robot first."""
+        return tuple(sorted(filter(None, {self.robot, *_drivers(self.world)}), key=lambda name: name != self.robot))
+
+    @property
+    def start(self) -> Pose | None:
+        """Where the robot stands at first."""
+        return next((model.pose for model in self.world.models if model.name == self.robot), None)
+
+
+def place_on_map(card: MapCard, case: Case | None = None) -> Place:
+    """A map of the catalogue, by default its first case. Raises WorldError."""
+    case = case or card.cases[0]
+    poses = {card.robot: case.start, BEACON: Pose(*case.target)}
+    if card.partner is not None and case.partner_start is not None:
+        poses[card.partner] = case.partner_start
+    world = load(card.world_file, root=card.root)
+    models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
+    return Place(card.title, replace(world, models=models), card.robot, case)
+
+
+def place_in_file(file: Path, root: Path | None = None) -> Place:
+    """A world file of the user's; its first model with a drive is the robot. Raises WorldError."""
+    world = load(file, root=root)
+    driven = _drivers(world)
+    robot = driven[0] if driven else next((model.name for model in world.models), None)
+    return Place(file.stem if file.stem != "world" else file.parent.name, world, robot)
+
+
+def _drivers(world: World) -> tuple[str, ...]:
+    return tuple(model.name for model in world.models if any(plugin.type.endswith("Drive") for plugin in model.plugins))
+
+
+def find_place(name: str, case: str | None = None, root: Path | None = None) -> Place:
+    """By the name of a shipped map, or a world file. Raises WorldError, UnknownMap, or LookupError for the case."""
+    path = Path(name).expanduser()
+    if path.is_dir() and (path / "world.yaml").is_file():
+        path = path / "world.yaml"
+    if path.is_file() or path.suffix in (".yaml", ".yml"):
+        return place_in_file(path.absolute(), root)
+    card = find_map(name)
+    if case is None:
+        return place_on_map(card)
+    for known in card.cases:
+        if known.name == case:
+            return place_on_map(card, known)
+    raise LookupError(f"The map {name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}.")
