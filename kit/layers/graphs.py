@@ -16,8 +16,9 @@ def graphviz(case: Case, assignment: Assignment | None = None) -> str:
     for entity in case.entities:
         shape = "box" if entity.kind == "map" else "ellipse"
         lines.append(f"  {_quoted(entity.name)} [shape={shape}{_label(_listed(entity.name, assignment))}];")
-    for contact in case.collide:
-        lines.append(f"  {_edge(contact)} [style=solid{_label(_shared(contact, assignment))}];")
+    lines.extend(
+        f"  {_edge(contact)} [style=solid{_label(_shared(contact, assignment))}];" for contact in case.collide
+    )
     lines.extend(f"  {_edge(contact)} [style=dashed, color=gray];" for contact in sorted(case.either))
     for laser in case.lasers:
         watched = () if assignment is None else assignment.watches.get(laser.name, ())

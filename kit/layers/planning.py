@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 
 from kit.layers.assignment import Assignment, breaches, lean, named
-from kit.layers.candidates import Candidates, find_candidates
+from kit.layers.candidates import find_candidates
 from kit.layers.certificate import Certificate, certificate_of
 from kit.layers.cover import minimum_cover
 from kit.layers.requirements import Case
@@ -66,8 +66,3 @@ def solve(case: Case, *, time_limit: float = DEFAULT_TIME_LIMIT) -> Plan:
         len(candidates.layers),
         time.monotonic() - start,
     )
-
-
-def search_space(case: Case) -> Candidates:
-    """All candidate layers of a case, for whoever wants to see what was chosen from."""
-    return find_candidates(case)

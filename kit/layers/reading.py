@@ -20,15 +20,25 @@ A pair that is not named must not collide, and what a laser is not to see it mus
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.requirements import Case, Contact, Entity, Laser, Relation, Sight, Sighting
+from kit.layers.requirements import (
+    Case,
+    CaseError,
+    Contact,
+    Entity,
+    Laser,
+    Relation,
+    Requirement,
+    Sight,
+    Sighting,
+)
+from kit.layers.yamltext import flow, scalar
 from kit.world.documents import Documents
 from kit.world.files import Enclosure, Unusable
 from kit.world.problems import Problem, Problems, WorldError, quoted, suggestion
@@ -55,6 +65,8 @@ class Requirements:
     """For each model of the case, the model instances of the world it stands for: itself, if nothing else is said."""
     bodies: Mapping[str, tuple[str, ...]]
     """For each part of a model, the bodies it consists of (``body``, or ``body.0`` for its first footprint)."""
+    places: Mapping[Requirement, Place] = field(default_factory=dict)
+    """Where the file speaks of a pair, or of a laser and an entity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,21 +102,25 @@ def read_requirements(path: Path) -> Requirements:
     world = section.name("world", "") if section.has("world") else ""
     copies, bodies = _lists(section, "copies"), _lists(section, "bodies")
     names = _names(section, copies)
-    contacts = _contacts(section, names)
-    lasers = tuple(_lasers(section, names))
+    places: dict[Requirement, Place] = {}
+    contacts = _contacts(section, names, places)
+    lasers = tuple(_lasers(section, names, places))
     _check_keys(section, "copies", copies, names.models, "model")
     _check_keys(section, "bodies", bodies, names.entities, "part of a model")
     section.finish()
     problems.raise_if_any()
-    case = Case(
-        tuple(names.entities.values()),
-        tuple(contact for contact, relation in contacts.items() if relation == "collide"),
-        frozenset(contact for contact, relation in contacts.items() if relation == "either"),
-        lasers,
-        title,
-    )
+    try:
+        case = Case(
+            tuple(names.entities.values()),
+            tuple(contact for contact, relation in contacts.items() if relation == "collide"),
+            frozenset(contact for contact, relation in contacts.items() if relation == "either"),
+            lasers,
+            title,
+        )
+    except CaseError as error:
+        raise WorldError([Problem(Place(path), str(error))]) from error
     named = {model: copies.get(model, (model,)) for model in names.models}
-    return Requirements(path, case, path.parent / world if world else None, named, bodies)
+    return Requirements(path, case, path.parent / world if world else None, named, bodies, places)
 
 
 def _lists(section: Section, key: str) -> dict[str, tuple[str, ...]]:
@@ -150,7 +166,7 @@ def _check_keys(section: Section, key: str, found: Iterable[str], known: Iterabl
             section.error(f"{quoted(name)} is no {what}: {suggestion(name, known)}", key)
 
 
-def _contacts(section: Section, names: Names) -> dict[Contact, Relation]:
+def _contacts(section: Section, names: Names, places: dict[Requirement, Place]) -> dict[Contact, Relation]:
     """Every pair the file speaks of. Two statements about one pair that differ are noted, with both places."""
     said: dict[Contact, tuple[Relation, Place]] = {}
     for key, relation in _PAIRS.items():
@@ -168,6 +184,7 @@ def _contacts(section: Section, names: Names) -> dict[Contact, Relation]:
                         inner.error(
                             _contradiction(str(contact), _IN_WORDS[relation], _IN_WORDS[old], place), name
                         )
+    places.update({contact: place for contact, (_, place) in said.items()})
     return {contact: relation for contact, (relation, _) in said.items()}
 
 
@@ -194,7 +211,7 @@ def _impossible(contact: Contact, relation: Relation, names: Names) -> str | Non
     return None
 
 
-def _lasers(section: Section, names: Names) -> Iterator[Laser]:
+def _lasers(section: Section, names: Names, places: dict[Requirement, Place]) -> Iterator[Laser]:
     """Every laser with what the file says of it. Statements that contradict each other are noted."""
     known = _lists(section, "lasers")
     said: dict[Sight, tuple[Sighting, Place]] = {}
@@ -210,6 +227,7 @@ def _lasers(section: Section, names: Names) -> Iterator[Laser]:
                 old, place = said.setdefault(sight, (sighting, inner.place_of(laser)))
                 if old != sighting:
                     inner.error(_contradiction(str(sight), _IN_WORDS[sighting], _IN_WORDS[old], place), laser)
+    places.update({sight: place for sight, (_, place) in said.items()})
     for laser in known:
         entities = {
             wanted: frozenset(
@@ -255,19 +273,19 @@ def written(case: Case, *, requirements: Requirements | None = None, comment: st
     }
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     if case.title:
-        lines.append(f"title: {_scalar(case.title)}")
+        lines.append(f"title: {scalar(case.title)}")
     if requirements is not None and requirements.world is not None:
-        lines.append(f"world: {_scalar(requirements.world.name)}")
+        lines.append(f"world: {scalar(requirements.world.name)}")
     for key, names in (("maps", maps), ("models", models)):
         if names:
-            lines.append(f"{key}: {_flow(names)}")
+            lines.append(f"{key}: {flow(names)}")
     lines += _mapping("parts", {model: names for model, names in parts.items() if names})
     if requirements is not None:
         lines += _mapping("bodies", requirements.bodies)
         copies = {model: names for model, names in requirements.copies.items() if names != (model,)}
         lines += _mapping("copies", copies)
     if ghosts := [entity.name for entity in case.entities if entity.ghost]:
-        lines.append(f"ghosts: {_flow(ghosts)}")
+        lines.append(f"ghosts: {flow(ghosts)}")
     lines += _mapping("collide", _adjacency(case.collide))
     lines += _mapping("either", _adjacency(sorted(case.either)))
     lines += _mapping(
@@ -288,23 +306,22 @@ def _adjacency(contacts: Iterable[Contact]) -> dict[str, list[str]]:
 
 def _mapping(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
     return (
-        [f"{key}:", *(f"  {_scalar(name)}: {_flow(names)}" for name, names in lists.items())] if lists else []
+        [f"{key}:", *(f"  {scalar(name)}: {flow(names)}" for name, names in lists.items())] if lists else []
     )
 
 
-def _flow(names: Iterable[str]) -> str:
-    return f"[{', '.join(_scalar(name) for name in names)}]"
-
-
-_PLAIN: Final = re.compile(r"[A-Za-z_][\w.+-]*(?<![.])", re.ASCII)
-_WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
-
-
-def _scalar(text: str) -> str:
-    """A YAML scalar that is read as this text."""
-    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
-        return text
-    escaped = "".join(
-        {'"': '\\"', "\\": "\\\\"}.get(c) or (c if c.isprintable() else f"\\U{ord(c):08x}") for c in text
-    )
-    return f'"{escaped}"'
+def is_world(path: Path) -> bool:
+    """Whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
+    problems = Problems()
+    try:
+        section = Documents(Enclosure.around(path), {}, problems).section(path, Place(path))
+    except Unusable as error:
+        raise WorldError([Problem(Place(path), f"cannot read it: {error}")]) from error
+    problems.raise_if_any()
+    keys = set() if section is None else set(section.keys())
+    return bool(keys & {"properties", "layers", "plugins"}) and not keys & {
+        *_PAIRS,
+        *_SIGHTS,
+        "maps",
+        "world",
+    }

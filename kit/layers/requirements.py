@@ -131,8 +131,9 @@ class Case:
             for name in named_by(requirement):
                 if self.relation(name, name) == "apart":
                     raise CaseError(
-                        f"{requirement} needs a layer, but the {self.by_name[name].copies} copies of {name} share "
-                        f"one list of layers and must not collide with each other"
+                        f"contradiction: {requirement} needs a layer, but the {self.by_name[name].copies} copies of "
+                        f"{name} share one list of layers, and nothing says that they may collide with each other: "
+                        f"say so, or give one of them a model file of its own"
                     )
 
     def _check(self, contact: Contact) -> None:

@@ -1,0 +1,85 @@
+"""Plans and checks as plain data, for ``--json``: the same facts as the text, under names that stay."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from kit.layers.assignment import Assignment, Breach
+from kit.layers.certificate import Certificate
+from kit.layers.greedy import GreedyRun
+from kit.layers.patch import Patch
+from kit.layers.planning import Plan
+from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight
+
+
+def assignment_data(case: Case, assignment: Assignment) -> dict[str, Any]:
+    """Layers with their members and watchers, and the list of every entity and laser."""
+    return {
+        "layers": [
+            {
+                "name": layer.name,
+                "holds": [name for name in case.names if name in layer.members],
+                "watched_by": [name for name in case.laser if layer.name in assignment.watches.get(name, ())],
+            }
+            for layer in assignment.layers
+        ],
+        "entities": [
+            {"name": entity.name, "kind": entity.kind, "layers": list(assignment.layers_of(entity.name))}
+            for entity in case.entities
+        ],
+        "lasers": [{"name": name, "watches": list(assignment.watches.get(name, ()))} for name in case.laser],
+    }
+
+
+def plan_data(plan: Plan, run: GreedyRun) -> dict[str, Any]:
+    """A plan of requirements, with its proof and the slides' method beside it."""
+    return {
+        "title": plan.case.title,
+        "size": plan.size,
+        "bound": plan.bound,
+        "optimal": plan.optimal,
+        "fits_flatland": plan.size <= MAX_LAYERS,
+        **assignment_data(plan.case, plan.assignment),
+        "certificate": certificate_data(plan.certificate),
+        "slides_method": {"size": run.size, "unseen": [requirement_data(sight) for sight in run.missed]},
+        "seconds": round(plan.seconds, 6),
+    }
+
+
+def certificate_data(certificate: Certificate) -> dict[str, Any]:
+    """``apart``: requirements of which no two fit one layer. ``weighted``: weights as ``[above, below]`` the line."""
+    return {
+        "bound": certificate.bound,
+        "apart": [requirement_data(requirement) for requirement in certificate.apart],
+        "weighted": [
+            [{**requirement_data(r), "weight": [w.numerator, w.denominator]} for r, w in part.items()]
+            for part in certificate.parts
+        ],
+    }
+
+
+def requirement_data(requirement: Requirement) -> dict[str, Any]:
+    """``{"collide": [a, b]}`` or ``{"laser": l, "sees": e}``."""
+    if isinstance(requirement, Sight):
+        return {"laser": requirement.laser, "sees": requirement.entity}
+    return {"collide": [requirement.a, requirement.b]}
+
+
+def breach_data(breach: Breach) -> dict[str, Any]:
+    return {
+        **requirement_data(breach.what),
+        "wanted": breach.wanted,
+        "layers": list(breach.layers),
+        "words": str(breach),
+    }
+
+
+def patch_data(patch: Patch) -> dict[str, Any]:
+    return {
+        "diff": patch.diff(),
+        "files": [str(file.path) for file in patch.files],
+        "left_alone": [
+            {"file": str(left.path), "reason": left.reason, "by_hand": list(left.by_hand)}
+            for left in patch.left_alone
+        ],
+    }
