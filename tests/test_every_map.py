@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Mapping
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -13,9 +13,11 @@ import yaml
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
+from kit.sim.loading import load
+from kit.sim.simulation import Simulation
 from kit.world.catalogue import Case, MapCard, all_maps, maps_folder
-from kit.world.loading import load_world
 from kit.world.records import Circle, Model, Polygon, World
+from kit.world.touching import Touch, Touching
 
 MAPS = maps_folder()
 ROBOTS = MAPS / "robots"
@@ -35,7 +37,7 @@ every_case = pytest.mark.parametrize(
 
 @cache
 def world(name: str) -> World:
-    return load_world(CARDS[name].world_file, root=CARDS[name].root)
+    return load(CARDS[name].world_file, root=CARDS[name].root)
 
 
 def robots(name: str) -> list[Model]:
@@ -191,41 +193,43 @@ def test_every_target_can_be_reached(name: str, case: Case) -> None:
         assert been[floor(name).square(place)]
 
 
-def layers_of(spec_type: str, robot: Model) -> set[str]:
-    params = next(plugin.params for plugin in robot.plugins if plugin.type == spec_type)
-    assert isinstance(params, Mapping)
-    return set(params["layers"])
-
-
 @every_map
-def test_a_robot_touches_the_walls_and_sees_them_but_not_itself(name: str) -> None:
-    walls = {layer for entry in world(name).layers if entry.walls for layer in entry.names}
-    for robot in robots(name):
-        own = {layer for body in robot.bodies for footprint in body.footprints for layer in footprint.layers}
-        assert own & walls
-        assert layers_of("Laser", robot) & walls
-        assert not layers_of("Laser", robot) & own
+def test_robots_touch_and_see_walls_and_each_other_and_not_themselves(name: str) -> None:
+    touching = Touching(world(name))
+    own = {robot.name for robot in robots(name)}
+    hulls = [
+        thing for thing in touching.things if thing.model in own and any(s.category for s in thing.surfaces)
+    ]
+    walls = [thing for thing in touching.things if thing.model is None]
+    assert len(hulls) == len(own)
+    assert len(walls) == 1
+    for one, other in combinations([*hulls, *walls], 2):
+        assert touching.between(one, other).touch is Touch.COLLIDES
+    for laser in (laser for laser in touching.lasers if laser.model in own):
+        seen = {thing for thing in touching.things if touching.seeing(laser, thing).sees}
+        assert seen >= {thing for thing in [*hulls, *walls] if thing.model != laser.model}
+        assert not any(thing.model == laser.model for thing in seen)
 
 
 @every_map
 def test_a_beacon_sees_robots_only_and_nothing_touches_it(name: str) -> None:
-    walls = {layer for entry in world(name).layers if entry.walls for layer in entry.names}
-    for beacon in (each for each in world(name).models if each.name == "beacon"):
-        assert all(footprint.category == 0 for body in beacon.bodies for footprint in body.footprints)
-        sees = layers_of("Laser", beacon)
-        assert not sees & walls
-        for robot in robots(name):
-            assert any(sees & set(footprint.layers) for body in robot.bodies for footprint in body.footprints)
+    touching = Touching(world(name))
+    own = {robot.name for robot in robots(name)}
+    for laser in (laser for laser in touching.lasers if laser.model == "beacon"):
+        assert {thing.model for thing in touching.things if touching.seeing(laser, thing).sees} == own
+    for one, other, verdict in touching.pairs():
+        assert "beacon" not in (one.model, other.model) or verdict.touch is Touch.PASSES
 
 
-@pytest.mark.parametrize("name", [name for name, card in CARDS.items() if card.partner])
-def test_partners_see_and_touch_each_other(name: str) -> None:
-    for one, other in (robots(name), robots(name)[::-1]):
-        for body in other.bodies:
-            for footprint in body.footprints:
-                assert layers_of("Laser", one) & set(footprint.layers)
-                assert footprint.mask & one.bodies[0].footprints[0].category
-        assert one.namespace != other.namespace
+@every_map
+def test_a_resting_robot_has_a_wall_in_every_direction_and_touches_none(name: str) -> None:
+    simulation = Simulation(world(name))
+    simulation.step(20)
+    assert simulation.state().contacts == ()
+    for robot in robots(name):
+        assert simulation.state().pose(robot.name) == pytest.approx(robot.pose)
+        (view,) = (view for view in simulation.scan_views() if view.model == robot.name)
+        assert np.isfinite(view.ranges).all()
 
 
 @pytest.mark.parametrize("variant", ["serp_tracked", "left", "right"])

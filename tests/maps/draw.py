@@ -179,7 +179,7 @@ def house() -> Plan:
     )
     furniture = boxes(
         (-4.0, -2.6, -3.3, -0.6),  # sofa
-        (-2.7, -2.0, -2.0, -1.2),  # low table
+        (-2.8, -2.0, -2.2, -1.2),  # low table
         (0.7, -3.2, 3.6, -2.75),  # kitchen counter
         (3.1, -2.75, 3.6, -1.5),  # and its other leg
         (-4.0, 1.2, -2.8, 2.7),  # bed
@@ -188,7 +188,7 @@ def house() -> Plan:
         (1.1, 2.2, 1.5, 2.7),  # basin
         (2.0, 2.2, 3.4, 2.7),  # desk
     )
-    dining_table = disc(-0.5, -2.2, 0.5)
+    dining_table = disc(-0.95, -2.1, 0.45)
     return Plan((8.0, 6.19), join(rooms, doors), things=join(furniture, dining_table))
 
 
