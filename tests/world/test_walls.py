@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -202,8 +203,6 @@ def png(width: int, height: int) -> bytes:
     Image.new("L", (1, 1)).save(content, "PNG")
     data = bytearray(content.getvalue())
     data[16:24] = width.to_bytes(4, "big") + height.to_bytes(4, "big")
-    import zlib
-
     data[29:33] = zlib.crc32(data[12:29]).to_bytes(4, "big")
     return bytes(data)
 
