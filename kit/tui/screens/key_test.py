@@ -47,7 +47,7 @@ class KeyTestScreen(DriveScreen):
     KeyTestScreen Static { width: 1fr; height: auto; padding: 0 1; }
     KeyTestScreen #title { text-style: bold; }
     KeyTestScreen #mode { height: 2; }
-    KeyTestScreen #log { height: 1fr; }
+    KeyTestScreen #log { height: 1fr; margin-top: 1; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         ("m", "next_drive_mode", "Another mode"),
@@ -60,9 +60,7 @@ class KeyTestScreen(DriveScreen):
         self._last: float | None = None
 
     def compose(self) -> ComposeResult:
-        yield Static(
-            "Key test: press keys, hold keys       M another mode   X close", id="title", markup=False
-        )
+        yield Static("Key test: press and hold keys     M another mode   X close", id="title", markup=False)
         yield Static(self._mode_text(), id="mode", markup=False)
         yield Static(self._table_text(), id="keys", markup=False)
         yield Static(id="log", markup=False)
