@@ -262,7 +262,7 @@ class Graph:
         from kit.ros.context import Context
 
         context = Context(self)
-        context.init()
+        context.init(())
         return context
 
     def create_node(self, name: str, namespace: str | None = None) -> Node:

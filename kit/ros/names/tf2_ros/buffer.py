@@ -1,0 +1,3 @@
+from kit.ros.transforms import Buffer
+
+__all__ = ["Buffer"]

@@ -1,0 +1,3 @@
+from kit.ros.transforms import StaticTransformBroadcaster
+
+__all__ = ["StaticTransformBroadcaster"]

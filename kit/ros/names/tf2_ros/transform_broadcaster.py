@@ -1,0 +1,3 @@
+from kit.ros.transforms import TransformBroadcaster
+
+__all__ = ["TransformBroadcaster"]

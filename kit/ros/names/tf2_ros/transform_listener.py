@@ -1,0 +1,3 @@
+from kit.ros.transforms import TransformListener
+
+__all__ = ["TransformListener"]
