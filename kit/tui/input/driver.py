@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import select
 import threading
+import time
 from codecs import getincrementaldecoder
 from typing import TYPE_CHECKING, Any, Final
 
@@ -43,21 +44,28 @@ class KeyDriver(LinuxDriver):
         assert self._file is not None, "a full-screen app needs its standard error"
         self._guard = TerminalGuard(self.fileno, self._file.fileno())
         self._reporting = False
-        self._answers = False
+        self._asked = 0
+        self._heard = 0
         self._answered = threading.Event()
 
-    def report_releases(self, on: bool) -> bool:
-        """Asks the terminal for key release events, or for none; says whether an answer is to be expected.
+    def report_releases(self, on: bool) -> None:
+        """Asks the terminal for key release events, or for none.
 
-        The answer arrives as KeyboardAnswer, at the screen. Only a screen that drives should ask: elsewhere
-        the releases are noise, and each costs bytes.
+        Its answer arrives as KeyboardAnswer, at the screen that is active then. Only a screen that drives should
+        ask: elsewhere releases are noise, and each costs bytes.
         """
-        if constants.DISABLE_KITTY_KEY or on == self._reporting:
-            return False
+        if constants.DISABLE_KITTY_KEY:
+            return
+        if on:
+            self.write(RELEASES_ON + ASK_FLAGS)
+            self._ask_attributes()
+        elif self._reporting:
+            self.write(RELEASES_OFF)
         self._reporting = on
-        self.write(RELEASES_ON + ASK_FLAGS + ASK_ATTRIBUTES if on else RELEASES_OFF)
-        self.flush()
-        return on
+
+    def _ask_attributes(self) -> None:
+        self._asked += 1
+        self.write(ASK_ATTRIBUTES)
 
     def write(self, data: str) -> None:
         """Writes to the terminal while the app has it; afterwards nobody reads, so there is nothing to do."""
@@ -68,7 +76,6 @@ class KeyDriver(LinuxDriver):
         self._guard.arm()
         super().start_application_mode()  # type: ignore[no-untyped-call]  # LinuxDriver leaves it untyped
         if self._reporting:  # back from a suspension: the flags went with the screen
-            self._reporting = False
             self.report_releases(True)
 
     def stop_application_mode(self) -> None:
@@ -82,14 +89,18 @@ class KeyDriver(LinuxDriver):
 
     def _await_last_words(self) -> None:
         """Lets the release of the key that quit arrive here, and not as text in the shell."""
-        if self._answers and self._key_thread is not None and self._key_thread.is_alive():
+        if not self._heard:  # never asked, or a terminal that does not answer
+            return
+        if self._reporting:
+            self.write(RELEASES_OFF)
+        self._ask_attributes()
+        end = time.monotonic() + _LAST_WORDS
+        while self._heard < self._asked and self._answered.wait(max(0.0, end - time.monotonic())):
             self._answered.clear()
-            self.write((RELEASES_OFF if self._reporting else "") + ASK_ATTRIBUTES)
-            self._answered.wait(_LAST_WORDS)
 
     def process_message(self, message: Message) -> None:
         if isinstance(message, KeyboardAnswer):
-            self._answers = True
+            self._heard += 1
             self._answered.set()
         super().process_message(message)
 

@@ -68,7 +68,10 @@ class DriveScreen(Screen[None]):
         self._report_releases(True)
 
     def on_screen_suspend(self) -> None:
-        self._report_releases(False)
+        if not isinstance(
+            next(reversed(self.app.screen_stack), None), DriveScreen
+        ):  # or that one has asked already
+            self._report_releases(False)
         self.stop_driving()
 
     def _report_releases(self, on: bool) -> None:

@@ -70,6 +70,7 @@ class Terminal:
     """Our side of a pseudo-terminal, and a program on the other side.
 
     ``kitty``: whether it knows the keyboard protocol. ``attributes``: its answer to ``CSI c``, None for silence.
+    ``on_the_way``: keys that it sends just before it learns that releases are no longer wanted.
     The program may report to us with JSON lines, to the file descriptor named by REPORT in its environment.
     """
 
@@ -78,8 +79,13 @@ class Terminal:
     )
 
     def __init__(
-        self, *program: str, kitty: bool = True, attributes: bytes | None = KITTY_ATTRIBUTES
+        self,
+        *program: str,
+        kitty: bool = True,
+        attributes: bytes | None = KITTY_ATTRIBUTES,
+        on_the_way: bytes = b"",
     ) -> None:
+        self.on_the_way = on_the_way
         self.kitty, self.attributes = kitty, attributes
         self.modes = Modes()
         self.output = b""
@@ -131,7 +137,10 @@ class Terminal:
             if match["switch"]:
                 self.modes.private(numbers, match["switch"] == b"h")
             elif match["verb"]:
+                wanted = self.modes.keyboard & 2
                 self.modes.flag(match["verb"], numbers)
+                if wanted and not self.modes.keyboard & 2:
+                    self.send(self.on_the_way)
             elif match["question"] == b"?u" and self.kitty:
                 self.send(b"\x1b[?%du" % self.modes.keyboard)
             elif match["question"] == b"c" and self.attributes:

@@ -102,6 +102,18 @@ def test_releases_are_asked_for_only_while_a_screen_drives(driving: Any) -> None
     driving.until_reported(["press", "w", "p_up"])  # going away had released it
 
 
+def test_one_driving_screen_on_another(driving: Any) -> None:
+    driving.send(b"\x1b[119;;119u\x1b[48;;48u")
+    driving.until_reported(["press", "w", "p_up"], ["mode", "exact"])
+    driving.send(b"\x1b[119;;119u\x1b[119;1:3u")
+    driving.until_reported(["press", "w", "p_up"], ["release", "w", "r_up"])
+    driving.send(b"\x1b[53;;53u")
+    driving.until_reported(["mode", "exact"])
+    driving.send(b"\x1b[119;;119u")
+    driving.until_reported(["press", "w", "p_up"])
+    assert driving.modes.keyboard == 27
+
+
 def test_a_suspension_gives_the_terminal_back_and_takes_it_again(driving: Any) -> None:
     driving.send(b"\x1b[119;;119u\x1b[56;;56u")
     driving.until_reported(["press", "w", "p_up"], ["suspended"], ["mode", "exact"])
@@ -142,7 +154,6 @@ def kills(number: int, times: int = 1) -> Callable[[Any], None]:
 WAYS_OUT: dict[str, tuple[Callable[[Any], None], set[int]]] = {
     "exit": (sends(b"\x1b[51;;51u"), {0}),
     "Textual's own quit key": (sends(b"\x1b[113;5u"), {0}),
-    "exit, and the key goes up a moment later": (sends(b"\x1b[51;;51u" + b"\x1b[51;1:3u"), {0}),
     "an exception": (sends(b"\x1b[49;;49u"), {0, 1}),
     "SystemExit": (sends(b"\x1b[50;;50u"), {3}),
     "SIGTERM": (kills(signal.SIGTERM), {-signal.SIGTERM}),
@@ -167,6 +178,15 @@ def test_every_way_out_leaves_a_sane_terminal(driving: Any, way: str, drawing: b
     *_, after = driving.output.rpartition(b"\x1b[?1049l")
     drawn = re.sub(rb"\x1b\[\?\d+[hl]", b"", after)
     assert b"\x1b[1;1H" not in drawn  # no frame on the user's own screen
+
+
+def test_the_release_of_the_key_that_quit_does_not_end_up_in_the_shell(terminal: Run) -> None:
+    app = terminal("drive_app.py", on_the_way=b"\x1b[51;1:3u")
+    app.until_reported(["mode", "exact"])
+    app.send(b"\x1b[51;;51u")
+    assert app.wait() == 0
+    app.assert_sane()
+    assert b"51;1:3" not in app.output
 
 
 def test_the_terminal_goes_away(driving: Any) -> None:

@@ -1,7 +1,8 @@
 """An app with one screen that drives and one that does not; it reports what arrives, and ends as it is told.
 
-Told by keys: 1 raises an exception, 2 raises SystemExit, 3 exits, 4 opens the other screen, 5 closes it,
-6 asks for the cursor's position, 7 draws without end, 8 lets the terminal be used by others for a moment.
+Told by keys: 1 raises an exception, 2 raises SystemExit, 3 exits, 4 opens the other screen, 0 one more that
+drives, 5 closes it, 6 asks for the cursor's position, 7 draws without end, 8 lets the terminal be used by others
+for a moment.
 """
 
 from __future__ import annotations
@@ -75,6 +76,9 @@ class Program(App[None]):
 
     def key_4(self) -> None:
         self.push_screen(Elsewhere())
+
+    def key_0(self) -> None:
+        self.push_screen(Driving())
 
     def key_5(self) -> None:
         self.pop_screen()
