@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import combinations
 
 import pymunk
 
@@ -126,22 +125,18 @@ def _clashes(group: Group, described: dict[str, Body], joints: Iterable[Joint]) 
     apart = {
         frozenset(anchor.body for anchor in joint.anchors) for joint in joints if not joint.collide_connected
     }
-    scratch = pymunk.Body(body_type=pymunk.Body.STATIC)
-    for a, b in combinations(group, 2):
-        if frozenset((a, b)) in apart:
-            continue
-        for f in described[a].footprints:
-            for g in described[b].footprints:
-                touching = f.category & g.mask and g.category & f.mask
-                if touching and _overlap(_shape(scratch, f, group[a]), _shape(scratch, g, group[b])):
+    space = pymunk.Space()
+    owners: dict[pymunk.Shape, str] = {}
+    for name, offset in group.items():
+        for footprint in described[name].footprints:
+            shape = _shape(space.static_body, footprint, offset)
+            for overlapping in space.shape_query(shape):  # only those that its layers let it collide with
+                other = owners.get(overlapping.shape, name)
+                if other != name and frozenset((other, name)) not in apart:
                     return True
+            owners[shape] = name
+            space.add(shape)
     return False
-
-
-def _overlap(a: pymunk.Shape, b: pymunk.Shape) -> bool:
-    a.cache_bb()
-    b.cache_bb()
-    return bool(a.shapes_collide(b).points)
 
 
 # Bodies and shapes
