@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import combinations, combinations_with_replacement
@@ -26,19 +27,17 @@ def summary(world: World) -> str:
     ordered = sorted(touching.things, key=lambda thing: (not thing.dynamic, thing.model is None))
     groups = _grouped(ordered, lambda thing: (thing.model is None, thing.dynamic, thing.surfaces))
     inner = WIDTH - len(INDENT)
+    names, plugins = len(world.layer_bits), [(plugin.name, plugin.type) for plugin in world.plugins]
     sections = (
         (f"World {world.file}", [f"size: {_size(world)}"]),
-        (
-            f"Layers ({len(world.layer_bits)} of {MAX_LAYERS} names)",
-            table([*map(_layer, world.layers)], inner),
-        ),
+        (f"Layers ({names} of {MAX_LAYERS} names)", table([*map(_layer, world.layers)], inner)),
         (f"Models ({len(world.models)})", table([*map(_models, _by_file(world))], inner)),
-        (
-            f"Plugins of the world ({len(world.plugins)})",
-            table([(p.name, p.type) for p in world.plugins], inner),
-        ),
+        (f"Plugins of the world ({len(plugins)})", table(plugins, inner)),
         ("Who collides with whom", blocks(_merged(_collisions(touching, groups)), inner)),
-        *((f"Within {listed(names)}", blocks(rows, inner)) for names, rows in _within(world, touching)),
+        *(
+            (textwrap.fill(f"Within {listed(models)}", WIDTH), blocks(rows, inner))
+            for models, rows in _within(world, touching)
+        ),
         ("Which laser sees whom", blocks(_merged(_views(touching, groups)), inner)),
     )
     return "\n\n".join("\n".join([title, *indented(lines)]) for title, lines in sections if lines)

@@ -5,6 +5,8 @@ They lie beside the project, not in it; without them these tests are skipped.
 
 from __future__ import annotations
 
+import re
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +14,12 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
 from kit.world.loading import load_world
-from kit.world.problems import WorldError
+from kit.world.problems import Problems, WorldError
 from kit.world.reading import DeviceReader, ModelScope, Section
-from kit.world.records import World
+from kit.world.records import Place, World
 
 FLATLAND = Path(__file__).resolve().parents[3] / "shared" / "flatland_worlds" / "avidbots-flatland"
 LOAD = "flatland_server/test/load_world_tests"
@@ -180,3 +184,96 @@ def test_where_models_and_maps_stand() -> None:
         "dummy_param_int": 123456,
         "dummy_param_string": "dummy_test_123456",
     }
+
+
+def test_the_walls_and_footprints_that_flatlands_test_lists() -> None:
+    world = load_world(FLATLAND / LOAD / "simple_test_A/world.yaml")
+    assert dict(world.layer_bits) == {"2d": 1, "3d": 2, "4d": 4, "5d": 8, "lines": 16, "robot": 32}
+    assert [layer.bits for layer in world.layers] == [0b1, 0b1110, 0b10000, 0b100000]
+    assert [layer.walls and layer.walls.origin for layer in world.layers] == [
+        Pose(0.05, -0.05, 1.57),
+        Pose(),
+        Pose(-1.2, -5, 1.23),
+        None,
+    ]
+    lying = [
+        (7.5, 0, 1.5),
+        (6, 1.5, 6),
+        (4.5, 0, 4.5),
+        (3, 3, 6),
+        (1.5, 1.5, 4.5),
+        (1.5, 6, 7.5),
+        (0, 1.5, 3),
+        (0, 6, 7.5),
+    ]
+    upright = [
+        (0, 4.5, 7.5),
+        (1.5, 6, 7.5),
+        (1.5, 0, 1.5),
+        (3, 0, 3),
+        (4.5, 1.5, 4.5),
+        (6, 3, 6),
+        (6, 0, 1.5),
+        (7.5, 0, 1.5),
+    ]
+    assert _walls(world, 1) == {(a, y, b, y) for y, a, b in lying} | {(x, a, x, b) for x, a, b in upright}
+    assert _walls(world, 2) == {(0.1, 0.2, 0.3, 0.4), (-0.1, -0.2, -0.3, -0.4), (0.01, 0.02, 0.03, 0.04)}
+    base, left, right, tail, antenna = world.models[0].bodies
+    assert [f.category for body in (base, left, right, tail, antenna) for f in body.footprints] == [
+        *(0xFFFF, 0xFFFF),
+        *(0b01, 0xFFFF, 0b10, 0),
+    ]
+    assert left.footprints[0].sensor
+    assert (tail.pose, antenna.pose) == (Pose(0, 0, 0.52), Pose(0, 0.5, 0))
+    weld, rigid, free, limited = world.models[0].joints
+    assert (weld.angle, weld.frequency, weld.damping, weld.collide_connected) == (1.57079633, 10, 0.5, True)
+    assert (rigid.angle, rigid.frequency, rigid.damping, rigid.collide_connected) == (0, 0, 0, False)
+    assert (free.limits, limited.limits) == (None, (-0.002, 3.735))
+    chair, person = world.models[2].bodies[0], world.models[3].bodies[0]
+    assert (chair.kind, [f.category for f in chair.footprints], person.kind) == (
+        "static",
+        [0b1100, 0xFFFF],
+        "kinematic",
+    )
+
+
+def _walls(world: World, layer: int) -> set[tuple[float, ...]]:
+    walls = world.layers[layer].walls
+    assert walls is not None
+    return {tuple(float(number) for number in wall) for wall in walls.local.round(9)}
+
+
+PREPROCESSOR = "flatland_server/test/yaml_preprocessor/yaml"
+
+
+def test_includes_give_what_flatlands_test_expects(tmp_path: Path) -> None:
+    shutil.copytree(FLATLAND / PREPROCESSOR, tmp_path, dirs_exist_ok=True)
+    parent = tmp_path / "include.parent.yaml"
+    absolute = tmp_path / "absolute.yaml"
+    absolute.write_text("contents of absolute file\n")
+    parent.write_text(re.sub(r"\$include /\S+", f"$include {absolute}", parent.read_text()))
+    assert _read(parent) == _read(tmp_path / "include.parent.out.yaml")
+
+
+def test_variables_give_what_flatlands_test_expects(tmp_path: Path) -> None:
+    """Of the test of ``$eval`` the part that runs no code: environment variables."""
+    for name in ("eval.strings.yaml", "eval.strings.out.yaml"):
+        text = (FLATLAND / PREPROCESSOR / name).read_text()
+        (tmp_path / name).write_text(text[text.index("testEnv:") : text.index("testParam:")])
+    variables = {"VALIDSTRING": "Bar", "VALIDNUMBER": "123.4"}
+    assert _read(tmp_path / "eval.strings.yaml", variables) == _read(tmp_path / "eval.strings.out.yaml")
+
+
+def test_code_is_refused_where_it_stands() -> None:
+    with pytest.raises(WorldError) as caught:
+        _read(FLATLAND / PREPROCESSOR / "eval.strings.yaml")
+    lines = {problem.place.line for problem in caught.value.problems}
+    assert lines == {1, 2, 3, 4, 6, 9, 11, *range(28, 37)}
+
+
+def _read(file: Path, environment: Mapping[str, str] | None = None) -> Mapping[str, object]:
+    problems = Problems()
+    section = Documents(Enclosure.around(file), environment or {}, problems).section(file, Place(file))
+    problems.raise_if_any()
+    assert section is not None
+    return section.rest()

@@ -1,0 +1,111 @@
+"""The catalogue of maps: cards are read, checked, and found by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.geometry import Pose
+from kit.world.catalogue import UnknownMap, all_maps, find_map, map_names, maps_folder, root_of
+from kit.world.loading import load_world
+from kit.world.problems import WorldError
+
+CARD = """\
+title: A hall
+summary: To and fro
+source: drawn for a test
+cases:
+  - {name: there, start: [0, 0, 1.57], target: [1, 2]}
+"""
+
+
+def card(folder: Path, name: str, text: str = CARD) -> None:
+    (folder / name).mkdir()
+    (folder / name / "about.yaml").write_text(text)
+
+
+def test_a_card_and_its_defaults(tmp_path: Path) -> None:
+    card(tmp_path, "hall")
+    (found,) = all_maps(tmp_path)
+    assert (found.name, found.title, found.source, found.robot) == (
+        "hall",
+        "A hall",
+        "drawn for a test",
+        "serp",
+    )
+    assert (found.world_file, found.root, found.partner) == (tmp_path / "hall" / "world.yaml", tmp_path, None)
+    (case,) = found.cases
+    assert (case.name, case.start, case.target, case.target_radius) == (
+        "there",
+        Pose(0, 0, 1.57),
+        (1, 2),
+        0.2,
+    )
+    assert (case.start_shift, case.target_shift, case.any_heading) == ((0, 0), (0, 0), False)
+    assert (case.group, case.partner_start) == ("", None)
+
+
+def test_a_card_with_every_key(tmp_path: Path) -> None:
+    card(
+        tmp_path,
+        "hall",
+        CARD.replace("cases", "robot: left\npartner: right\ncases")
+        + "  - {name: back, start: [1, 2, 0], target: [0, 0], target_radius: 0.3, start_shift: [0.3, 0],\n"
+        "     target_shift: [0, 0.3], any_heading: true, group: turns, partner_start: [1, 1, 0]}\n",
+    )
+    found = find_map("hall", tmp_path)
+    assert (found.robot, found.partner) == ("left", "right")
+    case = found.cases[1]
+    assert (case.target_radius, case.start_shift, case.target_shift) == (0.3, (0.3, 0), (0, 0.3))
+    assert (case.any_heading, case.group, case.partner_start) == (True, "turns", Pose(1, 1, 0))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("title: A hall\n", "", ["title"]),
+        ("title", "titel", ["title", "titel"]),
+        ("  - {name", "  - {nmae", ["name"]),
+        ("[1, 2]", "[1, 2, 3]", ["target", "2"]),
+        ("cases:", "cases: []\nnone:", ["cases", "at least 1"]),
+        ("target: [1, 2]}", "target: [1, 2], target_radius: 0}", ["target_radius"]),
+        ("[1, 2]}\n", "[1, 2]}\n  - {name: there, start: [0, 0, 0], target: [1, 1]}\n", ["there", "already"]),
+    ],
+)
+def test_a_wrong_card_says_where(tmp_path: Path, old: str, new: str, words: list[str]) -> None:
+    card(tmp_path, "hall", CARD.replace(old, new))
+    with pytest.raises(WorldError) as caught:
+        find_map("hall", tmp_path)
+    assert all(word in str(caught.value) for word in words), caught.value
+    assert caught.value.problems[0].place.file == tmp_path / "hall" / "about.yaml"
+
+
+def test_folders_without_a_card_are_no_maps(tmp_path: Path) -> None:
+    (tmp_path / "robots").mkdir()
+    card(tmp_path, "b")
+    card(tmp_path, "a")
+    assert map_names(tmp_path) == ("a", "b")
+
+
+@pytest.mark.parametrize("name", ["mzae", "robots", "../maps/maze", ".", ""])
+def test_an_unknown_name_is_refused(name: str) -> None:
+    with pytest.raises(UnknownMap):
+        find_map(name)
+
+
+def test_the_nearest_name_is_offered() -> None:
+    with pytest.raises(UnknownMap, match='"maze"'):
+        find_map("mzae")
+
+
+def test_the_kits_own_maps_are_found_and_may_share_their_robots() -> None:
+    maze = find_map("maze")
+    assert maze.root == maps_folder()
+    assert root_of(maze.world_file) == maps_folder()
+    assert load_world(maze.world_file, root=maze.root).models[0].name == maze.robot
+    assert maze.name in map_names()
+
+
+def test_other_worlds_keep_to_their_own_folder(tmp_path: Path) -> None:
+    assert root_of(tmp_path / "world.yaml") is None
