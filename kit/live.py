@@ -43,7 +43,9 @@ class LiveRun:
     ``failure`` then holds the exception.
     """
 
-    def __init__(self, runner: Runner, *, factor: float = REAL_TIME, on_change: Callable[[Runner], None]) -> None:
+    def __init__(
+        self, runner: Runner, *, factor: float = REAL_TIME, on_change: Callable[[Runner], None]
+    ) -> None:
         self._runner = runner
         self._on_change = on_change
         self._factor = factor

@@ -27,7 +27,9 @@ class Place:
     @property
     def drivers(self) -> tuple[str, ...]:
         """All models that can drive, the robot first."""
-        return tuple(sorted(filter(None, {self.robot, *_drivers(self.world)}), key=lambda name: name != self.robot))
+        return tuple(
+            sorted(filter(None, {self.robot, *_drivers(self.world)}), key=lambda name: name != self.robot)
+        )
 
     @property
     def start(self) -> Pose | None:
@@ -55,7 +57,9 @@ def place_in_file(file: Path, root: Path | None = None) -> Place:
 
 
 def _drivers(world: World) -> tuple[str, ...]:
-    return tuple(model.name for model in world.models if any(plugin.type.endswith("Drive") for plugin in model.plugins))
+    return tuple(
+        model.name for model in world.models if any(plugin.type.endswith("Drive") for plugin in model.plugins)
+    )
 
 
 def find_place(name: str, case: str | None = None, root: Path | None = None) -> Place:
@@ -71,4 +75,6 @@ def find_place(name: str, case: str | None = None, root: Path | None = None) -> 
     for known in card.cases:
         if known.name == case:
             return place_on_map(card, known)
-    raise LookupError(f"The map {name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}.")
+    raise LookupError(
+        f"The map {name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}."
+    )

@@ -22,8 +22,8 @@ from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
 from kit.sim.simulation import Simulation
 from kit.sim.telling import tell
-from kit.world.records import World
 from kit.workspace import write_atomically
+from kit.world.records import World
 
 FORMAT: Final = 1
 
@@ -68,7 +68,9 @@ class Recording:
         """(k, 3): the poses of a model at every tick at which it was there."""
         starts = np.concatenate([[0], np.cumsum(self.counts)])
         rows = []
-        for (first, names), after in zip(self.models, (*(tick for tick, _ in self.models[1:]), self.ticks), strict=True):
+        for (first, names), after in zip(
+            self.models, (*(tick for tick, _ in self.models[1:]), self.ticks), strict=True
+        ):
             if model in names:
                 rows.append(starts[first:after] + names.index(model))
         return self.poses[np.concatenate(rows).astype(np.int64)] if rows else np.empty((0, 3))
@@ -143,13 +145,17 @@ def load(file: Path) -> Recording:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
             header = json.loads(bytes(arrays["header"]))
             if header["format"] != FORMAT:
-                raise RecordingError(f"{file}: made by another version of the kit (format {header['format']}).")
+                raise RecordingError(
+                    f"{file}: made by another version of the kit (format {header['format']})."
+                )
             return Recording(
                 str(header["place"]),
                 int(header["seed"]),
                 float(header["step_size"]),
                 tuple((int(tick), tuple(names)) for tick, names in header["models"]),
-                tuple(Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]),
+                tuple(
+                    Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]
+                ),
                 arrays["poses"].astype(np.float64).reshape(-1, 3),
                 arrays["counts"].astype(np.int64),
             )

@@ -52,7 +52,9 @@ class Runner:
         self.observers: list[Observer] = []
         self.paused = False
         self.on_rate: Callable[[float], None] | None = None
-        self._allowed: list[tuple[int, Future[None]]] = []  # ticks in spite of the pause, and who waits for them
+        self._allowed: list[
+            tuple[int, Future[None]]
+        ] = []  # ticks in spite of the pause, and who waits for them
         self._node = graph.create_node("flatland_server")
         self._wires: dict[Endpoint, Callable[[], object]] = {}  # how to take each down again
         self._publish: dict[str, Callable[[Any], None]] = {}
@@ -77,7 +79,7 @@ class Runner:
         """Lets nodes and guests talk until all is said, so that a key reaches the wheels within the tick."""
         for _ in range(MAX_ROUNDS):
             self.graph.run_due()
-            if not any([guest.exchange() for guest in self.guests]):
+            if not sum(guest.exchange() for guest in self.guests):  # every one of them, so no any()
                 return
 
     def tell(self, service: str, *arguments: Any) -> None:

@@ -42,13 +42,19 @@ class Trip:
         self._case = case
         self._last_tick = -1
         self._simulation: Simulation | None = None
+        self._at: tuple[float, float] | None = None
+        self._reached: float | None = None
         self._start()
 
     @property
     def score(self) -> Score:
         """As of the last tick."""
         target = None
-        if self._case is not None and self._simulation is not None and self._robot in self._simulation.model_names:
+        if (
+            self._case is not None
+            and self._simulation is not None
+            and self._robot in self._simulation.model_names
+        ):
             target = self._simulation.hull_distance(self._robot, self._case.target)
         return Score(self._time_s, self._distance, self._bumps, target, self._reached)
 
@@ -75,7 +81,11 @@ class Trip:
         touching = simulation.touches(self._robot)
         self._bumps += touching and not self._touching
         self._touching = touching
-        if self._case is not None and self._reached is None and self._is_in_target(simulation, self._case, pose):
+        if (
+            self._case is not None
+            and self._reached is None
+            and self._is_in_target(simulation, self._case, pose)
+        ):
             self._reached = self._time_s
 
     def _is_in_target(self, simulation: Simulation, case: Case, pose: Pose) -> bool:
@@ -86,9 +96,9 @@ class Trip:
         return simulation.hull_distance(self._robot, case.target) < case.target_radius
 
     def _start(self) -> None:
-        self._at: tuple[float, float] | None = None
+        self._at = None
         self._touching = False
         self._distance = 0.0
         self._bumps = 0
-        self._reached: float | None = None
+        self._reached = None
         self._time_s = 0.0

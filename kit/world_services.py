@@ -76,15 +76,21 @@ class WorldServices:
         self._try(response, "move_model", request.name, _pose(request.pose))
         return response
 
-    def _pause(self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response) -> std_srvs.Empty.Response:
+    def _pause(
+        self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response
+    ) -> std_srvs.Empty.Response:
         self._run.paused = True
         return response
 
-    def _resume(self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response) -> std_srvs.Empty.Response:
+    def _resume(
+        self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response
+    ) -> std_srvs.Empty.Response:
         self._run.paused = False
         return response
 
-    def _toggle(self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response) -> std_srvs.Empty.Response:
+    def _toggle(
+        self, request: std_srvs.Empty.Request, response: std_srvs.Empty.Response
+    ) -> std_srvs.Empty.Response:
         self._run.paused = not self._run.paused
         return response
 

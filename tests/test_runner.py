@@ -13,10 +13,10 @@ from kit.msg.robot_kit_msgs import GetState, Reset, Step
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Empty
+from kit.places import place_on_map
 from kit.recording import Recorder, Recording, RecordingError, load, rerun, save
 from kit.ros.graph import Graph
 from kit.runner import Runner
-from kit.places import place_on_map
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 from kit.world.records import World
@@ -99,16 +99,28 @@ def test_models_come_go_and_move(maze: World) -> None:
     runner = build(maze)
     file = str(find_map("maze").root / "robots" / "serp.model.yaml")
     pose = Pose2D(x=0.8, y=-0.1, theta=0.0)
-    spawned = call(runner, SpawnModel, "/spawn_model", SpawnModel.Request(yaml_path=file, name="two", ns="two", pose=pose))
+    spawned = call(
+        runner,
+        SpawnModel,
+        "/spawn_model",
+        SpawnModel.Request(yaml_path=file, name="two", ns="two", pose=pose),
+    )
     assert spawned.success, spawned.message
     heard: list[LaserScan] = []
     runner.graph.create_node("listener").create_subscription(LaserScan, "/two/static_laser", heard.append, 10)
     for _ in range(15):
         runner.tick()
     assert heard
-    again = call(runner, SpawnModel, "/spawn_model", SpawnModel.Request(yaml_path=file, name="two", ns="two", pose=pose))
+    again = call(
+        runner,
+        SpawnModel,
+        "/spawn_model",
+        SpawnModel.Request(yaml_path=file, name="two", ns="two", pose=pose),
+    )
     assert not again.success
-    assert call(runner, MoveModel, "/move_model", MoveModel.Request(name="serp", pose=Pose2D(x=0.1, y=-0.2))).success
+    assert call(
+        runner, MoveModel, "/move_model", MoveModel.Request(name="serp", pose=Pose2D(x=0.1, y=-0.2))
+    ).success
     assert runner.simulation.pose("serp")[:2] == pytest.approx((0.1, -0.2), abs=1e-3)
     assert call(runner, DeleteModel, "/delete_model", DeleteModel.Request(name="two")).success
     assert "/two/static_laser" not in [endpoint.topic for endpoint in runner.simulation.endpoints]

@@ -10,7 +10,10 @@ import click
 import kit
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
-    "play": ("kit.cli.play", "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does)."),
+    "play": (
+        "kit.cli.play",
+        "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does).",
+    ),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
@@ -42,7 +45,9 @@ class LazyGroup(click.Group):
 
             near = get_close_matches(args[0], VERBS, n=1)
             hint = f" Did you mean `kit {near[0]}`?" if near else ""
-            raise click.UsageError(f"There is no `kit {args[0]}`.{hint} `kit --help` lists the verbs.", ctx) from None
+            raise click.UsageError(
+                f"There is no `kit {args[0]}`.{hint} `kit --help` lists the verbs.", ctx
+            ) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):

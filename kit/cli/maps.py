@@ -11,7 +11,9 @@ from kit.cli import options
 
 @click.command()
 @click.argument("name", required=False)
-@click.option("--glyphs", type=click.Choice(("braille", "block", "ascii")), default="braille", show_default=True)
+@click.option(
+    "--glyphs", type=click.Choice(("braille", "block", "ascii")), default="braille", show_default=True
+)
 def command(name: str | None, glyphs: str) -> None:
     """List the maps, or show one as a picture with its starts and targets."""
     from kit.world.catalogue import UnknownMap, all_maps, find_map
@@ -29,7 +31,8 @@ def command(name: str | None, glyphs: str) -> None:
         options.fail(str(error))
     from kit.picture.encode import ENCODERS
     from kit.picture.text import plain_rows
-    from kit.session import Session, place_on_map
+    from kit.places import place_on_map
+    from kit.session import Session
     from kit.showing import Showing
 
     columns, rows = shutil.get_terminal_size()
@@ -39,4 +42,6 @@ def command(name: str | None, glyphs: str) -> None:
     click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[glyphs](True))))
     for case in card.cases:
         x, y, theta = case.start
-        click.echo(f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of {case.target}")
+        click.echo(
+            f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of {case.target}"
+        )

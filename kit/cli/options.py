@@ -25,7 +25,11 @@ workspace: Decorator = click.option(
     help="Where your files live; by default $KIT_WORKSPACE, else ~/robot-kit.",
 )
 seed: Decorator = click.option(
-    "--seed", type=click.IntRange(0, 2**63 - 1), default=0, show_default=True, help="Of all noise and chance: the same seed, the same run."
+    "--seed",
+    type=click.IntRange(0, 2**63 - 1),
+    default=0,
+    show_default=True,
+    help="Of all noise and chance: the same seed, the same run.",
 )
 controller: Decorator = click.option(
     "--controller",
@@ -33,7 +37,9 @@ controller: Decorator = click.option(
     show_default=True,
     help="A controller by name, or a Python file with a ROS 2 node.",
 )
-case: Decorator = click.option("--case", help="Which start and target of a map with several; `kit maps` lists them.")
+case: Decorator = click.option(
+    "--case", help="Which start and target of a map with several; `kit maps` lists them."
+)
 root: Decorator = click.option(
     "--root",
     type=click.Path(exists=True, file_okay=False, path_type=Path),

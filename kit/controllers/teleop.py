@@ -14,7 +14,12 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float32, String
 
-SIDES = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}  # [rad] from straight ahead
+SIDES = {
+    "front": 0.0,
+    "left": math.pi / 2,
+    "back": math.pi,
+    "right": -math.pi / 2,
+}  # [rad] from straight ahead
 HALF_WIDTH = math.radians(45)  # a ray this far from a side's middle, or nearer, belongs to it
 
 
@@ -52,7 +57,11 @@ class Teleop(Node):
         self.send()
 
     def on_scan(self, scan: LaserScan) -> None:
-        angles = [scan.angle_min + i * scan.angle_increment for i, r in enumerate(scan.ranges) if r < self.wall_distance]
+        angles = [
+            scan.angle_min + i * scan.angle_increment
+            for i, r in enumerate(scan.ranges)
+            if r < self.wall_distance
+        ]
         near = tuple(
             side
             for side, middle in SIDES.items()

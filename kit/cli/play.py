@@ -1,0 +1,66 @@
+"""``kit`` and ``kit play``: the full screen, or line by line where there is none."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from kit.cli import options
+from kit.tui.terminal import COLOUR_CHOICES, GLYPH_CHOICES, Glyphs, TerminalFacts, TerminalWishes, decide
+
+
+@click.command()
+@click.argument("place", default="maze", metavar="[MAP or WORLD.yaml]")
+@options.case
+@options.controller
+@options.seed
+@options.workspace
+@click.option(
+    "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
+)
+@click.option("--glyphs", type=click.Choice(GLYPH_CHOICES), help="What the world is drawn with.")
+@click.option("--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too.")
+def command(
+    place: str,
+    case: str | None,
+    controller: str,
+    seed: int,
+    workspace: Path | None,
+    plain: bool,
+    glyphs: Glyphs | None,
+    color: str | None,
+) -> None:
+    """Open the kit on a map: watch the robot, drive it, change what drives it.
+
+    Press an arrow key to take over, `?` for every key, Ctrl-C to leave.
+
+    \b
+    kit play                          the maze, with a robot finding its own way
+    kit play house --controller teleop
+    kit play my_world/world.yaml --controller my_controller.py
+    """
+    from kit.controllers import find
+    from kit.desk import open_desk
+    from kit.workspace import WorkspaceError
+
+    try:
+        desk = open_desk(workspace)
+        find(controller, desk.controllers)
+    except (LookupError, WorkspaceError) as error:
+        options.fail(str(error))
+    terminal = decide(os.environ, TerminalFacts.here(), TerminalWishes(plain, glyphs, color))
+    if terminal.plain.value:
+        from kit.cli.plain import play_plainly
+
+        play_plainly(place, case, controller, seed, desk.controllers, terminal.plain.reason)
+        return
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+
+    app = KitApp(terminal)
+    app.begin(app.play(place, controller, case=case, folder=desk.controllers, seed=seed))
+    app.run()
+    if app.return_code:
+        raise SystemExit(app.return_code)

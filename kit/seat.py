@@ -1,0 +1,156 @@
+"""The driver's seat: one controller drives, the next one starts beside it and takes over only if it starts well."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from kit.controllers import ControllerFile
+from kit.host.failure import Failure, GuestError
+from kit.host.guest import Guest
+from kit.host.limits import Limits
+from kit.runner import Runner
+
+_Stamp = tuple[int, int, int]
+
+
+@dataclass(slots=True)
+class _Coming:
+    """A controller that is starting."""
+
+    controller: ControllerFile
+    guest: Guest
+    then: Callable[[], object] | None
+
+
+class Seat:
+    """Whose guest takes part in the runner's ticks. Belongs to the thread that ticks."""
+
+    def __init__(self, runner: Runner, arguments: Sequence[str], *, seed: int, limits: Limits) -> None:
+        self._runner = runner
+        self._arguments: Final = tuple(arguments)
+        self._seed = seed
+        self._limits = limits
+        self._guest: Guest | None = None
+        self._coming: _Coming | None = None
+        self._failure: Failure | None = None
+        self._file = FileWatch()
+        self.controller: ControllerFile | None = None
+        """Who drives or is about to."""
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the present controller has stopped, or why its newest version was not taken."""
+        if self._failure is None and self._guest is not None:
+            return self._guest.failure
+        return self._failure
+
+    def seat(self, controller: ControllerFile | None, then: Callable[[], object] | None = None) -> None:
+        """Starts a controller, without waiting; None leaves the seat empty."""
+        self._give_up_coming()
+        self._failure = None
+        self.controller = controller
+        if controller is None:
+            self._leave()
+            return
+        self._file.watch(controller.file)
+        self._start(controller, then)
+
+    def restart(self) -> None:
+        """The same controller, from its beginning; the old one stops driving at once."""
+        self._leave()
+        self.seat(self.controller)
+
+    def wait(self) -> None:
+        """Until the coming controller drives or has failed."""
+        if self._coming is not None:
+            self._settle(self._coming.guest.wait_until_started)
+
+    def look(self) -> None:
+        """Lets a controller that is ready take over, and starts a new version of a file that was saved."""
+        coming = self._coming
+        if coming is not None:
+            self._settle(coming.guest.is_started)
+        elif self.controller is not None and self._file.has_changed():
+            self._failure = None
+            self._start(self.controller, None)
+
+    def close(self) -> None:
+        self._give_up_coming()
+        self._leave()
+
+    def _start(self, controller: ControllerFile, then: Callable[[], object] | None) -> None:
+        try:
+            guest = Guest(
+                self._runner.graph,
+                controller.file,
+                args=self._arguments,
+                seed=self._seed,
+                limits=self._limits,
+            )
+        except GuestError as error:
+            self._failure = error.failure
+            return
+        self._coming = _Coming(controller, guest, then)
+
+    def _settle(self, is_ready: Callable[[], bool | None]) -> None:
+        coming = self._coming
+        assert coming is not None
+        try:
+            if is_ready() is False:
+                return
+        except GuestError as error:
+            self._failure = error.failure
+            self._give_up_coming()
+            return
+        self._coming = None
+        self._leave()
+        coming.guest.join()
+        self._guest = coming.guest
+        self._runner.guests.append(coming.guest)
+        if coming.then is not None:
+            coming.then()
+
+    def _give_up_coming(self) -> None:
+        if self._coming is not None:
+            self._coming.guest.close()
+            self._coming = None
+
+    def _leave(self) -> None:
+        if self._guest is not None:
+            self._runner.guests.remove(self._guest)
+            self._guest.close()
+            self._guest = None
+
+
+class FileWatch:
+    """Notices that a file was saved, by polling, so that network homes work too."""
+
+    def __init__(self) -> None:
+        self._path: Path | None = None
+        self._known: _Stamp | None = None
+        self._seen: _Stamp | None = None
+
+    def watch(self, path: Path) -> None:
+        """From now on this file, as it is now."""
+        self._path = path
+        self._known = self._seen = _stamp(path)
+
+    def has_changed(self) -> bool:
+        """Whether it was saved since, and looks the same as at the last call: a save may take a moment."""
+        stamp = _stamp(self._path) if self._path is not None else None
+        settled = stamp is not None and stamp == self._seen and stamp != self._known
+        self._seen = stamp
+        if settled:
+            self._known = stamp
+        return settled
+
+
+def _stamp(path: Path) -> _Stamp | None:
+    try:
+        found = path.stat()
+    except OSError:  # an editor may be replacing it
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino

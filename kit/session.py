@@ -1,0 +1,103 @@
+"""One place, one robot, one controller: what a face shows and what ``kit run`` runs.
+
+A session builds the runner, keeps score of the drive, and changes controllers while it runs. It belongs to
+whoever ticks the runner: a face posts its wishes to the world's thread.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from types import TracebackType
+from typing import Final
+
+from kit.controllers import ControllerFile
+from kit.controllers.keystrokes import KeystrokePublisher
+from kit.host.failure import Failure
+from kit.host.limits import DESK, Limits
+from kit.places import Place
+from kit.ros.graph import Graph
+from kit.ros.log import LogRecord
+from kit.runner import Runner
+from kit.seat import Seat
+from kit.sim.simulation import Simulation
+from kit.trip import Trip
+
+KEPT_MESSAGES: Final = 200
+
+
+class Session:
+    """Everything of one drive. Close it when done, or use it as a context manager.
+
+    ``watched``: somebody looks, so lasers look too, whether a node listens or not.
+    """
+
+    def __init__(
+        self,
+        place: Place,
+        *,
+        seed: int = 0,
+        step_size: float = 0.01,
+        limits: Limits = DESK,
+        watched: bool = False,
+    ) -> None:
+        self.place = place
+        self.messages: deque[LogRecord] = deque(maxlen=KEPT_MESSAGES)
+        self.graph = Graph(log_sink=self.messages.append)
+        simulation = Simulation(
+            place.world, seed=seed, step_size=step_size, wanted=None if watched else self._has_listener
+        )
+        self.runner = Runner(simulation, self.graph)
+        self.trip = Trip(place.robot, place.case)
+        self.runner.observers.append(self.trip)
+        self.keys = KeystrokePublisher(self.graph)
+        self.seat = Seat(self.runner, self._arguments(), seed=seed, limits=limits)
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def controller(self) -> ControllerFile | None:
+        """Who drives, or is about to."""
+        return self.seat.controller
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the controller does not run, or why its newest version was not taken; None while all is well."""
+        return self.seat.failure
+
+    def drive_with(self, controller: ControllerFile | None, then: Callable[[], object] | None = None) -> None:
+        """Starts a controller and, as soon as it has started well, lets it take over; ``then`` is called next."""
+        self.seat.seat(controller, then)
+
+    def wait_until_driven(self) -> None:
+        """Waits until the controller drives, or has failed to."""
+        self.seat.wait()
+
+    def look_around(self) -> None:
+        """To be called a few times a second: new versions of the controller, ones that are ready, ones that failed."""
+        self.seat.look()
+
+    def reset(self, seed: int | None = None) -> None:
+        """The world back to its start; the controller starts anew too."""
+        self.runner.tell("reset", seed)
+        self.seat.restart()
+
+    def close(self) -> None:
+        self.seat.close()
+
+    def _has_listener(self, topic: str) -> bool:
+        return self.graph.subscription_count(topic) > 0
+
+    def _arguments(self) -> list[str]:
+        """What every controller is told of the place: its robot's name, and where home is."""
+        start = self.place.start
+        if start is None or self.place.robot is None:
+            return []
+        home = f"[{start.x!r}, {start.y!r}, {start.theta!r}]"
+        return ["--ros-args", "-p", f"home:={home}", "-p", f"model:={self.place.robot}"]

@@ -1,0 +1,123 @@
+"""The world behind the screen: a session in its own thread, and how the screen talks with it.
+
+Everything slow happens off the face's event loop: opening worlds, starting controllers, the physics itself.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from queue import SimpleQueue
+from typing import Final
+
+from kit.controllers import ControllerFile
+from kit.live import LiveRun, Pacing
+from kit.places import Place
+from kit.runner import Runner
+from kit.session import Session
+from kit.showing import Showing, View
+
+VIEW_INTERVAL: Final = 0.045
+"""Seconds between two views while the world runs: a little over twenty a second."""
+
+Wish = Callable[[Session], object]
+
+
+class Running:
+    """At most one session at a time. ``on_view`` and ``on_trouble`` are called in other threads."""
+
+    def __init__(
+        self, *, on_view: Callable[[View], None], on_trouble: Callable[[str], None], seed: int = 0
+    ) -> None:
+        self._on_view = on_view
+        self._on_trouble = on_trouble
+        self._seed = seed
+        self._session: Session | None = None
+        self._live: LiveRun | None = None
+        self._showing: Showing | None = None
+        self._shown = 0.0
+        self._beams = False
+        self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._helper = threading.Thread(target=self._do_jobs, name="helper", daemon=True)
+        self._helper.start()
+
+    @property
+    def pacing(self) -> Pacing:
+        return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
+
+    def open(self, find: Callable[[], Place], controller: ControllerFile | None) -> None:
+        """Opens another world in place of the present one, which stays if that fails."""
+
+        def job() -> None:
+            session = Session(find(), seed=self._seed, watched=True)
+            if controller is not None:
+                session.drive_with(controller)
+            self._replace(session)
+
+        self._jobs.put(job)
+
+    def wish(self, wish: Wish) -> None:
+        """Has something done to the session, in the world's thread, between two ticks."""
+        session, live = self._session, self._live
+        if session is not None and live is not None:
+            live.post(lambda runner: wish(session))
+
+    def set_factor(self, factor: float) -> None:
+        if self._live is not None:
+            self._live.set_factor(factor)
+
+    def set_paused(self, paused: bool) -> None:
+        if self._live is not None:
+            self._live.set_paused(paused)
+
+    def step(self) -> None:
+        if self._live is not None:
+            self._live.step()
+
+    def show_beams(self, shown: bool) -> None:
+        self._beams = shown
+        self.wish(lambda session: None)
+
+    def close(self) -> None:
+        """Ends the world and its controller, and waits for both."""
+        self._jobs.put(None)
+        self._helper.join(timeout=10)
+        self._drop()
+
+    def _do_jobs(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            try:
+                job()
+            except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
+                self._on_trouble(str(error))
+
+    def _replace(self, session: Session) -> None:
+        factor = self.pacing.factor
+        self._drop()
+        self._session, self._showing = session, Showing(session)
+        self._live = LiveRun(session.runner, factor=factor, on_change=self._changed)
+        session.runner.on_rate = lambda rate: self.set_factor(rate * session.runner.simulation.step_size)
+        self._live.__enter__()
+
+    def _drop(self) -> None:
+        live, session = self._live, self._session
+        self._live = self._session = self._showing = None
+        if live is not None:
+            live.stop()
+        if session is not None:
+            session.close()
+
+    def _changed(self, runner: Runner) -> None:
+        """In the world's thread, after every stretch of ticks."""
+        showing, live, session = self._showing, self._live, self._session
+        if showing is None or live is None or session is None:
+            return
+        if live.failure is not None:
+            self._on_trouble(f"the world stopped: {live.failure}")
+        now = time.monotonic()
+        if runner.paused or now - self._shown >= VIEW_INTERVAL:
+            self._shown = now
+            session.look_around()
+            showing.beams = self._beams
+            self._on_view(showing.view())

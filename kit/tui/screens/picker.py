@@ -1,0 +1,96 @@
+"""A list to choose one thing from: maps, controllers. Arrow keys, Enter, Esc; typing narrows it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.screen import ModalScreen
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One line of the list: what choosing it returns, its name, and what is said of it."""
+
+    key: str
+    name: str
+    text: str = ""
+
+
+class Picker(ModalScreen[str | None]):
+    """Returns the key of the choice, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "leave", "back"),
+        Binding("down", "move(1)", show=False),
+        Binding("up", "move(-1)", show=False),
+        Binding("pagedown", "move(10)", show=False),
+        Binding("pageup", "move(-10)", show=False),
+    ]
+    DEFAULT_CSS = """
+    Picker { align: center middle; }
+    Picker > Vertical {
+        width: 76; max-width: 100%; height: auto; max-height: 22; border: solid $foreground; padding: 0 1;
+    }
+    Picker Input, Picker Input:focus { border: none; padding: 0; height: 1; background: transparent; }
+    Picker OptionList { border: none; padding: 0; height: auto; max-height: 19; background: transparent; }
+    """
+
+    def __init__(self, title: str, choices: Sequence[Choice], chosen: str | None = None) -> None:
+        super().__init__()
+        self._title = title
+        self._choices = tuple(choices)
+        self._chosen = chosen
+        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+
+    def compose(self) -> ComposeResult:
+        with Vertical() as box:
+            box.border_title = self._title
+            box.border_subtitle = "arrows, Enter chooses, Esc leaves"
+            yield Input(placeholder="type to narrow", select_on_focus=False)
+            yield OptionList()
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self.query_one(OptionList).can_focus = False
+        self._fill("")
+        self.query_one(Input).focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        self._fill(event.value)
+
+    def on_input_submitted(self) -> None:
+        options = self.query_one(OptionList)
+        if options.highlighted is not None:
+            self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option_id)
+
+    def action_leave(self) -> None:
+        self.dismiss(None)
+
+    def action_move(self, lines: int) -> None:
+        options = self.query_one(OptionList)
+        if options.option_count:
+            at = (options.highlighted or 0) + lines
+            options.highlighted = min(max(at, 0), options.option_count - 1)
+
+    def _fill(self, narrowed: str) -> None:
+        wanted = narrowed.casefold()
+        shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
+        options = self.query_one(OptionList)
+        options.clear_options()
+        options.add_options(
+            Option(f"{choice.name:{self._width}}{choice.text}".replace("[", "\\["), id=choice.key)
+            for choice in shown
+        )
+        keys = [choice.key for choice in shown]
+        if shown:
+            options.highlighted = keys.index(self._chosen) if self._chosen in keys else 0

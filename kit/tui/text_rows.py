@@ -1,0 +1,76 @@
+"""Rows of short texts that repaint only what changed: headings, read-outs, messages, keys."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from rich.cells import cell_len, set_cell_size
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region, Size
+from textual.strip import Strip
+from textual.widget import Widget
+
+PLAIN: Final = ""
+STYLES: Final = {
+    PLAIN: Style(),
+    "dim": Style(dim=True),
+    "bold": Style(bold=True),
+    "key": Style(reverse=True),
+    "good": Style(color="green", bold=True),
+    "warn": Style(color="yellow", bold=True),
+    "bad": Style(color="red", bold=True),
+}
+"""The few ways a text can look. Each bold or reversed, so that none means anything by its colour alone."""
+
+Part = tuple[str, str]
+"""A text and the name of its style."""
+
+Row = tuple[Part, ...]
+
+
+def row(*parts: str | Part) -> Row:
+    """A row of texts; a bare string is plain."""
+    return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
+
+
+def spread(left: Row, right: Row, width: int) -> Row:
+    """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet."""
+    used = sum(cell_len(text) for text, _ in right)
+    kept: list[Part] = []
+    room = max(0, width - used - 1)
+    for text, style in left:
+        text = text if cell_len(text) <= room else set_cell_size(text, room)
+        room -= cell_len(text)
+        kept.append((text, style))
+    return (*kept, (" " * (room + 1), PLAIN), *right)
+
+
+class TextRows(Widget):
+    """Shows as many rows as it has lines; the rest is cut off."""
+
+    can_focus = False
+
+    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name
+        super().__init__(id=id)
+        self._rows: tuple[Row, ...] = ()
+
+    def show(self, rows: Sequence[Row]) -> None:
+        """Replaces the rows; only lines that differ are painted again."""
+        new = tuple(rows)
+        old, self._rows = self._rows, new
+        for line in range(max(len(old), len(new))):
+            if line >= len(old) or line >= len(new) or old[line] != new[line]:
+                self.refresh(Region(0, line, max(1, self.size.width), 1))
+
+    def get_content_width(self, container: Size, viewport: Size) -> int:
+        return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        return len(self._rows)
+
+    def render_line(self, y: int) -> Strip:
+        parts = self._rows[y] if y < len(self._rows) else ()
+        strip = Strip([Segment(text, STYLES[style]) for text, style in parts if text])
+        return strip.adjust_cell_length(self.size.width, STYLES[PLAIN])
