@@ -110,6 +110,6 @@ NO_COLOR: Palette = MappingProxyType(
 """Shape and weight alone: what moves and what matters is bold."""
 
 PALETTES: Mapping[str, Palette] = MappingProxyType(
-    {"none": NO_COLOR, "ansi16": ANSI, "256": XTERM, "truecolour": TRUECOLOR}
+    {"none": NO_COLOR, "16": ANSI, "256": XTERM, "truecolor": TRUECOLOR}
 )
 """By what the terminal can show."""

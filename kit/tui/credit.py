@@ -13,10 +13,7 @@ from dataclasses import dataclass
 from typing import Final
 
 TIMEOUT: Final = 2.0
-"""Seconds after which an unanswered frame no longer counts."""
-
-FORGOTTEN: Final = 20.0
-"""Seconds after which its answer is no longer expected either."""
+"""Seconds after which an answer is no longer waited for."""
 
 MOST_UNDER_WAY: Final = 3
 
@@ -26,6 +23,8 @@ SLOW, FAST = 10, 20
 LAG_FOR_FAST, LAG_FOR_SLOW = 0.100, 0.130
 """Below the first lag [s] the fast rate is used, above the second the slow one, between them the same as before."""
 
+_SOON: Final = 1e-3
+"""Seconds that make no difference: timers ring a little early or late."""
 _SMOOTHING: Final = 0.2
 _WINDOW: Final = 32
 """Answers over which the shortest counts as the link's own delay."""
@@ -45,6 +44,7 @@ class FrameCredit:
         self._fps = min(SLOW, self.fastest)
         self._due = -math.inf
         self._deaf = False
+        """It has never answered, so it is not waited for."""
 
     @property
     def lag(self) -> float | None:
@@ -67,12 +67,18 @@ class FrameCredit:
 
     def wait(self, now: float) -> float:
         """Seconds until a frame may be drawn, if no answer arrives before."""
+        self._give_up(now)
         wait = self._due - now
-        under_way = [asked for asked in self._asked if now - asked < TIMEOUT]
-        if len(under_way) >= self.allowed and not self._deaf:
-            wait = max(wait, under_way[-self.allowed] + TIMEOUT - now)
-        # A timer may ring a little early; a frame that is late by a millisecond is not.
-        return wait if wait > 1e-3 else 0.0
+        if len(self._asked) >= self.allowed and not self._deaf:
+            wait = max(wait, self._asked[0] + TIMEOUT - now)
+        return wait if wait > _SOON else 0.0
+
+    def _give_up(self, now: float) -> None:
+        """Forgets all open questions when the oldest was put too long ago. Should they be answered after all,
+        the answers are taken for later questions' until none is open: for so long the lag is underrated."""
+        if self._asked and now - self._asked[0] >= TIMEOUT - _SOON:
+            self._asked.clear()
+            self._deaf = not self._lags
 
     def drawn(self, now: float) -> None:
         """A frame was drawn. One that came late does not make the next one late."""
@@ -81,14 +87,11 @@ class FrameCredit:
 
     def sent(self, now: float) -> None:
         """It was written, and the question after it."""
-        if self._asked and not self._lags and now - self._asked[0] >= TIMEOUT:
-            self._deaf = True  # it has never answered: it will not
         self._asked.append(now)
-        while now - self._asked[0] > FORGOTTEN:
-            self._asked.popleft()
 
     def answered(self, now: float) -> None:
-        """The terminal gave its cursor position. Answers come in the order of the questions, however late."""
+        """The terminal gave its cursor position. Answers come in the order of the questions."""
+        self._give_up(now)
         if not self._asked:
             return
         self._deaf = False

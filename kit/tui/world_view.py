@@ -77,7 +77,9 @@ class WorldView(FrameView):
     def answered(self) -> None:
         """The terminal has dealt with a frame."""
         self.credit.answered(self._clock())
-        self._draw_offered()
+        if self._later is not None:
+            self._later.stop()
+        self._look_again()
 
     def fit(self) -> None:
         """Shows all there is, and stops following."""
@@ -142,8 +144,8 @@ class WorldView(FrameView):
             self._later = self.set_timer(wait, self._look_again)
             return
         make_scene, self._offered = self._offered, None
+        self.credit.drawn(now)
         if self.show(make_scene()):
-            self.credit.drawn(now)
             self.call_after_refresh(self._drawn)
 
     def _look_again(self) -> None:

@@ -20,7 +20,7 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
     assert not palette[Role.WALL].bold
 
 
-@pytest.mark.parametrize("name", ["ansi16", "256", "truecolour"])
+@pytest.mark.parametrize("name", ["16", "256", "truecolor"])
 def test_what_matters_differs_in_colour_too(name: str) -> None:
     inks = [PALETTES[name][role].color for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOTS)]
     assert len(set(inks)) == len(inks)

@@ -79,7 +79,9 @@ class ViewApp(App[None]):
         return driver
 
 
-def run_in(app: App[None], script: Callable[[Pilot[None]], Coroutine[Any, Any, None]], size: tuple[int, int]) -> None:
+def run_in(
+    app: App[None], script: Callable[[Pilot[None]], Coroutine[Any, Any, None]], size: tuple[int, int]
+) -> None:
     """Runs the app in a terminal of this size until the script ends."""
 
     async def scripted(pilot: Pilot[None]) -> None:
