@@ -287,7 +287,7 @@ class _Zero:
 
 zero: Any = _Zero()
 
-_FLOAT32_MAX = 3.402823466e38
+_FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
 FLOAT32 = Scalar("float32", "float", float, -_FLOAT32_MAX, _FLOAT32_MAX, "f")
 FLOAT64 = Scalar("float64", "double", float, code="d", exact=float)

@@ -85,7 +85,9 @@ class Pose(Message):
     orientation: Quaternion = zero
 
 
-class Pose2D(Message):
+class Pose2D(Message, ours=True):
+    """Gone from ROS 2 since Lyrical, but Flatland's services speak it: so it is ours."""
+
     x: float64 = zero
     y: float64 = zero
     theta: float64 = zero

@@ -19,9 +19,22 @@ from array import array
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from operator import attrgetter
-from typing import Annotated, Any, ClassVar, NoReturn, Self, cast, dataclass_transform, get_args, get_origin
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    NoReturn,
+    Self,
+    TypeVar,
+    cast,
+    dataclass_transform,
+    get_args,
+    get_origin,
+)
 
 from kit.msg.fields import AtMost, FieldError, Fixed, Kind, Many, Nested, Scalar, Since, zero
+
+M = TypeVar("M", bound="Message")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +82,10 @@ def _kind(annotation: Any) -> tuple[Kind, str]:
             else:
                 kind = extra
         return kind or _kind(annotation.__origin__)[0], since
+    if isinstance(annotation, str):
+        raise TypeError(
+            f"'{annotation}' is only the name of a field's type; a module of messages needs the type itself"
+        )
     if get_origin(annotation) is list:
         return Many(_kind(get_args(annotation)[0])[0]), ""
     package, _, name = annotation.__ros_type__.split("/")
@@ -123,6 +140,9 @@ class MessageType(type):
         ours: bool = False,
         ros_type: str = "",
     ) -> MessageType:
+        if any(base.__ros_fields__ for base in bases if isinstance(base, MessageType)):
+            # A program's own variant of a message: a plain subclass, with the same fields.
+            return super().__new__(mcs, name, bases, namespace)
         fields: list[Field] = []
         constants: list[Constant] = []
         for entry, annotation in namespace.get("__annotations__", {}).items() if bases else ():
@@ -135,10 +155,6 @@ class MessageType(type):
         cls = super().__new__(mcs, name, bases, namespace)
         for field in fields:
             setattr(cls, field.name, _accessor(field, cls.__dict__[field.slot].__set__))
-        parent = bases[0] if bases else None
-        if isinstance(parent, MessageType) and parent.__ros_fields__:  # a program's own variant of a message
-            fields = [*parent.__ros_fields__, *fields]
-            ros_type = ros_type or parent.__ros_type__
         cls.__ros_type__ = ros_type or _ros_type(cls.__module__, cls.__qualname__)
         cls.__ros_fields__ = tuple(fields)
         cls.__ros_constants__ = tuple(constants)
@@ -153,13 +169,11 @@ class Message(metaclass=MessageType):
     __hash__ = None  # type: ignore[assignment]  # the idiom for "unhashable", as ROS 2's messages are
 
     def __init__(self, **fields: Any) -> None:
-        _compile(type(self))
-        type(self).__init__(self, **fields)
+        _compiled(type(self)).__init__(self, **fields)
 
     def __deepcopy__(self, memo: object) -> Self:
         """An independent copy, quickly; ``copy.deepcopy`` calls this."""
-        _compile(type(self))
-        return type(self).__deepcopy__(self, memo)
+        return _compiled(type(self)).__deepcopy__(self, memo)
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
@@ -238,7 +252,9 @@ def _check_inside(value: Any, kind: Kind, path: str) -> None:
 # No name of a ROS field begins with an underscore, so the code's own names cannot clash with one.
 
 
-def _compile(cls: type[Message]) -> None:
+def _compiled(cls: type[M]) -> type[M]:
+    """Gives the class that defines the fields its constructor and copier, and returns it."""
+    cls = next(owner for owner in cls.__mro__ if "__ros_fields__" in vars(owner))
     names: dict[str, Any] = {
         "_type": type,
         "_zero": zero,
@@ -265,7 +281,7 @@ def _compile(cls: type[Message]) -> None:
         "    if _unknown: _refuse(_cls, _unknown)",
         *body,
         "def __deepcopy__(_self, _memo):",
-        "    _new = _make(_cls)",
+        "    _new = _make(_type(_self))",
         *copying,
         "    return _new",
     ]
@@ -273,6 +289,7 @@ def _compile(cls: type[Message]) -> None:
     for method in ("__init__", "__deepcopy__"):
         names[method].__qualname__ = f"{cls.__qualname__}.{method}"
         setattr(cls, method, names[method])
+    return cls
 
 
 def _source_of_start(field: Field) -> str:
