@@ -13,6 +13,7 @@ import yaml
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
+from kit.layers.tasks import open_task, solve_task
 from kit.sim.loading import load
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import Case, MapCard, all_maps, maps_folder
@@ -219,6 +220,13 @@ def test_a_beacon_sees_robots_only_and_nothing_touches_it(name: str) -> None:
         assert {thing.model for thing in touching.things if touching.seeing(laser, thing).sees} == own
     for one, other, verdict in touching.pairs():
         assert "beacon" not in (one.model, other.model) or verdict.touch is Touch.PASSES
+
+
+@every_map
+def test_a_world_names_as_few_layers_as_can_be(name: str) -> None:
+    _, plan = solve_task(open_task(str(CARDS[name].world_file), root=CARDS[name].root))
+    assert plan is not None
+    assert plan.names_today == plan.size == plan.bound
 
 
 @every_map

@@ -178,6 +178,13 @@ def test_left_is_right_driven_the_other_way() -> None:
         assert left.start_shift == right.target_shift
 
 
+def test_tutorial_1_needs_two_layers_and_tutorial_2_three() -> None:
+    counts = {
+        name: len(load_world(find_map(name).world_file, root=MAPS).layer_bits) for name in ("maze", "turn")
+    }
+    assert counts == {"maze": 2, "turn": 3}
+
+
 def test_the_robot_has_the_dissertations_measures() -> None:
     serp = load_world(find_map("maze").world_file, root=MAPS).models[0]
     (body,) = serp.bodies
@@ -188,8 +195,3 @@ def test_the_robot_has_the_dissertations_measures() -> None:
     assert (min(x), max(x)) == (-0.117, 0.048)
     assert (min(y), max(y)) == (-0.085, 0.085)
     assert max(math.hypot(*corner) for corner in corners) == pytest.approx(0.129, abs=5e-4)
-
-
-@pytest.mark.parametrize(("name", "fewest"), [("maze", 2), ("turn", 3), ("pair_turn", 3)])
-def test_a_world_uses_the_fewest_layers(name: str, fewest: int) -> None:
-    assert len(load_world(find_map(name).world_file, root=MAPS).layer_bits) == fewest
