@@ -13,7 +13,7 @@ from itertools import product
 
 from kit.layers.existing import WorldCase, case_of
 from kit.layers.reading import Requirements
-from kit.layers.requirements import Case, Relation, Sighting
+from kit.layers.requirements import Case, Contact, Relation, Sighting
 from kit.layers.slots import LaserSlot, Slots, Spot
 from kit.world.problems import Problems, quoted, suggestion
 from kit.world.records import Place
@@ -51,7 +51,7 @@ class _Binding:
     def pair(self, a: Spot, b: Spot) -> Relation:
         one, other = self._entity[a.address], self._entity[b.address]
         if one == other and a.model == b.model:
-            return "either"  # inside one instance of one group, nobody has said anything
+            return "collide" if Contact(one, one) in self._case.must else "either"
         return self._case.relation(one, other)
 
     def view(self, laser: LaserSlot, use: tuple[str, View], spot: Spot) -> Sighting:

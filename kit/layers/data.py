@@ -10,6 +10,7 @@ from kit.layers.greedy import GreedyRun
 from kit.layers.patch import Patch
 from kit.layers.planning import Plan
 from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight
+from kit.layers.world_planning import WorldPlan
 
 
 def assignment_data(case: Case, assignment: Assignment) -> dict[str, Any]:
@@ -43,6 +44,38 @@ def plan_data(plan: Plan, run: GreedyRun) -> dict[str, Any]:
         "certificate": certificate_data(plan.certificate),
         "slides_method": {"size": run.size, "unseen": [requirement_data(sight) for sight in run.missed]},
         "seconds": round(plan.seconds, 6),
+    }
+
+
+def greedy_data(run: GreedyRun) -> dict[str, Any]:
+    """What the slides' method comes to."""
+    unseen = [requirement_data(sight) for sight in run.missed]
+    return {"size": run.size, "unseen": unseen, **assignment_data(run.case, run.assignment)}
+
+
+def world_data(plan: WorldPlan) -> dict[str, Any]:
+    """What a plan for a world adds, or says otherwise: the world's own names, and what is wrong today."""
+    return {
+        "size": plan.size,
+        "bound": plan.bound,
+        "optimal": plan.optimal,
+        "fits_flatland": plan.size <= MAX_LAYERS,
+        "world": str(plan.world_case.slots.world.file),
+        "names_today": plan.names_today,
+        "kept": list(plan.world_case.kept),
+        "breaches_today": [breach_data(breach) for breach in plan.wrong_today],
+        **assignment_data(plan.world_case.case, plan.assignment),
+    }
+
+
+def check_data(plan: WorldPlan) -> dict[str, Any]:
+    """The verdict on a world as it is."""
+    return {
+        "world": str(plan.world_case.slots.world.file),
+        "names_today": plan.names_today,
+        "needed": plan.size,
+        "bound": plan.bound,
+        "breaches": [breach_data(breach) for breach in plan.wrong_today],
     }
 
 

@@ -247,6 +247,15 @@ def _pair_mark(case: Case, a: str, b: str, struck: Collection[Contact]) -> str:
     return {"collide": "#", "apart": ".", "either": "~"}[relation]
 
 
+def draw_case(
+    case: Case, *, struck: Collection[Contact] = (), group: Collection[str] = (), glyphs: Glyphs = "braille"
+) -> list[Line]:
+    """The picture of a case where that can be followed, else its matrix."""
+    if len(case.names) > MOST_IN_PICTURE:
+        return draw_matrix(case, struck=struck, group=group)
+    return draw_graph(case, struck=struck, group=group, glyphs=glyphs)
+
+
 def draw_assignment(case: Case, assignment: Assignment, *, width: int = 80) -> list[str]:
     """The plan as two tables: what each layer holds and who watches it; which list each entity and laser gets."""
     watchers = {

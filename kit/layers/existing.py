@@ -17,6 +17,7 @@ from itertools import combinations, product
 from typing import TypeVar
 
 from kit.layers.assignment import Assignment, NamedLayer
+from kit.layers.reading import Requirements
 from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sighting
 from kit.layers.slots import LaserSlot, Slot, Slots, Spot
 from kit.world.problems import Problem, WorldError
@@ -53,7 +54,7 @@ def today_case(slots: Slots) -> WorldCase:
         slots,
         lambda a, b: "collide" if a.category & b.category else "apart",
         lambda laser, use, spot: "sees" if use[1].bits & spot.category else "blind",
-        title=slots.world.file.name,
+        title=f"{slots.world.file.parent.name}/{slots.world.file.name}",
     )
 
 
@@ -74,6 +75,24 @@ def case_of(slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "") ->
     lasers = dict(zip((laser.name for laser in case.lasers), slots.lasers, strict=True))
     return WorldCase(
         slots, case, entities, lasers, _today(slots, entities, lasers), tuple(k.name for k in slots.kept())
+    )
+
+
+def as_requirements(world_case: WorldCase) -> Requirements:
+    """The case as requirements that can be written down, edited, and laid over the same world again."""
+    slots, case = world_case.slots, world_case.case
+    bodies = [entity for entity in case.entities if entity.kind == "bodies"]
+    lists = world_case.entities
+    return Requirements(
+        slots.world.file,
+        case,
+        slots.world.file,
+        {entity.model: lists[entity.name][0].models for entity in bodies},
+        {
+            entity.name: _bodies_meant(slots, [spot for slot in lists[entity.name] for spot in slot.spots])
+            for entity in bodies
+            if entity.name != entity.model
+        },
     )
 
 
@@ -123,7 +142,7 @@ class _Table:
                         self.relation[strong][strong] = "collide"
                     groups[strong] += groups.pop(weak)
                     absorbed = True
-        return list(groups.values())
+        return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
 
     def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
         """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
@@ -176,6 +195,7 @@ def _case(slots: Slots, table: _Table, groups: list[tuple[str, list[int]]], titl
         )
         for name, group in groups
     )
+    shared = {entity.name for entity in entities if entity.copies > 1}
     heads = [(name, group[0]) for name, group in groups]
     pairs = [((a, i), (b, j)) for k, (a, i) in enumerate(heads) for b, j in heads[k:]]
     relations = {Contact(a, b): table.relation[i][j] for (a, i), (b, j) in pairs}
@@ -190,7 +210,11 @@ def _case(slots: Slots, table: _Table, groups: list[tuple[str, list[int]]], titl
     return Case(
         entities,
         tuple(contact for contact, relation in relations.items() if relation == "collide"),
-        frozenset(contact for contact, relation in relations.items() if relation == "either"),
+        frozenset(
+            contact
+            for contact, relation in relations.items()
+            if relation == "either" and (contact.a != contact.b or contact.a in shared)
+        ),
         lasers,
         title,
     )
@@ -217,7 +241,10 @@ def _names(slots: Slots, groups: list[list[int]]) -> list[str]:
             name = spots[0].thing.body
         else:
             owner = _owner(slots, rows[group[0]].models)
-            name = owner if _is_everything(slots, spots) else f"{owner}.{part_name(slots, spots)}"
+            part = _part(_bodies_meant(slots, spots))
+            name = owner if _is_everything(slots, spots) else f"{owner}.{part}"
+            if name == owner and name in names:  # a map is called so
+                name += ".all"
         while name in names:
             name += "'"
         names.append(name)
@@ -229,12 +256,12 @@ def _is_everything(slots: Slots, spots: list[Spot]) -> bool:
     return sum(spot.model in models for slot in slots.bodies for spot in slot.spots) == len(spots)
 
 
-def part_name(slots: Slots, spots: list[Spot]) -> str:
-    """The bodies meant, joined by ``+``."""
-    return "+".join(bodies_meant(slots, spots))
+def _part(bodies: tuple[str, ...]) -> str:
+    """A short name for a few bodies."""
+    return "+".join(bodies) if len(bodies) < 3 else f"{bodies[0]}+{len(bodies) - 1}"
 
 
-def bodies_meant(slots: Slots, spots: list[Spot]) -> tuple[str, ...]:
+def _bodies_meant(slots: Slots, spots: list[Spot]) -> tuple[str, ...]:
     """``body``, or ``body.0`` for the first footprint of a body that is not meant as a whole."""
     first = spots[0].model
     meant: list[str] = []

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from fractions import Fraction
 from itertools import combinations
 
 from kit.layers.certificate import Certificate
 from kit.layers.dropping import Sacrifice
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
+from kit.layers.patch import Patch
 from kit.layers.planning import Plan
 from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight, fit_together
+from kit.layers.world_planning import WorldPlan
 
 WIDTH = 80
 
@@ -69,23 +71,35 @@ def case_in_words(case: Case) -> list[str]:
 # The slides' method
 
 
-def greedy_in_words(run: GreedyRun) -> Iterator[str]:
-    """The method as it is taught, clique by clique, then laser by laser."""
-    yield f"Edges: {len(run.case.collide)}"
-    yield from wrapped(", ".join(map(str, run.case.collide)) or "none", indent="  ")
+def greedy_in_words(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None = None) -> Iterator[str]:
+    """The method as it is taught, clique by clique, then laser by laser.
+
+    ``draw``: the picture that goes with a collision step, by its number from 0.
+    """
+    edges = run.case.edges()
+    yield f"Edges: {len(edges)}"
+    yield from wrapped(", ".join(map(str, edges)) or "none", indent="  ")
     for number, step in enumerate(run.collision_steps, start=1):
         yield ""
         yield from collision_step_in_words(run.case, number, step)
+        if draw is not None:
+            yield from draw(number - 1)
     for laser_step in run.laser_steps:
         yield ""
         yield from laser_step_in_words(run.case, laser_step)
     yield ""
-    yield from wrapped(f"The slides' method ends with {layers_in_words(run.size)}.")
+    yield from greedy_end_in_words(run)
+
+
+def greedy_end_in_words(run: GreedyRun) -> list[str]:
+    """Where the method led, and what it left open."""
+    lines = wrapped(f"The slides' method ends with {layers_in_words(run.size)}.")
     if run.missed:
-        yield from wrapped(
+        lines += wrapped(
             f"It leaves a hole: {listed(run.missed)} (laser > what it should see). What collides with nothing is in "
             "no collision layer, so the method never shows it to a laser. Give it a layer of its own."
         )
+    return lines
 
 
 def collision_step_in_words(case: Case, number: int, step: CollisionStep) -> list[str]:
@@ -169,7 +183,7 @@ def _packing_in_words(case: Case, certificate: Certificate, *, every_pair: bool)
     for number, requirement in enumerate(apart, start=1):
         lines += wrapped(f"{number:>3}  {requirement_in_words(requirement, case)}", later="     ")
     pairs = list(combinations(range(count), 2))
-    shown = pairs if every_pair else pairs[:3]
+    shown = pairs if every_pair else [(i, i + 1) for i in range(min(3, count - 1))]
     if shown:
         lines.append("Because:" if every_pair or len(pairs) <= len(shown) else "Because, for example:")
     for i, j in shown:
@@ -208,6 +222,66 @@ def comparison_in_words(run: GreedyRun, plan: Plan) -> list[str]:
     else:
         verdict = f"{more} more than needed" if plan.optimal else f"{more} more than the plan"
     return wrapped(f"The slides' method, taking edges in order: {layers_in_words(run.size)}; {verdict}.")
+
+
+# A world
+
+
+def world_plan_in_words(plan: WorldPlan) -> list[str]:
+    """How many names the world has, how many it needs, and what is wrong today."""
+    count, size = plan.names_today, plan.size
+    file = plan.world_case.slots.world.file
+    lines: list[str] = []
+    if plan.wrong_today:
+        lines += wrapped(f"Today {file} does not do what is asked:")
+        for breach in plan.wrong_today[:_MOST_BREACHES]:
+            lines += wrapped(str(breach), indent="  - ", later="    ")
+        if len(plan.wrong_today) > _MOST_BREACHES:
+            lines.append(f"  ... and {len(plan.wrong_today) - _MOST_BREACHES} more")
+    if not count:
+        return [
+            *lines,
+            *wrapped(f"{file} names no layer: whatever is in all of them meets. Nothing can be saved."),
+        ]
+    proof = "and no plan has fewer" if plan.optimal else f"and at least {plan.bound} are needed"
+    if plan.changes_nothing:
+        verdict = "as few as can be" if plan.optimal else f"and at least {plan.bound} are needed"
+        lines += wrapped(f"{file} names {layers_in_words(count)}, {verdict}. Nothing needs to change.")
+    elif plan.wrong_today:
+        lines += wrapped(f"It names {layers_in_words(count)}; what is asked takes {size}, {proof}.")
+    else:
+        lines += wrapped(f"{file} names {layers_in_words(count)}. {size} would do the same, {proof}.")
+    if plan.world_case.kept:
+        lines += wrapped(
+            f"The layer {listed(plan.world_case.kept)} stays as it is: lasers know it by its name, and report what is "
+            "in it as bright."
+        )
+    return lines
+
+
+def check_in_words(plan: WorldPlan) -> list[str]:
+    """The verdict on a world, in a few lines."""
+    lines = world_plan_in_words(plan)
+    if not plan.changes_nothing:
+        lines += wrapped("`kit layers plan` shows which, and with --patch what to change in the files.")
+    return lines
+
+
+def patch_in_words(patch: Patch) -> list[str]:
+    """The diff, and what has to be done by hand."""
+    lines = patch.diff().splitlines()
+    for left in patch.left_alone:
+        lines += ["", *wrapped(f"{left.path} is left alone: {left.reason}. By hand:")]
+        lines += [f"  {words}" for words in left.by_hand]
+    if patch.left_alone:
+        lines += [
+            "",
+            *wrapped("These changes belong together: --apply writes none of them as long as one is left."),
+        ]
+    return lines or ["There is nothing to change."]
+
+
+_MOST_BREACHES = 20
 
 
 # What to give up

@@ -121,10 +121,10 @@ def greedy(case: Case, *, choose: Chooser = first) -> GreedyRun:
     """The method's layers, with every step and the choices it had. ``choose`` picks edges and vertices."""
     collision_steps: list[CollisionStep] = []
     struck: set[Contact] = set()
-    while choices := tuple(edge for edge in case.collide if edge not in struck):
+    while choices := _open_edges(case, struck):
         step = collision_step(case, choices, f"C{len(collision_steps) + 1}", choose=choose)
         collision_steps.append(step)
-        struck.update(step.struck)
+        struck.update(c for c in case.collide if c.a in step.layer.members and c.b in step.layer.members)
     layers = [step.layer for step in collision_steps]
     laser_steps: list[LaserStep] = []
     for laser in case.lasers:
@@ -137,6 +137,12 @@ def greedy(case: Case, *, choose: Chooser = first) -> GreedyRun:
         tuple(laser_steps),
         Assignment((*layers, *added), {step.laser: step.watches for step in laser_steps}),
     )
+
+
+def _open_edges(case: Case, struck: set[Contact]) -> tuple[Contact, ...]:
+    """The edges not struck yet. What has to be in some layer, no matter which, waits until the last."""
+    edges = tuple(edge for edge in case.edges() if edge not in struck)
+    return edges or tuple(contact for contact in case.collide if contact not in struck)
 
 
 def collision_step(

@@ -93,6 +93,8 @@ def patch_of(plan: WorldPlan, *, root: Path | None = None, also_shared: bool = F
                 raise Unsafe(
                     f"{', '.join(map(str, others[:3]))} names it too, and would change along with it"
                 )
+            if objections := [wanted.objection for wanted in changes if wanted.objection]:
+                raise Unsafe(objections[0])
             files.append(_file_patch(path, [wanted.change for wanted in changes]))
         except Unsafe as reason:
             left.append(LeftAlone(path, str(reason), tuple(wanted.words for wanted in changes)))
@@ -195,9 +197,8 @@ def _set_list(
         objection = 'a layer is called "all", which by itself means every layer: give it another name'
     stay = [name for name in written if name in names]
     ordered = (*stay, *(name for name in names if name not in stay))
-    yield _Wanted(
-        place, SetList((place.line, place.column), key, ordered), f"{place}: {key}: {flow(ordered)}"
-    )
+    change = SetList((place.line, place.column), key, ordered)
+    yield _Wanted(place, change, f"{place}: {key}: {flow(ordered)}", objection)
 
 
 def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:

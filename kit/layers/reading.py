@@ -9,7 +9,7 @@
     ghosts: [crane.hook]                   # never collide (collision: false); lasers may see them
     collide:                               # who must collide with whom
       robot: [hall, crane, chair]
-      chair: [chair]                       # the copies among themselves
+      chair: [chair]                       # its copies, or its bodies, among themselves
     either: {chair: [hall]}                # may share a layer or not, nobody minds
     lasers: {robot.front: [hall, chair]}   # what each laser must see
     may_see: {robot.front: [crane.hook]}   # what it may see
@@ -204,8 +204,8 @@ def _impossible(contact: Contact, relation: Relation, names: Names) -> str | Non
             f"{a.name} and {b.name} are maps: maps never collide, and a layer name belongs to one entry of the "
             "world file, so no layer holds two"
         )
-    if a == b and a.copies == 1:
-        return f"{a.name} cannot collide with itself: only a model with copies can"
+    if a == b and a.kind == "map":
+        return f"{a.name} is a map: it cannot collide with itself"
     if relation == "collide" and (a.ghost or b.ghost):
         return f"{(a if a.ghost else b).name} is one of the ghosts: it cannot collide with anything"
     return None
@@ -275,7 +275,7 @@ def written(case: Case, *, requirements: Requirements | None = None, comment: st
     if case.title:
         lines.append(f"title: {scalar(case.title)}")
     if requirements is not None and requirements.world is not None:
-        lines.append(f"world: {scalar(requirements.world.name)}")
+        lines.append(f"world: {scalar(str(requirements.world))}")
     for key, names in (("maps", maps), ("models", models)):
         if names:
             lines.append(f"{key}: {flow(names)}")
@@ -286,7 +286,7 @@ def written(case: Case, *, requirements: Requirements | None = None, comment: st
         lines += _mapping("copies", copies)
     if ghosts := [entity.name for entity in case.entities if entity.ghost]:
         lines.append(f"ghosts: {flow(ghosts)}")
-    lines += _mapping("collide", _adjacency(case.collide))
+    lines += _mapping("collide", _adjacency(c for c in case.collide if c.a != c.b or c.a not in maps))
     lines += _mapping("either", _adjacency(sorted(case.either)))
     lines += _mapping(
         "lasers", {laser.name: [n for n in case.names if n in laser.sees] for laser in case.lasers}

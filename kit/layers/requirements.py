@@ -43,7 +43,8 @@ class Entity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """A pair of entities; ``Contact(a, b) == Contact(b, a)``. ``Contact(a, a)``: the copies of ``a`` among themselves."""
+    """A pair of entities; ``Contact(a, b) == Contact(b, a)``. ``Contact(a, a)``: the copies of ``a``, or its bodies,
+    among themselves."""
 
     a: str
     b: str

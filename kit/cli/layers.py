@@ -1,0 +1,352 @@
+"""``kit layers``: who must touch whom and which laser must see whom, in the fewest layers, with the proof."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from kit.cli import layers_shown as shown
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.layers.patch import Patch
+    from kit.layers.tasks import Task
+    from kit.layers.world_planning import WorldPlan
+
+BROKEN: Final = 1
+"""Exit code: the requirements are not met, or cannot be within sixteen layers."""
+
+MORE_THAN_NEEDED: Final = 3
+"""Exit code of ``check``: a world that could do with fewer layers."""
+
+_JSON = click.option("--json", "as_json", is_flag=True, help="Print data for a program instead of text.")
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """How files are to be read, and how long may be thought about them."""
+
+    root: Path | None
+    variables: tuple[str, ...]
+    never: bool
+    time_limit: float
+
+    def open(self, target: str, requirements: Path | None = None) -> Task:
+        """What the user named. Raises WorldError and UnknownTask."""
+        from kit.layers.tasks import open_task
+
+        environment = dict(map(_variable, self.variables))
+        return open_task(
+            target,
+            requirements=requirements,
+            one_model_never_collides=self.never,
+            root=self.root,
+            environment=environment,
+        )
+
+
+_READING: Final = (
+    click.option(
+        "--one-model-never-collides",
+        "never",
+        is_flag=True,
+        help="Assume, as the slides do, that bodies of one model never meet. Flatland does not: two that share a "
+        "layer and are not joined do collide. True of models whose parts cannot reach each other.",
+    ),
+    click.option(
+        "--time-limit",
+        type=click.FloatRange(min=0, min_open=True),
+        default=10.0,
+        show_default="10",
+        metavar="SECONDS",
+        help="After this, print the best plan found, with the bound that is proved.",
+    ),
+    options.root,
+    click.option(
+        "--env",
+        "variables",
+        metavar="NAME[=VALUE]",
+        multiple=True,
+        help="An environment variable that env() in the world may read; repeat for more.",
+    ),
+)
+
+
+def _reading(function: Callable[..., None]) -> Callable[..., None]:
+    """Gives a verb the options of reading, as its argument ``reading``."""
+
+    @wraps(function)
+    def verb(
+        root: Path | None, variables: tuple[str, ...], never: bool, time_limit: float, **others: Any
+    ) -> None:
+        function(reading=_Reading(root, variables, never, time_limit), **others)
+
+    decorated: Callable[..., None] = verb
+    for option in reversed(_READING):
+        decorated = option(decorated)
+    return decorated
+
+
+@click.group()
+def command() -> None:
+    """Plan collision layers for Flatland worlds.
+
+    In Flatland two things collide when they share a layer, and a laser sees what is in a layer it watches. A world
+    has 16 layers. This finds the fewest that do what you ask, proves that there cannot be fewer, and writes them
+    into your files.
+
+    \b
+      kit layers example                     cases to learn from
+      kit layers explain slides-lasers       the slides' method step by step, then the optimum
+      kit layers plan my.world.yaml          the same behaviour with the fewest layers
+      kit layers plan my.world.yaml --patch  what would change in your files
+      kit layers check my.world.yaml         for CI: exit code 3 if fewer would do
+    """
+
+
+@command.command()
+@click.argument("target", metavar="FILE_OR_NAME")
+@click.option(
+    "--patch", "show_patch", is_flag=True, help="Show what to change in the world's files, as a diff."
+)
+@click.option(
+    "--apply", "do_apply", is_flag=True, help="Change the files; then load them and check the result."
+)
+@click.option("--also-shared", is_flag=True, help="Change model files that other worlds name as well.")
+@click.option(
+    "--dot", "graph", flag_value="dot", default=None, help="Print the graph with its layers for Graphviz."
+)
+@click.option("--mermaid", "graph", flag_value="mermaid", help="Print the graph with its layers for Mermaid.")
+@click.option(
+    "--requirements", "as_requirements", is_flag=True, help="Print the requirements, to edit and to check."
+)
+@click.option("--method", type=click.Choice(("exact", "greedy")), default="exact", show_default=True)
+@_JSON
+@_reading
+def plan(
+    target: str,
+    show_patch: bool,
+    do_apply: bool,
+    also_shared: bool,
+    graph: str | None,
+    as_requirements: bool,
+    method: str,
+    as_json: bool,
+    reading: _Reading,
+) -> None:
+    """Find the fewest layers, and who belongs in which.
+
+    FILE_OR_NAME is a requirements file, a Flatland world (today's collisions and sightings are what is asked), one
+    of `kit layers example`, or a map of `kit maps`. A requirements file with a line `world: FILE` is planned for
+    that world. Lists shared by several instances of one model file are planned as one.
+
+    Exits with 0; with 1 if more than 16 layers are needed; with 2 if the input is wrong.
+
+    \b
+      kit layers example slides > s.yaml; kit layers plan s.yaml
+      kit layers plan my.world.yaml --apply
+      kit layers plan depot --json
+    """
+    from kit.layers.requirements import MAX_LAYERS
+    from kit.layers.tasks import solve_task
+
+    with _mistakes():
+        task = reading.open(target)
+        if as_requirements:
+            click.echo(task.as_requirements(), nl=False)
+            return
+        if method == "greedy":
+            if show_patch or do_apply:
+                raise click.UsageError("A patch is made from the exact plan: leave out --method greedy.")
+            shown.show_greedy(task.case, as_json=as_json, graph=graph)
+            return
+        found, world_plan = solve_task(task, time_limit=reading.time_limit)
+        patch = _patch(task, world_plan, also_shared) if show_patch or do_apply else None
+        assignment = found.assignment if world_plan is None else world_plan.assignment
+        if as_json:
+            click.echo(json.dumps(shown.plan_data(found, world_plan, patch), indent=2))
+        elif graph:
+            shown.show_graph(task.case, assignment, graph)
+        else:
+            shown.show_plan(task.case, found, world_plan, reading.time_limit)
+            if patch is not None:
+                shown.show_patch(patch)
+        if do_apply and patch is not None and world_plan is not None:
+            _apply(task, world_plan, patch, quiet=as_json)
+        raise SystemExit(BROKEN if len(assignment.layers) > MAX_LAYERS else 0)
+
+
+@command.command()
+@click.argument("world", metavar="WORLD")
+@click.argument("requirements", required=False, type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--lenient", is_flag=True, help="A layer too many is said, but is no failure.")
+@_JSON
+@_reading
+def check(
+    world: str,
+    requirements: Path | None,
+    lenient: bool,
+    as_json: bool,
+    reading: _Reading,
+) -> None:
+    """Check a world's layers, for CI: does it do what REQUIREMENTS ask, and with as few layers as can be?
+
+    Without REQUIREMENTS, only the second is asked: could it do the same with fewer layers?
+
+    \b
+    Exits with
+      0  fine
+      1  something collides, or is seen, that must not; or does not, and must
+      2  the input is wrong
+      3  fewer layers would do (0 with --lenient)
+
+    \b
+      kit layers plan my.world.yaml --requirements > my.layers.yaml    once, then edit it
+      kit layers check my.world.yaml my.layers.yaml                    in CI
+    """
+    from kit.layers.data import check_data
+    from kit.layers.explain import check_in_words
+    from kit.layers.tasks import solve_task
+
+    with _mistakes():
+        task = reading.open(world, requirements)
+        if task.world is None:
+            raise click.UsageError(f"{world} is no Flatland world: `kit layers plan` plans requirements.")
+        _, result = solve_task(task, time_limit=reading.time_limit)
+        assert result is not None  # there is a world
+        more = result.names_today > result.size
+        code = BROKEN if result.wrong_today else MORE_THAN_NEEDED if more and not lenient else 0
+        if as_json:
+            click.echo(json.dumps({**check_data(result), "exit": code}, indent=2))
+        else:
+            shown.echo(check_in_words(result))
+        raise SystemExit(code)
+
+
+@command.command()
+@click.argument("target", metavar="FILE_OR_NAME")
+@click.option("--pictures", is_flag=True, help="Draw the graph at every step, with the struck edges.")
+@click.option(
+    "--glyphs",
+    type=click.Choice(("auto", "braille", "ascii")),
+    default="auto",
+    show_default=True,
+    help="What pictures are drawn with.",
+)
+@_reading
+def explain(
+    target: str,
+    pictures: bool,
+    glyphs: str,
+    reading: _Reading,
+) -> None:
+    """Go through the slides' method step by step, then show the optimum beside it, and why nothing is smaller.
+
+    FILE_OR_NAME is what `kit layers plan` takes.
+
+    \b
+      kit layers explain three
+      kit layers explain slides --pictures
+      kit layers explain greedy-trap
+    """
+    from kit.layers import explain as words
+    from kit.layers.drawing import draw_assignment, draw_case, plain
+    from kit.layers.greedy import greedy
+    from kit.layers.tasks import solve_task
+
+    with _mistakes():
+        task = reading.open(target)
+        run = greedy(task.case)
+        shown.echo(words.wrapped(task.case.title))
+        shown.echo(plain(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
+        shown.echo(["", "THE SLIDES' METHOD", ""])
+        shown.echo(
+            words.greedy_in_words(run, draw=shown.pictures(run, shown.glyphs(glyphs)) if pictures else None)
+        )
+        found, _ = solve_task(task, time_limit=reading.time_limit)
+        shown.echo(["", "THE FEWEST LAYERS", ""])
+        shown.echo(words.plan_in_words(found))
+        shown.echo(["", *draw_assignment(task.case, found.assignment), ""])
+        shown.echo(words.proof_in_words(found, every_pair=len(found.certificate.apart) <= 10))
+        shown.echo(words.comparison_in_words(run, found))
+
+
+@command.command()
+@click.argument("name", required=False)
+def example(name: str | None) -> None:
+    """Print one of the cases to learn from as a requirements file; without a NAME, list them.
+
+    \b
+      kit layers example slides-lasers > slides.yaml
+    """
+    from kit.layers.examples import EXAMPLES
+    from kit.layers.reading import written
+    from kit.world.tables import table
+
+    if name is None:
+        shown.echo(table([(key, case.title) for key, case in EXAMPLES.items()]))
+        shown.echo(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
+    elif name in EXAMPLES:
+        click.echo(written(EXAMPLES[name]), nl=False)
+    else:
+        from kit.world.problems import quoted, suggestion
+
+        options.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
+
+
+# What the user named
+
+
+def _variable(text: str) -> tuple[str, str]:
+    name, given, value = text.partition("=")
+    if not given and name not in os.environ:
+        raise click.UsageError(f"The environment variable {name} is not set: write --env {name}=VALUE.")
+    return name, value if given else os.environ[name]
+
+
+@contextmanager
+def _mistakes() -> Iterator[None]:
+    """A mistake in the user's files ends in words and exit code 2."""
+    from kit.layers.tasks import UnknownTask
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except (WorldError, UnknownTask) as error:
+        options.fail(str(error))
+
+
+def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> None:
+    from kit.layers.patch import PatchError, apply, recheck
+
+    assert task.source is not None  # there is a patch
+    try:
+        apply(patch, recheck(world_plan, task.source.read, requirements=task.requirements))
+    except PatchError as error:
+        options.fail(f"Nothing was written: {error}.")
+    if patch.files and not quiet:
+        count = len(patch.files)
+        click.echo(
+            f"\nWritten: {count} file{'' if count == 1 else 's'}. Loaded again and checked: it does what was asked."
+        )
+
+
+def _patch(task: Task, world_plan: WorldPlan | None, also_shared: bool) -> Patch:
+    from kit.layers.patch import patch_of
+    from kit.layers.requirements import MAX_LAYERS
+
+    if world_plan is None or task.source is None:
+        raise click.UsageError(
+            "There are no files to patch: name a world, or write `world: FILE` in the requirements."
+        )
+    if world_plan.size > MAX_LAYERS:
+        options.fail(f"{world_plan.size} layers do not fit into a world file: there is nothing to patch.")
+    return patch_of(world_plan, root=task.source.root, also_shared=also_shared)

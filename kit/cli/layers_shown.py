@@ -1,0 +1,109 @@
+"""How the verbs of ``kit layers`` show what they have found: as text, as data, as a graph."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from kit.layers.assignment import Assignment
+    from kit.layers.drawing import Glyphs
+    from kit.layers.greedy import GreedyRun
+    from kit.layers.patch import Patch
+    from kit.layers.planning import Plan
+    from kit.layers.requirements import Case
+    from kit.layers.world_planning import WorldPlan
+
+
+def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit: float) -> None:
+    from kit.layers import explain as words
+    from kit.layers.drawing import draw_assignment
+    from kit.layers.dropping import give_up, tolerate
+    from kit.layers.greedy import greedy
+    from kit.layers.requirements import MAX_LAYERS
+
+    if world_plan is None:
+        echo(words.wrapped(case.title))
+        echo(words.plan_in_words(found))
+        assignment, kept = found.assignment, 0
+    else:
+        echo(words.world_plan_in_words(world_plan))
+        assignment, kept = world_plan.assignment, len(world_plan.world_case.kept)
+    echo(["", *draw_assignment(case, assignment), ""])
+    echo(words.proof_in_words(found))
+    echo(words.comparison_in_words(greedy(found.case), found))
+    limit = MAX_LAYERS - kept
+    if found.size > limit:
+        given_up = give_up(found.case, limit=limit, time_limit=time_limit)
+        tolerated = tolerate(found, limit=limit, time_limit=time_limit)
+        echo(["", *words.too_many_in_words(found, given_up, tolerated)])
+
+
+def plan_data(found: Plan, world_plan: WorldPlan | None, patch: Patch | None) -> dict[str, Any]:
+    from kit.layers.data import patch_data, plan_data, world_data
+    from kit.layers.greedy import greedy
+
+    facts = plan_data(found, greedy(found.case))
+    if world_plan is not None:
+        facts |= world_data(world_plan)
+    if patch is not None:
+        facts["patch"] = patch_data(patch)
+    return facts
+
+
+def show_greedy(case: Case, *, as_json: bool, graph: str | None) -> None:
+    from kit.layers.data import greedy_data
+    from kit.layers.drawing import draw_assignment
+    from kit.layers.explain import greedy_end_in_words
+    from kit.layers.greedy import greedy
+
+    run = greedy(case)
+    if as_json:
+        click.echo(json.dumps(greedy_data(run), indent=2))
+    elif graph:
+        show_graph(case, run.assignment, graph)
+    else:
+        echo([*greedy_end_in_words(run), "", *draw_assignment(case, run.assignment)])
+
+
+def show_graph(case: Case, assignment: Assignment, language: str) -> None:
+    from kit.layers.graphs import graphviz, mermaid
+
+    click.echo({"dot": graphviz, "mermaid": mermaid}[language](case, assignment), nl=False)
+
+
+def show_patch(patch: Patch) -> None:
+    from kit.layers.explain import patch_in_words
+
+    echo(["", *patch_in_words(patch)])
+
+
+def pictures(run: GreedyRun, glyphs: Glyphs) -> Callable[[int], list[str]]:
+    """Draws the graph at a step: what is struck already, and the group just made."""
+    from kit.layers.drawing import draw_case, plain
+
+    def draw(step: int) -> list[str]:
+        members = run.collision_steps[step].layer.members
+        return plain(draw_case(run.case, struck=run.struck_before(step), group=members, glyphs=glyphs))
+
+    return draw
+
+
+def glyphs(asked: str) -> Glyphs:
+    """What this terminal can show, unless the user has said."""
+    if asked == "auto":
+        encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "")
+        return (
+            "braille" if encoding == "utf8" and os.environ.get("TERM") not in ("dumb", "linux") else "ascii"
+        )
+    return "braille" if asked == "braille" else "ascii"
+
+
+def echo(lines: Iterable[str]) -> None:
+    for line in lines:
+        click.echo(line)
