@@ -25,7 +25,9 @@ class StudentFunctions:
     raises GuestError when the student's code fails; the process has ended by then.
     """
 
-    def __init__(self, file: Path, *, seed: int = 0, limits: Limits = DESK, level: Level = DESK_LEVEL) -> None:
+    def __init__(
+        self, file: Path, *, seed: int = 0, limits: Limits = DESK, level: Level = DESK_LEVEL
+    ) -> None:
         self.file = file
         self._child = Child("functions", file, {"seed": seed}, limits=limits, level=level)
         try:

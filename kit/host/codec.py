@@ -35,50 +35,89 @@ Pack = Callable[[Any], Json]
 Unpack = Callable[[Json], Any]
 
 
-class Codec:
-    """Packs messages, and unpacks them with every value checked. ``trusting``: what comes may be NaN anywhere."""
+class NotFiniteError(ValueError):
+    """A message holds NaN or infinity where that makes no sense; the message says in which field."""
 
-    def __init__(self, *, trusting: bool) -> None:
-        self._trusting = trusting
+
+class Codec:
+    """Packs messages, and unpacks them with every value checked.
+
+    ``in_child``: where the student's code runs. What it says must be finite (NotFiniteError there, so that it
+    happens at the student's own line; ProtocolError at the other end); what it is told may be anything.
+    """
+
+    def __init__(self, *, in_child: bool) -> None:
+        self._in_child = in_child
         self._pack: dict[type[Message], Pack] = {}
         self._unpack: dict[type[Message], Unpack] = {}
 
     def pack(self, message: Message) -> Json:
         cls = type(message)
         if cls not in self._pack:
-            self._pack[cls] = _packer(cls)
+            self._pack[cls] = _packer(cls, self._in_child)
         return self._pack[cls](message)
 
     def unpack(self, cls: type[Message], content: Json) -> Any:
         """The message of type ``cls``. ProtocolError if the content does not fit it exactly."""
         if cls not in self._unpack:
-            self._unpack[cls] = _unpacker(cls, self._trusting)
+            self._unpack[cls] = _unpacker(cls, not self._in_child)
         return self._unpack[cls](content)
 
 
-def _packer(cls: type[Message]) -> Pack:
-    steps = [(field.slot, _packer_of(field.kind)) for field in cls.__ros_fields__]
+def _must_be_finite(cls: type[Message], field: str, strict: bool) -> bool:
+    return strict and (cls.__ros_type__, field) not in MAY_BE_INFINITE
+
+
+def _packer(cls: type[Message], strict: bool) -> Pack:
+    steps = [
+        (field.slot, _packer_of(field.kind, strict, _must_be_finite(cls, field.name, strict)))
+        for field in cls.__ros_fields__
+    ]
 
     def pack(message: Any) -> Json:
-        return [step(getattr(message, slot)) for slot, step in steps]
+        slot = ""
+        try:
+            content = []
+            for slot, step in steps:
+                content.append(step(getattr(message, slot)))
+            return content
+        except NotFiniteError as problem:
+            raise NotFiniteError(f"{slot[1:]}.{problem}".removesuffix(".")) from None
 
     return pack
 
 
-def _packer_of(kind: Kind) -> Pack:
+def _packer_of(kind: Kind, strict: bool, finite: bool) -> Pack:
     if isinstance(kind, Nested):
-        return _packer(kind.cls)
+        return _packer(kind.cls, strict)
     if isinstance(kind, Fixed) or (isinstance(kind, Many) and kind.code):
-        return _numbers_to_text
+        code = kind.item.code if isinstance(kind, Fixed) else kind.code
+        return _finite_numbers_to_text if finite and code in "fd" else _numbers_to_text
     if isinstance(kind, Many):
-        item = _packer_of(kind.item)
+        item = _packer_of(kind.item, strict, finite)
         return lambda values: [item(value) for value in values]
     assert isinstance(kind, Scalar)
     if kind.python is float:
-        return lambda value: value if value - value == 0 else repr(value)
+        return _finite if finite else _number_or_word
     if kind.python is bytes:
         return lambda value: value[0]
     return lambda value: value
+
+
+def _finite(value: float) -> Json:
+    if value - value != 0:
+        raise NotFiniteError("")
+    return value
+
+
+def _number_or_word(value: float) -> Json:
+    return value if value - value == 0 else repr(value)
+
+
+def _finite_numbers_to_text(values: Any) -> str:
+    if not all(map(math.isfinite, values)):
+        raise NotFiniteError("")
+    return _numbers_to_text(values)
 
 
 def _numbers_to_text(values: Any) -> str:
@@ -93,10 +132,10 @@ def _swapped(values: array[Any]) -> array[Any]:
     return copy
 
 
-def _unpacker(cls: type[Message], trusting: bool) -> Unpack:
+def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     names = [field.name for field in cls.__ros_fields__]
     steps = [
-        _unpacker_of(field.kind, trusting, trusting or (cls.__ros_type__, field.name) in MAY_BE_INFINITE)
+        _unpacker_of(field.kind, strict, _must_be_finite(cls, field.name, strict))
         for field in cls.__ros_fields__
     ]
 
@@ -110,19 +149,19 @@ def _unpacker(cls: type[Message], trusting: bool) -> Unpack:
     return unpack
 
 
-def _unpacker_of(kind: Kind, trusting: bool, infinite: bool) -> Unpack:
+def _unpacker_of(kind: Kind, strict: bool, finite: bool) -> Unpack:
     if isinstance(kind, Nested):
-        return _unpacker(kind.cls, trusting)
+        return _unpacker(kind.cls, strict)
     if isinstance(kind, Fixed):
-        return _numbers(kind.item.code, infinite)
+        return _numbers(kind.item.code, finite)
     if isinstance(kind, Many):
         if kind.code:
-            return _numbers(kind.code, infinite)
-        item = _unpacker_of(kind.item, trusting, infinite)
+            return _numbers(kind.code, finite)
+        item = _unpacker_of(kind.item, strict, finite)
         return lambda content: [item(value) for value in wire.array(content)]
     assert isinstance(kind, Scalar)
     if kind.python is float:
-        return _any_number if infinite else wire.number
+        return wire.number if finite else _any_number
     if kind.python is int:
         return lambda content: wire.integer(content, int(kind.low), int(kind.high))
     if kind.python is bytes:
@@ -147,8 +186,8 @@ def _words(content: Json) -> str:
     return content.encode("utf-8", "replace").decode("utf-8")
 
 
-def _numbers(code: str, infinite: bool) -> Unpack:
-    finite_check = code in "fd" and not infinite
+def _numbers(code: str, finite: bool) -> Unpack:
+    finite_check = code in "fd" and finite
     size = array(code).itemsize
 
     def unpack(content: Json) -> array[Any]:

@@ -57,7 +57,7 @@ class Guest:
         self._graph = graph
         self._inbox: list[list[Json]] = []
         self._asked: dict[int, _Asked] = {}
-        self._codec = Codec(trusting=False)
+        self._codec = Codec(in_child=False)
         self._mirror = Mirror(graph, self)
         self._census = Census(graph, self._mirror)
         self._speaking = False
@@ -135,8 +135,10 @@ class Guest:
     def exchange(self) -> bool:
         """One question and its answer, if anything is due; false if nothing was."""
         now = self._graph.now_ns
-        has_woken = self._wake_ns is not None and self._wake_ns <= now != self._now_ns
-        if not (self._inbox or has_woken or now < self._now_ns or self._census.has_news) or not self.is_running:
+        # Not twice at one time for the time's sake: what wants to go on at once would go on for ever.
+        has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._now_ns
+        is_due = self._inbox or has_woken or now < self._now_ns or self._census.has_news
+        if not is_due or not self.is_running:
             return False
         self._now_ns = now
         events, self._inbox = [*self._census.news(), *self._inbox], []
@@ -163,7 +165,7 @@ class Guest:
                 self.has_ended = True
                 self._mirror.clear()
         except ProtocolError as problem:
-            self._child.stop(verdicts.nonsense(str(problem)))
+            self._child.condemn(verdicts.nonsense(str(problem)))
             self._mirror.clear()
         except GuestError:
             self._mirror.clear()

@@ -164,6 +164,12 @@ class Child:
         """What the program has printed since the last time."""
         return self._output.take()
 
+    def condemn(self, failure: Failure) -> None:
+        """Ends the child for this reason."""
+        self.failure = failure
+        self._output.finish()
+        self.close()
+
     def close(self) -> None:
         """Ends the child and everything that came out of it, and removes its folder. May be called twice."""
         self._pipe.close()  # the process above the child notices, and cleans up
@@ -211,9 +217,7 @@ class Child:
         return self._output.position(str(self._file.parent))
 
     def _stop(self, failure: Failure) -> NoReturn:
-        self.failure = failure
-        self._output.finish()
-        self.close()
+        self.condemn(failure)
         raise GuestError(failure)
 
     def _send(self) -> None:
@@ -299,7 +303,7 @@ def command() -> list[str]:
     ``-I`` would also ignore PYTHONHASHSEED, and so let the order of a set differ from run to run; the
     environment is ours anyway.
     """
-    return [sys.executable, "-s", "-S", "-P", str(_HERE / "bootstrap.py")]
+    return [sys.executable, "-s", "-S", "-P", str(_HERE / "child" / "bootstrap.py")]
 
 
 def environment(scratch: str) -> dict[str, str]:

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, array, integer, text
 from kit.msg.interfaces import Interface, UnknownInterface, find_interface
-from kit.msg.message import Message, Service as Definition, type_name
+from kit.msg.message import Message, type_name
+from kit.msg.message import Service as Definition
 from kit.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.client import Client
 from kit.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -81,7 +82,13 @@ class RemoteSubscription(Subscription[Any]):
     """Hands on each message at once."""
 
     def __init__(
-        self, node: NodeHandle, cls: type[Message], topic: str, qos: QoSProfile, identity: int, listener: Listener
+        self,
+        node: NodeHandle,
+        cls: type[Message],
+        topic: str,
+        qos: QoSProfile,
+        identity: int,
+        listener: Listener,
     ) -> None:
         self._identity, self._listener = identity, listener
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
@@ -98,7 +105,13 @@ class RemoteService(Service[Any, Any]):
     """Hands on each request at once; whoever answers calls ``call.client.arrive``."""
 
     def __init__(
-        self, node: NodeHandle, cls: type[Definition], name: str, qos: QoSProfile, identity: int, listener: Listener
+        self,
+        node: NodeHandle,
+        cls: type[Definition],
+        name: str,
+        qos: QoSProfile,
+        identity: int,
+        listener: Listener,
     ) -> None:
         self._identity, self._listener = identity, listener
         super().__init__(node, cls, name, _never_called, MutuallyExclusiveCallbackGroup(), qos)
@@ -114,7 +127,13 @@ class RemoteClient(Client[Any, Any]):
     """Hands on each response at once."""
 
     def __init__(
-        self, node: NodeHandle, cls: type[Definition], name: str, qos: QoSProfile, identity: int, listener: Listener
+        self,
+        node: NodeHandle,
+        cls: type[Definition],
+        name: str,
+        qos: QoSProfile,
+        identity: int,
+        listener: Listener,
     ) -> None:
         self._identity, self._listener = identity, listener
         super().__init__(node, cls, name, MutuallyExclusiveCallbackGroup(), qos)
@@ -124,7 +143,7 @@ class RemoteClient(Client[Any, Any]):
         graph = self._graph
         with graph.lock:
             if graph.watchers:
-                graph.tell_watchers(self._node, self.service_name, request)
+                graph.tell_watchers(self._handle.node, self.service_name, request)
             server = graph.directory.server(self.service_name, self.srv_type)
             if server is not None:
                 server.arrive(Call(self, number, request))
@@ -192,7 +211,9 @@ class Mirror:
         self._nodes[number] = node = RemoteNode(self._graph, node_name, space)
         self._handles.add(node.handle)
 
-    def _add_topic_end(self, kind: str, identity: Json, node: Json, topic: Json, type_of: Json, qos: Json) -> None:
+    def _add_topic_end(
+        self, kind: str, identity: Json, node: Json, topic: Json, type_of: Json, qos: Json
+    ) -> None:
         handle, name, profile = self._node(node).handle, text(topic, MAX_NAME), _read_qos(qos)
         cls = self._type(type_of, Message)
         _valid(validate_full_topic_name, name)
@@ -306,7 +327,9 @@ class Census:
         self.ends = {number: end for number, end in self.ends.items() if number in living}
         self._nodes = {handle: number for handle, number in self._nodes.items() if number in living}
         self._publishers = {
-            (end.handle, end.topic_name): number for number, end in self.ends.items() if isinstance(end, Publisher)
+            (end.handle, end.topic_name): number
+            for number, end in self.ends.items()
+            if isinstance(end, Publisher)
         }
         return events
 

@@ -6,11 +6,11 @@ import signal
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from kit.host.channel import LOST_PIPE
 from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind
 from kit.host.limits import MIB, Limits
 from kit.host.output import Position
+from kit.host.wire import LOST_PIPE
 
 Budget: TypeAlias = Literal["start", "reply", "total"]
 

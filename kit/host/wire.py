@@ -16,6 +16,8 @@ Json: TypeAlias = Any
 """What JSON can say: None, bool, int, float, str, lists and dicts of these."""
 
 HEADER: Final = struct.Struct(">I")
+LOST_PIPE: Final = 70
+"""Exit status of a child whose pipe was closed under it (EX_SOFTWARE of sysexits.h)."""
 MAX_DEPTH: Final = 24
 """Arrays in arrays: a message in an event in a frame needs ten at most."""
 MAX_ITEMS: Final = 1_000_000

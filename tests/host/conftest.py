@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 import pytest
 
 from kit.host import landlock
 from kit.host.limits import MIB, Limits
 
-Student = Callable[[str], Path]
+
+class Student(Protocol):
+    """Writes a student's file and returns its path."""
+
+    def __call__(self, source: str, name: str = "work.py") -> Path: ...
+
 
 QUICK = Limits(start_s=20.0, reply_s=1.0, memory=600 * MIB, output=4096, frame=64 * 1024)
 """Short deadlines, but no shorter than a busy machine needs for honest code."""
@@ -25,7 +30,6 @@ LOCKS = pytest.mark.skipif(
 
 @pytest.fixture
 def student(tmp_path: Path) -> Student:
-    """Writes a student's file and returns its path."""
     folder = tmp_path / "student"
     folder.mkdir()
 

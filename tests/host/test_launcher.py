@@ -58,7 +58,10 @@ def test_functions_answer_in_order(student: Student) -> None:
     )
     with StudentFunctions(file, limits=QUICK) as functions:
         assert functions.names == ("reward",)
-        assert functions.call("reward", [{"x": 3, "y": 4}, {"x": 0.1, "y": 0.0, "collision": True}]) == [5.0, -0.9]
+        assert functions.call("reward", [{"x": 3, "y": 4}, {"x": 0.1, "y": 0.0, "collision": True}]) == [
+            5.0,
+            -0.9,
+        ]
         assert functions.call("reward", []) == []
         assert functions.failure is None
 
@@ -101,7 +104,19 @@ def test_every_failure_says_what_and_where(
 
 
 @pytest.mark.parametrize(
-    "value", ["None", "True", "'1'", "[1.0]", "float('nan')", "-float('inf')", "10**400", "1j", "object()", "10**5000"]
+    "value",
+    [
+        "None",
+        "True",
+        "'1'",
+        "[1.0]",
+        "float('nan')",
+        "-float('inf')",
+        "10**400",
+        "1j",
+        "object()",
+        "10**5000",
+    ],
 )
 def test_only_a_finite_number_is_a_reward(student: Student, value: str) -> None:
     failure = fail(student(f"\n\ndef f():\n  return {value}"))
@@ -119,7 +134,12 @@ def test_a_number_is_a_number_whatever_its_class(student: Student) -> None:
         """
     )
     with StudentFunctions(file, limits=QUICK) as functions:
-        assert functions.call("f", [{"kind": kind} for kind in ("float32", "int64", "mine", "int")]) == [0.5, 2, 1.5, 3]
+        assert functions.call("f", [{"kind": kind} for kind in ("float32", "int64", "mine", "int")]) == [
+            0.5,
+            2,
+            1.5,
+            3,
+        ]
 
 
 def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -> None:
@@ -219,7 +239,9 @@ def test_a_flood_of_prints_is_drained_and_dropped(student: Student) -> None:
 
 
 def test_prints_arrive_with_the_answer_and_harmless(student: Student) -> None:
-    file = student("import sys\ndef f():\n  print('::error::\\x1b[2J')\n  print('bad', file=sys.stderr)\n  return 1")
+    file = student(
+        "import sys\ndef f():\n  print('::error::\\x1b[2J')\n  print('bad', file=sys.stderr)\n  return 1"
+    )
     with StudentFunctions(file, limits=QUICK) as functions:
         functions.call("f", [{}])
         lines = functions.take_output().lines
@@ -331,7 +353,9 @@ def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, 
         f"functions = StudentFunctions(pathlib.Path({str(file)!r}))\n"
         f"functions.call('f', [{{}}]); print('started', flush=True); {end}"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
     assert run.stdout == "started\n", run.stderr
     deadline = time.monotonic() + 10
     while (_is_running(marker) or _folders()) and time.monotonic() < deadline:
@@ -417,7 +441,9 @@ def test_the_order_of_a_set_and_chance_are_the_same_in_every_run(student: Studen
 def test_files_of_the_folder_do_not_hide_the_librarys(student: Student) -> None:
     student("raise RuntimeError('not me')", "json.py")
     student("FACTOR = 2.5", "friend.py")
-    with StudentFunctions(student("import json, friend\ndef f(): return friend.FACTOR"), limits=QUICK) as functions:
+    with StudentFunctions(
+        student("import json, friend\ndef f(): return friend.FACTOR"), limits=QUICK
+    ) as functions:
         assert functions.call("f", [{}]) == [2.5]
 
 

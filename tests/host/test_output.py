@@ -65,11 +65,13 @@ def test_where_a_program_was_is_read_and_not_shown() -> None:
 
 def test_where_a_program_was_with_letters_beyond_ascii() -> None:
     output = Output(10_000)
-    output.feed("err", b'Current thread 0x01 (most recent call first):\n  File "/home/j\\xfcrgen/r.py", line 3 in f\n')
+    output.feed(
+        "err", b'Current thread 0x01 (most recent call first):\n  File "/home/j\\xfcrgen/r.py", line 3 in f\n'
+    )
     assert output.position("/home/jürgen") == Position("r.py", 3, "f")
 
 
 def test_where_a_program_was_takes_little_memory() -> None:
     output = Output(100)
-    output.feed("err", DUMP + b"  File \"/x\", line 1 in f\n" * 100_000)
+    output.feed("err", DUMP + b'  File "/x", line 1 in f\n' * 100_000)
     assert output.position("/home/ada/robots") == Position("drive.py", 12, "on_scan")

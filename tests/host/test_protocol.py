@@ -15,11 +15,17 @@ GOOD: list[tuple[list[Json], object]] = [
     (["confined", 1], Confined(1)),
     (["refused", "no"], Refused("no")),
     (["reply", 3, None, []], Reply(3, None, ())),
-    (["reply", 3, 100, [["gone", 7], ["publish", 1, [0.5]]]], Reply(3, 100, (Event("gone", [7]), Event("publish", [1, [0.5]])))),
+    (
+        ["reply", 3, 100, [["gone", 7], ["publish", 1, [0.5]]]],
+        Reply(3, 100, (Event("gone", [7]), Event("publish", [1, [0.5]]))),
+    ),
     (["functions", 0, ["reward"]], Functions(0, ("reward",))),
     (["values", 9, [1, 2.5]], Values(9, [1.0, 2.5])),
     (["ended", 2, []], Ended(2, ())),
-    (["failed", 2, "exception", "E: x", "a.py", 3], Failed(2, Failure(FailureKind.EXCEPTION, "E: x", "a.py", 3))),
+    (
+        ["failed", 2, "exception", "E: x", "a.py", 3],
+        Failed(2, Failure(FailureKind.EXCEPTION, "E: x", "a.py", 3)),
+    ),
     (["failed", 2, "exit", "left", None, None], Failed(2, Failure(FailureKind.EXIT, "left"))),
 ]
 
@@ -70,7 +76,22 @@ def test_bad_frames(content: Json) -> None:
 def test_a_thousand_broken_frames_are_understood_or_refused() -> None:
     """One value of a good frame is exchanged for another one: the outcome is a frame or a refusal."""
     chance = random.Random(1)
-    values: list[Json] = [None, True, -1, 0, 2**70, 0.5, float("nan"), float("inf"), "", "x" * 5000, [], [[]], {}, {"a": 1}]
+    values: list[Json] = [
+        None,
+        True,
+        -1,
+        0,
+        2**70,
+        0.5,
+        float("nan"),
+        float("inf"),
+        "",
+        "x" * 5000,
+        [],
+        [[]],
+        {},
+        {"a": 1},
+    ]
     for _ in range(1000):
         content = copy.deepcopy(chance.choice(GOOD)[0])
         target = content

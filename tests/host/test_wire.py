@@ -13,7 +13,11 @@ from kit.host import wire
 from kit.host.wire import HEADER, ProtocolError, decode, encode
 
 PLAIN = st.recursive(
-    st.none() | st.booleans() | st.integers(-(2**60), 2**60) | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**60), 2**60)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(),
     lambda inner: st.lists(inner, max_size=4),
     max_leaves=20,
 )
@@ -27,7 +31,10 @@ def test_what_goes_in_comes_out(content: object) -> None:
 
 
 @settings(max_examples=300)
-@given(st.binary(max_size=200) | st.text(alphabet='[]{}",:0123456789eE.-+nulltrefasNI\\', max_size=200).map(str.encode))
+@given(
+    st.binary(max_size=200)
+    | st.text(alphabet='[]{}",:0123456789eE.-+nulltrefasNI\\', max_size=200).map(str.encode)
+)
 def test_any_bytes_are_json_or_refused(data: bytes) -> None:
     try:
         decode(data)

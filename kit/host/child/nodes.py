@@ -9,11 +9,11 @@ from collections.abc import Callable
 from types import MappingProxyType, ModuleType
 from typing import Any, Final
 
-from kit.host.codec import Codec
-from kit.host.conversation import Conversation
+from kit.host.child.conversation import Conversation
+from kit.host.child.program import Program
+from kit.host.child.pump import PipePump
+from kit.host.codec import Codec, NotFiniteError
 from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.program import Program
-from kit.host.pump import PipePump
 from kit.host.remote import Census, Mirror
 from kit.host.wire import Json
 from kit.msg.message import Message
@@ -23,6 +23,7 @@ from kit.ros.graph import Graph
 from kit.ros.node import Node
 from kit.ros.service import Call
 
+
 def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
@@ -31,9 +32,14 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
     set_default_graph(embassy.graph)
     _keep_simulated_time(embassy.graph)
     embassy.hear(start["events"])
-    module = program.load("__main__")
-    if not embassy.has_had_nodes:
-        _begin(module, program)
+    try:
+        module = program.load("__main__")
+        if not embassy.has_had_nodes:
+            _begin(module, program)
+    except SystemExit as stop:
+        # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
+        if stop.code not in (None, 0) or len(program.frames(stop.__traceback__)) > 1:
+            raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
@@ -60,7 +66,8 @@ def _begin(module: ModuleType, program: Program) -> None:
     import rclpy
 
     rclpy.init()
-    rclpy.spin(last[0]())
+    make: Callable[[], Node] = last[0]
+    rclpy.spin(make())
 
 
 def _nothing_to_run(message: str, program: Program) -> GuestError:
@@ -80,7 +87,7 @@ def _keep_simulated_time(graph: Graph) -> None:
             raise ValueError("sleep length must be non-negative")
         graph.wait(lambda: False, graph.now_ns + int(seconds * 1e9), what="time.sleep()")
 
-    time.sleep = sleep
+    time.sleep = sleep  # type: ignore[assignment]  # for any number, where the stub has a list of kinds
     time.time_ns = lambda: graph.now_ns
     time.time = lambda: graph.now_ns / 1e9
 
@@ -91,7 +98,7 @@ class Embassy:
     def __init__(self, conversation: Conversation, now_ns: int) -> None:
         self.graph = Graph(now_ns, pump=PipePump(self))
         self._conversation = conversation
-        self._codec = Codec(trusting=True)
+        self._codec = Codec(in_child=True)
         self._mirror = Mirror(self.graph, self)
         self._census = Census(self.graph, self._mirror)
         self._events: list[Json] = []
@@ -128,7 +135,14 @@ class Embassy:
         if "/srv/" not in type(message).__ros_type__:
             self._tell_news()
             number = self._census.publisher(node.handle, topic)
-            self._events.append(["message", number, self._codec.pack(message)])
+            try:
+                content = self._codec.pack(message)
+            except NotFiniteError as problem:
+                raise ValueError(
+                    f"{problem} of the {type(message).__name__} for {topic} is not a finite number. "
+                    "(A laser ray that meets nothing reads nan.)"
+                ) from None
+            self._events.append(["message", number, content])
 
     def on_message(self, subscription: int, message: Message) -> None:
         """Told already, by ``_overhear``."""

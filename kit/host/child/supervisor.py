@@ -1,4 +1,4 @@
-"""The first code of a student's process. Run by its path, not imported: see ``launcher.command``.
+"""The process above a student's: it starts it, waits, and cleans up.
 
 There are two processes. This one stays outside the cage and does nothing but wait: for the kit to hang up, or
 for its child to end. Then it ends everything that came out of the child and takes away the run's folder. So
@@ -6,25 +6,32 @@ nothing of a student's is left behind, even when the kit itself is killed. The c
 and only then receives the student's code.
 """
 
+from __future__ import annotations
+
 import os
 import select
 import signal
-import sys
 from contextlib import suppress
 
-# The kit is found through its own folder, wherever that is. Nothing that lies beside it becomes importable.
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
-from kit.host import agent, confine
-from kit.host.channel import Channel
+from kit.host import confine
+from kit.host.child import agent
+from kit.host.child.conversation import Channel
 from kit.host.reaper import end_descendants, remove_folder
-
-del sys.path[0]
+from kit.host.wire import LOST_PIPE
 
 PIPE = 0
 """The pipe to the kit comes in place of the standard input."""
 
 
-def main() -> int:
+def run() -> int:
+    """The whole life of one student's process; the exit status of this one, or, in the child, of the child."""
+    try:
+        return _start()
+    except EOFError:  # the kit has gone before it had begun
+        return 0
+
+
+def _start() -> int:
     channel = Channel(PIPE)
     role, record = channel.receive()
     cage = confine.Cage.from_json(record)
@@ -105,12 +112,3 @@ def _student(role: str, cage: confine.Cage) -> int:
         return 1
     channel.send(["confined", int(cage.level)])
     return agent.work(role, channel)
-
-
-if __name__ == "__main__":
-    try:
-        code = main()
-    except EOFError:
-        code = 0
-    # Not sys.exit: no student's thread, destructor or exit handler has a say any more.
-    os._exit(code)

@@ -8,11 +8,38 @@ import signal
 import sys
 import threading
 
-from kit.host.channel import LOST_PIPE, Channel
 from kit.host.failure import Failure
-from kit.host.wire import Json
+from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
 
 STDERR = 2
+
+
+class Channel:
+    """Frames over a file descriptor. EOFError when the parent has gone."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def send(self, content: Json) -> None:
+        rest = memoryview(encode(content))
+        while rest:
+            rest = rest[os.write(self._descriptor, rest) :]
+
+    def receive(self) -> Json:
+        (length,) = HEADER.unpack(self._exactly(HEADER.size))
+        return decode(self._exactly(length))
+
+    def _exactly(self, count: int) -> bytes:
+        data = os.read(self._descriptor, count)
+        if len(data) == count:
+            return data
+        parts = [data]
+        while count := count - len(data):
+            if not data:
+                raise EOFError("the kit has gone")
+            data = os.read(self._descriptor, count)
+            parts.append(data)
+        return b"".join(parts)
 
 
 def watch_stacks() -> None:

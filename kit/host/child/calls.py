@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from types import FunctionType
 
-from kit.host.conversation import Conversation
-from kit.host.explain import shown
+from kit.host.child.conversation import Conversation
+from kit.host.child.program import Program, shown
 from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.program import Program
 from kit.host.wire import Json
 
 MODULE = "student"

@@ -5,17 +5,15 @@ from __future__ import annotations
 import sys
 import threading
 
-from kit.host import calls, seeds
-from kit.host.channel import Channel
-from kit.host.conversation import Conversation, watch_stacks
-from kit.host.explain import explain
-from kit.host.program import Program
+from kit.host.child import calls, seeds
+from kit.host.child.conversation import Channel, Conversation, watch_stacks
+from kit.host.child.program import Program, explain
 
 
 def preload(role: str) -> None:
     """Imports what a program of this role will need, while there is still the right to keep it compiled."""
     if role == "node":
-        import kit.host.nodes  # noqa: F401 - for later
+        import kit.host.child.nodes  # noqa: F401 - for later
 
 
 def work(role: str, channel: Channel) -> int:
@@ -38,7 +36,7 @@ def work(role: str, channel: Channel) -> int:
     seeds.plant(start["seed"])
     try:
         if role == "node":
-            from kit.host import nodes
+            from kit.host.child import nodes
 
             nodes.run(program, conversation, start)
         else:
