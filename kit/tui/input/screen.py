@@ -38,6 +38,7 @@ class DriveScreen(Screen[None]):
         self._terminal = terminal
         self._clock = clock
         self._shown = self.drive.state
+        self._status = self.drive.status
         self._released: dict[str, float] = {}
         self._alarm: Timer | None = None
         self._alarm_time = math.inf
@@ -49,12 +50,11 @@ class DriveScreen(Screen[None]):
         """Called for every key that arrives, with the messages it causes, before ``drove``; kind None: a timeout."""
 
     def mode_changed(self) -> None:
-        """Called when ``drive.status`` may read differently."""
+        """Called when ``drive.status`` reads differently."""
 
     def action_next_drive_mode(self) -> None:
         """Automatic, then latch, then repeat, then automatic again."""
         self._tell(self.drive.choose(_NEXT[self.drive.wish]))
-        self.mode_changed()
 
     def stop_driving(self) -> None:
         """All keys up, at once: for a pause, say."""
@@ -65,20 +65,19 @@ class DriveScreen(Screen[None]):
         self.app.app_suspend_signal.subscribe(self, self._suspended)
 
     def on_screen_resume(self) -> None:
-        self._report_releases(True)
+        driver = key_driver(self.app)
+        if self._terminal is not None and not self._terminal.ask_keyboard.value:
+            self._answered(None)
+        elif driver is not None:
+            driver.report_releases(True)
 
     def on_screen_suspend(self) -> None:
-        if not isinstance(
-            next(reversed(self.app.screen_stack), None), DriveScreen
-        ):  # or that one has asked already
-            self._report_releases(False)
-        self.stop_driving()
-
-    def _report_releases(self, on: bool) -> None:
-        asked = self._terminal is None or self._terminal.ask_keyboard.value
         driver = key_driver(self.app)
-        if driver is not None and asked:
-            driver.report_releases(on)
+        # A driving screen above us wants them too, and may have asked before we hear of it.
+        above = next(reversed(self.app.screen_stack), None)
+        if driver is not None and not isinstance(above, DriveScreen):
+            driver.report_releases(False)
+        self.stop_driving()
 
     def _focus_changed(self, focus: bool) -> None:
         if not focus:
@@ -88,9 +87,11 @@ class DriveScreen(Screen[None]):
         self.stop_driving()
 
     def on_keyboard_answer(self, event: KeyboardAnswer) -> None:
+        self._answered(event.flags)
+
+    def _answered(self, flags: int | None) -> None:
         hidden_by = self._terminal.between.value if self._terminal else None
-        self._tell(self.drive.terminal_answered(event.flags, hidden_by))
-        self.mode_changed()
+        self._tell(self.drive.terminal_answered(flags, hidden_by))
 
     def on_key(self, event: events.Key) -> None:
         if drive_key(event.key) is None:
@@ -98,21 +99,18 @@ class DriveScreen(Screen[None]):
             return
         event.stop()
         event.prevent_default()
-        if (
-            self.app.app_focus
-        ):  # or it was on its way when the focus went, and its release is for another window
-            messages = self.drive.press(event.key)
-            if event.time < self._released.get(
-                base_key(event.key), -math.inf
-            ):  # overtaken by its own release
-                messages += self.drive.release(event.key)
-            self._hear(Kind.PRESS, event.key, messages)
+        if not self.app.app_focus:
+            return  # on its way when the focus went; its release is for another window
+        messages = self.drive.press(event.key)
+        overtaken = event.time < self._released.get(base_key(event.key), -math.inf)
+        if overtaken:
+            messages += self.drive.release(event.key)
+        self._hear(Kind.PRESS, event.key, messages)
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         self._hear(Kind.REPEAT, event.key, self.drive.repeat(event.key))
-        if (
-            drive_key(event.key) is None
-        ):  # it does what another press does, as where repeats are not told apart
+        if drive_key(event.key) is None:
+            # It does what another press does, as on terminals that do not tell repeats apart.
             self.app.post_message(events.Key(event.key, event.character))
 
     def on_key_released(self, event: KeyReleased) -> None:
@@ -128,6 +126,9 @@ class DriveScreen(Screen[None]):
         if messages or state != self._shown:
             self._shown = state
             self.drove(messages, state)
+        if self.drive.status != self._status:
+            self._status = self.drive.status
+            self.mode_changed()
         self._set_alarm()
 
     def _set_alarm(self) -> None:

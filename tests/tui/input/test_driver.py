@@ -96,7 +96,7 @@ def test_releases_are_asked_for_only_while_a_screen_drives(driving: Any) -> None
     driving.send(b"\x1b[119;;119u")
     driving.until_reported(["elsewhere", "w"])
     driving.send(b"\x1b[53;;53u")
-    driving.until_reported(["mode", "exact"])
+    driving.until_reported(["answer", 27])
     assert driving.modes.keyboard == 27
     driving.send(b"\x1b[119;;119u")
     driving.until_reported(["press", "w", "p_up"])  # going away had released it
@@ -104,11 +104,11 @@ def test_releases_are_asked_for_only_while_a_screen_drives(driving: Any) -> None
 
 def test_one_driving_screen_on_another(driving: Any) -> None:
     driving.send(b"\x1b[119;;119u\x1b[48;;48u")
-    driving.until_reported(["press", "w", "p_up"], ["mode", "exact"])
+    driving.until_reported(["press", "w", "p_up"], ["answer", 27])
     driving.send(b"\x1b[119;;119u\x1b[119;1:3u")
     driving.until_reported(["press", "w", "p_up"], ["release", "w", "r_up"])
     driving.send(b"\x1b[53;;53u")
-    driving.until_reported(["mode", "exact"])
+    driving.until_reported(["answer", 27])
     driving.send(b"\x1b[119;;119u")
     driving.until_reported(["press", "w", "p_up"])
     assert driving.modes.keyboard == 27
@@ -116,7 +116,7 @@ def test_one_driving_screen_on_another(driving: Any) -> None:
 
 def test_a_suspension_gives_the_terminal_back_and_takes_it_again(driving: Any) -> None:
     driving.send(b"\x1b[119;;119u\x1b[56;;56u")
-    driving.until_reported(["press", "w", "p_up"], ["suspended"], ["mode", "exact"])
+    driving.until_reported(["press", "w", "p_up"], ["suspended"], ["answer", 27])
     given_back = driving.output.index(b"\x1b[?1049l")
     assert b"\x1b[<u" in driving.output[:given_back]
     driving.send(b"\x1b[119;;119u")
@@ -134,7 +134,7 @@ def test_stopped_by_the_shell_and_continued(driving: Any) -> None:
     )
     driving.assert_sane()
     os.kill(driving.process.pid, signal.SIGCONT)
-    driving.until_reported(["mode", "exact"])
+    driving.until_reported(["answer", 27])
     driving.send(b"\x1b[119;;119u")
     driving.until_reported(["press", "w", "p_up"])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from typing import ClassVar
 
 from textual import events
@@ -14,6 +14,7 @@ from textual.screen import Screen
 from textual.widgets import Input, Static
 
 from kit.tui.input.drive import DriveState
+from kit.tui.input.modes import RepeatMode
 from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.terminal import TerminalFacts, decide
@@ -22,8 +23,8 @@ from kit.tui.terminal import TerminalFacts, decide
 class Recorder(DriveScreen):
     BINDINGS: ClassVar[list[BindingType]] = [("plus", "zoom", "Zoom")]
 
-    def __init__(self) -> None:
-        super().__init__(decide({"TERM": "tmux-256color", "TMUX": "/x"}, TerminalFacts()))
+    def __init__(self, environ: Mapping[str, str]) -> None:
+        super().__init__(decide(environ, TerminalFacts()))
         self.messages: list[str] = []
         self.states: list[dict[str, float]] = []
         self.zooms = 0
@@ -46,11 +47,14 @@ class Recorder(DriveScreen):
 Scene = Callable[[Recorder, Pilot[None]], Awaitable[None]]
 
 
-def play(scene: Scene) -> None:
+TMUX = {"TERM": "tmux-256color", "TMUX": "/x"}
+
+
+def play(scene: Scene, environ: Mapping[str, str] = TMUX) -> None:
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test() as pilot:
-            screen = Recorder()
+            screen = Recorder(environ)
             await app.push_screen(screen)
             await pilot.pause()
             screen.set_focus(None)
@@ -77,6 +81,26 @@ def test_the_answer_sets_the_mode_and_names_who_hides_the_releases() -> None:
         screen.app.post_message(KeyboardAnswer(27))
         await pilot.pause()
         assert screen.drive.choice.mode == "exact"
+
+    play(scene)
+
+
+def test_a_terminal_that_must_not_be_asked_has_its_mode_at_once() -> None:
+    async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
+        assert "reports no key releases" in screen.drive.status
+
+    play(scene, {"TERM": "linux"})
+
+
+def test_a_bad_link_shows_in_the_status() -> None:
+    async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
+        shown: list[str] = []
+        screen.mode_changed = lambda: shown.append(screen.drive.status)  # type: ignore[method-assign]  # a spy
+        assert isinstance(screen.drive._mode, RepeatMode)
+        screen.drive._mode.rhythm.uneven = True
+        await pilot.press("w")
+        assert len(shown) == 1
+        assert "latch" in shown[0]
 
     play(scene)
 

@@ -18,6 +18,7 @@ from textual.widgets import Static
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyDriver
 from kit.tui.input.modes import Kind
+from kit.tui.input.parser import KeyboardAnswer
 from kit.tui.input.screen import DriveScreen
 
 
@@ -38,6 +39,9 @@ class Driving(DriveScreen):
 
     def mode_changed(self) -> None:
         report("mode", self.drive.choice.mode)
+
+    def on_keyboard_answer(self, event: KeyboardAnswer) -> None:
+        report("answer", event.flags)
 
     def key_7(self) -> None:
         self.set_interval(0.001, lambda: self.query_one("#picture", Static).update(os.urandom(400).hex()))
