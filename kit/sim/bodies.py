@@ -124,6 +124,8 @@ class PhysicalBody:
 
     def set_velocity(self, vx: float, vy: float, turn: float) -> None:
         """Sets the velocity in the world frame once; from there on nature takes its course."""
+        if self.rigid.is_static:  # things in contact would feel it
+            return
         x, y = self._from_center()
         self.rigid.body.velocity = (
             clipped(vx + turn * y, self.rigid.top_speed),
