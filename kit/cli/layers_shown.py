@@ -33,7 +33,7 @@ def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit:
         assignment, kept = found.assignment, 0
     else:
         echo(words.world_plan_in_words(world_plan))
-        assignment, kept = world_plan.assignment, len(world_plan.world_case.kept)
+        assignment, kept = world_plan.assignment, len(world_plan.world_case.slots.kept)
     echo(["", *draw_assignment(case, assignment), ""])
     echo(words.proof_in_words(found))
     echo(words.comparison_in_words(greedy(found.case), found))

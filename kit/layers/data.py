@@ -62,7 +62,7 @@ def world_data(plan: WorldPlan) -> dict[str, Any]:
         "fits_flatland": plan.size <= MAX_LAYERS,
         "world": str(plan.world_case.slots.world.file),
         "names_today": plan.names_today,
-        "kept": list(plan.world_case.kept),
+        "kept": list(plan.world_case.slots.kept),
         "breaches_today": [breach_data(breach) for breach in plan.wrong_today],
         **assignment_data(plan.world_case.case, plan.assignment),
     }

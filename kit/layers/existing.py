@@ -12,13 +12,14 @@ those a person would draw: a robot, or the parts of it that differ.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import TypeVar
 
-from kit.layers.assignment import Assignment, NamedLayer
+from kit.layers.assignment import Assignment, Breach, NamedLayer
 from kit.layers.reading import Requirements
-from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sighting
+from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sight, Sighting
 from kit.layers.slots import LaserSlot, Slot, Slots, Spot
 from kit.world.problems import Problem, WorldError
 from kit.world.records import ALL_LAYERS, Place
@@ -44,8 +45,8 @@ class WorldCase:
     lasers: Mapping[str, LaserSlot]
     today: Assignment
     """What the files say now."""
-    kept: tuple[str, ...]
-    """The layers that must stay as they are."""
+    wrong: tuple[Breach, ...]
+    """In which the files, list by list, differ from what is asked."""
 
 
 def today_case(slots: Slots) -> WorldCase:
@@ -64,6 +65,7 @@ def case_of(slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "") ->
     Raises WorldError where a list would have to do two things at once.
     """
     table = _Table(slots, pair, view)
+    asked = deepcopy(table.relation)
     groups = table.merged()
     names = _names(slots, groups)
     everything = [(name, group) for name, group in zip(names, groups, strict=True)]
@@ -73,9 +75,8 @@ def case_of(slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "") ->
         raise WorldError([Problem(Place(slots.world.file), str(error))]) from error
     entities = {name: tuple(table.rows[i] for i in group) for name, group in everything}
     lasers = dict(zip((laser.name for laser in case.lasers), slots.lasers, strict=True))
-    return WorldCase(
-        slots, case, entities, lasers, _today(slots, entities, lasers), tuple(k.name for k in slots.kept())
-    )
+    wrong = _wrong(slots, asked, table, everything, list(lasers))
+    return WorldCase(slots, case, entities, lasers, _today(slots, entities, lasers), wrong)
 
 
 def as_requirements(world_case: WorldCase) -> Requirements:
@@ -148,8 +149,10 @@ class _Table:
         """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
         if strong == weak or self.rows[strong].models != self.rows[weak].models or not self.rows[weak].models:
             return False
+        if self._slots.kept_bits(self.rows[strong]) != self._slots.kept_bits(self.rows[weak]):
+            return False
         if self._asks_nothing(strong) and self._asks_nothing(weak):
-            return True  # both get an empty list, whatever they must keep apart from
+            return True  # both have an empty list, and keep it
         own, shared = self.relation[weak][weak], self.relation[strong][weak]
         if shared == "apart" or (
             own not in ("either", self.relation[strong][strong]) and shared != "collide"
@@ -161,6 +164,8 @@ class _Table:
         )
 
     def _asks_nothing(self, i: int) -> bool:
+        if any(spot.category for spot in self.rows[i].spots):
+            return False
         return "collide" not in self.relation[i] and all(seen[i] != "sees" for seen in self.sighting)
 
 
@@ -218,6 +223,36 @@ def _case(slots: Slots, table: _Table, groups: list[tuple[str, list[int]]], titl
         lasers,
         title,
     )
+
+
+def _wrong(
+    slots: Slots,
+    asked: list[list[Relation]],
+    table: _Table,
+    groups: list[tuple[str, list[int]]],
+    lasers: list[str],
+) -> tuple[Breach, ...]:
+    """Where the lists of today do not do what is asked of them, before any were put together."""
+    name = {i: entity for entity, group in groups for i in group}
+    bits = [slot.spots[0].category for slot in table.rows]
+    found: dict[Breach, None] = {}
+    for i in range(len(bits)):
+        for j in range(i + 1):
+            shared = bits[i] & bits[j]
+            if asked[i][j] == ("apart" if shared else "collide"):
+                contact = Contact(name[j], name[i])
+                found[Breach(contact, wanted=not shared, layers=_layer_names(slots, shared))] = None
+    for laser, seen, slot in zip(lasers, table.sighting, slots.lasers, strict=True):
+        for i, sighting in enumerate(seen):
+            shared = bits[i] & slot.uses[0][1].bits
+            if sighting == ("blind" if shared else "sees"):
+                sight = Sight(laser, name[i])
+                found[Breach(sight, wanted=not shared, layers=_layer_names(slots, shared))] = None
+    return tuple(found)
+
+
+def _layer_names(slots: Slots, bits: int) -> tuple[str, ...]:
+    return tuple(name for name, bit in slots.world.layer_bits.items() if bit & bits)
 
 
 def _owner(slots: Slots, models: tuple[str, ...]) -> str:

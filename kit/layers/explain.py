@@ -26,6 +26,7 @@ def wrapped(text: str, *, indent: str = "", later: str | None = None) -> list[st
         initial_indent=indent,
         subsequent_indent=indent if later is None else later,
         break_on_hyphens=False,
+        break_long_words=False,
     )
 
 
@@ -251,9 +252,9 @@ def world_plan_in_words(plan: WorldPlan) -> list[str]:
         lines += wrapped(f"It names {layers_in_words(count)}; what is asked takes {size}, {proof}.")
     else:
         lines += wrapped(f"{file} names {layers_in_words(count)}. {size} would do the same, {proof}.")
-    if plan.world_case.kept:
+    if plan.world_case.slots.kept:
         lines += wrapped(
-            f"The layer {listed(plan.world_case.kept)} stays as it is: lasers know it by its name, and report what is "
+            f"The layer {listed(plan.world_case.slots.kept)} stays as it is: lasers know it by its name, and report what is "
             "in it as bright."
         )
     return lines

@@ -17,7 +17,6 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from kit.layers.assignment import breaches
 from kit.layers.binding import bind
 from kit.layers.reading import Requirements
 from kit.layers.slots import slots_of
@@ -163,7 +162,7 @@ def recheck(
             found = differences(slots.world, world, one_model_never_collides=never)
         else:
             now = bind(requirements, slots_of(world, one_model_never_collides=never))
-            found = [str(breach) for breach in breaches(now.case, now.today)]
+            found = [str(breach) for breach in now.wrong]
         if len(world.layer_bits) != plan.size:
             found.append(f"the world names {len(world.layer_bits)} layers, not {plan.size}")
         return found

@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from kit.layers.assignment import NamedLayer
 from kit.world.loading import load_world
 from kit.world.reading import DeviceReader, ModelScope
 from kit.world.records import Footprint, Model, Place, Sight, World
@@ -116,13 +115,14 @@ class Slots:
         own = spot.model == model and spot.thing.body == sight.body
         return not spot.footprint.sensor and not (own and contains(spot.footprint, sight.origin))
 
-    def kept(self) -> tuple[NamedLayer, ...]:
-        """Layers whose name has a meaning of its own, with the addresses of the spots they hold today."""
-        bit = self.world.layer_bits.get(REFLECTANCE, 0)
-        held = frozenset(
-            s.address for slot in (*self.maps, *self.bodies) for s in slot.spots if s.category & bit
-        )
-        return (NamedLayer(REFLECTANCE, held),) if bit else ()
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """Layers whose name has a meaning of its own, which must go on to hold what they hold."""
+        return (REFLECTANCE,) if REFLECTANCE in self.world.layer_bits else ()
+
+    def kept_bits(self, slot: Slot) -> int:
+        """The kept layers that a slot is in."""
+        return slot.spots[0].category & sum(self.world.layer_bits[name] for name in self.kept)
 
 
 def read_world(

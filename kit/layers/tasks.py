@@ -106,6 +106,5 @@ def _find(target: str) -> tuple[Path | None, Path | None]:
         card = find_map(target)
         return card.world_file, card.root
     known = () if "/" in target or path.suffix else (*EXAMPLES, *maps)
-    raise UnknownTask(
-        f"There is no file {quoted(target)}." + (f" {suggestion(target, known)}" if known else "")
-    )
+    hint = f": {suggestion(target, known)}" if known else ""
+    raise UnknownTask(f"there is no file {quoted(target)}{hint}")

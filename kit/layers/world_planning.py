@@ -10,6 +10,8 @@ from kit.layers.assignment import Assignment, Breach, NamedLayer, breaches
 from kit.layers.existing import WorldCase
 from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
 from kit.layers.requirements import Contact
+from kit.world.problems import Problem, WorldError
+from kit.world.records import Place
 
 FREE: Final = ""
 """Stands for the map of layers without one."""
@@ -24,8 +26,11 @@ class WorldPlan:
     """Of what is left when the kept layers have done their part."""
     assignment: Assignment
     """With the names of the world; the same as today's where the plan is no better."""
-    wrong_today: tuple[Breach, ...]
-    """In which the world today differs from what is asked."""
+
+    @property
+    def wrong_today(self) -> tuple[Breach, ...]:
+        """In which the world today differs from what is asked."""
+        return self.world_case.wrong
 
     @property
     def names_today(self) -> int:
@@ -39,7 +44,7 @@ class WorldPlan:
     @property
     def bound(self) -> int:
         """Proved: no plan needs fewer names (as long as the kept layers stay)."""
-        return self.plan.bound + len(self.world_case.kept)
+        return self.plan.bound + len(self.world_case.slots.kept)
 
     @property
     def optimal(self) -> bool:
@@ -51,11 +56,14 @@ class WorldPlan:
 
 
 def plan_world(world_case: WorldCase, *, time_limit: float = DEFAULT_TIME_LIMIT) -> WorldPlan:
-    """The fewest layers for a world. Where today's lists do what is asked with as few, they stay as they are."""
+    """The fewest layers for a world. Where today's lists do what is asked with as few, they stay as they are.
+
+    Raises WorldError where a layer that has to be kept brings about what must not happen.
+    """
     case, today = world_case.case, world_case.today
-    kept = [layer for layer in today.layers if layer.name in world_case.kept]
+    kept = [layer for layer in today.layers if layer.name in world_case.slots.kept]
     kept_watches = {
-        laser: tuple(name for name in watched if name in world_case.kept)
+        laser: tuple(name for name in watched if name in world_case.slots.kept)
         for laser, watched in today.watches.items()
     }
     served = [
@@ -71,15 +79,54 @@ def plan_world(world_case: WorldCase, *, time_limit: float = DEFAULT_TIME_LIMIT)
         )
     ]
     plan = solve(case.without(served), time_limit=time_limit)
-    wrong_today = breaches(case, today)
-    if not wrong_today and plan.size + len(kept) >= len(today.layers):
-        return WorldPlan(world_case, plan, today, ())
+    if not world_case.wrong and plan.size + len(kept) >= len(today.layers):
+        return WorldPlan(world_case, plan, today)
     named = with_the_worlds_names(world_case, plan.assignment)
     assignment = Assignment(
         (*named.layers, *kept),
         {laser: (*watched, *kept_watches[laser]) for laser, watched in named.watches.items()},
     )
-    return WorldPlan(world_case, plan, assignment, wrong_today)
+    assignment = as_much_as_today(world_case, assignment)
+    if found := breaches(case, assignment):  # only what is kept can be the reason
+        raise WorldError(
+            [Problem(Place(world_case.slots.world.file), f"{found[0]}: this layer is kept as it is")]
+        )
+    return WorldPlan(world_case, plan, assignment)
+
+
+def as_much_as_today(world_case: WorldCase, assignment: Assignment) -> Assignment:
+    """The assignment with everything back in the layers where it is today, as far as that does no harm.
+
+    So the files change no more than they have to: what is in all layers, and may be, stays there.
+    """
+    case, today = world_case.case, {layer.name: layer.members for layer in world_case.today.layers}
+    layers: list[NamedLayer] = []
+    for layer in assignment.layers:
+        members = set(layer.members)
+        watchers = [
+            case.laser[laser] for laser, watched in assignment.watches.items() if layer.name in watched
+        ]
+        for name in case.names:
+            if (
+                name in today.get(layer.name, ())
+                and all(case.relation(name, member) != "apart" for member in (*members, name))
+                and all(laser.sighting(name) != "blind" for laser in watchers)
+            ):
+                members.add(name)
+        layers.append(NamedLayer(layer.name, frozenset(members)))
+    watches = {
+        laser: tuple(
+            layer.name
+            for layer in layers
+            if layer.name in watched
+            or (
+                layer.name in world_case.today.watches[laser]
+                and all(case.laser[laser].sighting(member) != "blind" for member in layer.members)
+            )
+        )
+        for laser, watched in assignment.watches.items()
+    }
+    return Assignment(tuple(layers), watches)
 
 
 def with_the_worlds_names(world_case: WorldCase, assignment: Assignment) -> Assignment:
@@ -124,7 +171,10 @@ def _names_by_map(world_case: WorldCase) -> dict[str, tuple[str, ...]]:
     names: dict[str, tuple[str, ...]] = {}
     for layer in world_case.slots.world.layers:
         home = layer.name if layer.walls is not None else FREE
-        names[home] = (*names.get(home, ()), *(name for name in layer.names if name not in world_case.kept))
+        names[home] = (
+            *names.get(home, ()),
+            *(name for name in layer.names if name not in world_case.slots.kept),
+        )
     return names
 
 

@@ -297,7 +297,7 @@ def _leaves(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
 
 
 _COMPUTED: Final = re.compile(r"\s*(\$|env\s*\(|param\s*\()")
-_PLAIN: Final = re.compile(r"[A-Za-z_][\w.+-]*(?<![.])", re.ASCII)
+_PLAIN: Final = re.compile(r"[A-Za-z_][\w./+-]*(?<![.])", re.ASCII)
 _WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
 _ESCAPES: Final[Mapping[str, str]] = {'"': '\\"', "\\": "\\\\"}
 
