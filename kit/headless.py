@@ -127,7 +127,11 @@ def run_headless(
     with Session(place, seed=seed) as session:
         runner = session.runner
         runner.observers.append(fingerprint)
-        recorder = Recorder(place.title, runner.simulation) if record is not None else None
+        recorder = (
+            Recorder(place.name, place.case.name if place.case else None, runner.simulation)
+            if record is not None
+            else None
+        )
         if recorder is not None:
             runner.observers.append(recorder)
         session.drive_with(controller)

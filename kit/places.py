@@ -18,6 +18,8 @@ BEACON = "beacon"
 class Place:
     """Where a session takes place: a world, who drives in it, and from where to where."""
 
+    name: str
+    """What it is found by: a map's name, or a world file."""
     title: str
     world: World
     robot: str | None
@@ -45,7 +47,7 @@ def place_on_map(card: MapCard, case: Case | None = None) -> Place:
         poses[card.partner] = case.partner_start
     world = load(card.world_file, root=card.root)
     models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
-    return Place(card.title, replace(world, models=models), card.robot, case)
+    return Place(card.name, card.title, replace(world, models=models), card.robot, case)
 
 
 def place_in_file(file: Path, root: Path | None = None) -> Place:
@@ -53,7 +55,8 @@ def place_in_file(file: Path, root: Path | None = None) -> Place:
     world = load(file, root=root)
     driven = _drivers(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)
-    return Place(file.stem if file.stem != "world" else file.parent.name, world, robot)
+    title = file.stem if file.stem != "world" else file.parent.name
+    return Place(str(file), title, world, robot)
 
 
 def _drivers(world: World) -> tuple[str, ...]:

@@ -9,8 +9,9 @@ import io
 import json
 import zipfile
 from array import array
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,7 +50,9 @@ class Input:
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
     place: str
-    """A map's or a world file's name, for a reader."""
+    """A map's name, or a world file."""
+    case: str | None
+    """Which of the map's."""
     seed: int
     step_size: float
     models: tuple[tuple[int, tuple[str, ...]], ...]
@@ -79,8 +82,9 @@ class Recording:
 class Recorder:
     """Watches a runner (as one of its ``observers``) from its first tick on."""
 
-    def __init__(self, place: str, simulation: Simulation) -> None:
+    def __init__(self, place: str, case: str | None, simulation: Simulation) -> None:
         self._place = place
+        self._case = case
         self._seed = simulation.seed
         self._step_size = simulation.step_size
         self._simulation = simulation
@@ -107,6 +111,7 @@ class Recorder:
         """So far."""
         return Recording(
             self._place,
+            self._case,
             self._seed,
             self._step_size,
             tuple(self._models),
@@ -124,6 +129,7 @@ def save(recording: Recording, file: Path) -> None:
     header = {
         "format": FORMAT,
         "place": recording.place,
+        "case": recording.case,
         "seed": recording.seed,
         "step_size": recording.step_size,
         "models": recording.models,
@@ -150,6 +156,7 @@ def load(file: Path) -> Recording:
                 )
             return Recording(
                 str(header["place"]),
+                None if header["case"] is None else str(header["case"]),
                 int(header["seed"]),
                 float(header["step_size"]),
                 tuple((int(tick), tuple(names)) for tick, names in header["models"]),
@@ -166,18 +173,53 @@ def load(file: Path) -> Recording:
 def rerun(recording: Recording, world: World) -> Recording:
     """Tells a new simulation of ``world`` the same things at the same ticks, and records that."""
     simulation = Simulation(world, seed=recording.seed, step_size=recording.step_size)
-    recorder = Recorder(recording.place, simulation)
-    waiting = list(reversed(recording.inputs))
-    for tick in range(recording.ticks):
-        while waiting and waiting[-1].tick <= tick:
-            told = waiting.pop()
-            if told.kind == ACCEPT:
-                simulation.accept(told.content[0], _message(*told.content[1:]))
-            else:
-                tell(simulation, told.kind, *told.content)
+    recorder = Recorder(recording.place, recording.case, simulation)
+    playback = Playback(recording, simulation.accept, partial(tell, simulation))
+    for _ in range(recording.ticks):
+        playback.exchange()
         simulation.step()
+        playback.ticked(simulation)
         recorder.ticked(simulation)
     return recorder.recording()
+
+
+class Playback:
+    """Tells a world again what it was told: a guest of a runner, in place of a controller, and its observer."""
+
+    def __init__(
+        self,
+        recording: Recording,
+        accept: Callable[[str, Message], object],
+        tell: Callable[..., object],
+        on_end: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._waiting = list(reversed(recording.inputs))
+        self._ticks = recording.ticks
+        self._accept = accept
+        self._tell = tell
+        self._on_end = on_end
+        self._tick = 0
+
+    def exchange(self) -> bool:
+        """Before a tick: what was said then."""
+        while self._waiting and self._waiting[-1].tick <= self._tick:
+            told = self._waiting.pop()
+            if told.kind == ACCEPT:
+                self._accept(told.content[0], _message(*told.content[1:]))
+            else:
+                self._tell(told.kind, *told.content)
+        return False
+
+    def accepted(self, topic: str, message: Message) -> None:
+        """Nobody else speaks."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        self._tick += 1
+        if self._tick == self._ticks:
+            self._on_end()
 
 
 def _message(kind: str, content: Mapping[str, Any]) -> Message:

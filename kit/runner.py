@@ -64,7 +64,8 @@ class Runner:
     def tick(self) -> None:
         """One tick: the nodes' timers and callbacks due now, then devices, physics, devices, observers."""
         self.converse()
-        if self.paused and not self._allowed:
+        is_extra = self.paused
+        if is_extra and not self._allowed:
             return
         self._carry(self.simulation.before_step())
         self.simulation.advance()
@@ -72,7 +73,7 @@ class Runner:
         self.graph.advance(self.simulation.time_ns)
         for observer in self.observers:
             observer.ticked(self.simulation)
-        if self.paused:
+        if is_extra:
             self._count_down()
 
     def converse(self) -> None:
@@ -93,6 +94,10 @@ class Runner:
         if service == "reset":
             self.graph.discard()
         self._wire_devices()
+
+    def pause(self) -> None:
+        """The clock stands still from here on."""
+        self.paused = True
 
     def allow(self, ticks: int) -> Future[None]:
         """So many ticks in spite of the pause. The future is done when they are."""

@@ -16,6 +16,7 @@ from kit.controllers.keystrokes import KeystrokePublisher
 from kit.host.failure import Failure
 from kit.host.limits import DESK, Limits
 from kit.places import Place
+from kit.recording import Playback, Recording
 from kit.ros.graph import Graph
 from kit.ros.log import LogRecord
 from kit.runner import Runner
@@ -74,6 +75,13 @@ class Session:
     def drive_with(self, controller: ControllerFile | None, then: Callable[[], object] | None = None) -> None:
         """Starts a controller and, as soon as it has started well, lets it take over; ``then`` is called next."""
         self.seat.seat(controller, then)
+
+    def play_back(self, recording: Recording) -> None:
+        """Has the world told again what it was told then; at the recording's end it stands still."""
+        runner = self.runner
+        playback = Playback(recording, runner.simulation.accept, runner.tell, on_end=runner.pause)
+        runner.guests.append(playback)
+        runner.observers.append(playback)
 
     def wait_until_driven(self) -> None:
         """Waits until the controller drives, or has failed to."""

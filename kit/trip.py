@@ -44,6 +44,9 @@ class Trip:
         self._simulation: Simulation | None = None
         self._at: tuple[float, float] | None = None
         self._reached: float | None = None
+        self._touching = False
+        self._distance = self._time_s = 0.0
+        self._bumps = 0
         self._start()
 
     @property

@@ -141,7 +141,7 @@ def test_a_rate_needs_somebody_who_paces(maze: World) -> None:
 
 def wander(runner: Runner, ticks: int) -> Recording:
     """Drives about by what the noisy laser says, with a reset on the way, and records it."""
-    recorder = Recorder("maze", runner.simulation)
+    recorder = Recorder("maze", None, runner.simulation)
     runner.observers.append(recorder)
     node = runner.graph.create_node("wanderer")
     drive = node.create_publisher(Twist, "/cmd_vel", 10)

@@ -15,9 +15,11 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does).",
     ),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
+    "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``kit --help``."""

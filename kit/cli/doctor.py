@@ -16,6 +16,7 @@ from typing import Final
 import click
 
 import kit
+from kit.host.ladder import probe
 from kit.tui.input.probe import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
 from kit.workspace import open_workspace
@@ -129,6 +130,14 @@ def _version(package: str) -> str | None:
         return None
 
 
+def _confinement() -> Iterator[Finding]:
+    """How far other people's code can be locked in here. At the desk one's own code runs at level 0."""
+    for rung in probe():
+        value = "available" if rung.is_available else "not available"
+        reason = rung.reason[:1].upper() + rung.reason[1:].removesuffix(".") + "."
+        yield Finding("Student code", f"level {rung.level}", value, reason)
+
+
 def _workspace() -> Finding:
     folder = open_workspace(make=False).folder
     if not folder.exists():
@@ -148,7 +157,7 @@ def findings() -> list[Finding]:
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
-    return [*_machine(), *_terminal(decision), *_packages(), _workspace()]
+    return [*_machine(), *_terminal(decision), *_packages(), *_confinement(), _workspace()]
 
 
 def as_text(report: list[Finding]) -> str:

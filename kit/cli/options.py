@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
+
+from kit.tui.terminal import (
+    COLOUR_CHOICES,
+    GLYPH_CHOICES,
+    TerminalDecision,
+    TerminalFacts,
+    TerminalWishes,
+    decide,
+)
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -17,6 +27,12 @@ def fail(message: str) -> NoReturn:
     """Ends the verb with this message on standard error."""
     click.echo(message, err=True)
     raise SystemExit(BAD_INPUT)
+
+
+def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
+    """What this terminal gets, decided once."""
+    wish = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
+    return decide(os.environ, TerminalFacts.here(), TerminalWishes(plain, wish, color))
 
 
 workspace: Decorator = click.option(
@@ -39,6 +55,12 @@ controller: Decorator = click.option(
 )
 case: Decorator = click.option(
     "--case", help="Which start and target of a map with several; `kit maps` lists them."
+)
+glyphs: Decorator = click.option(
+    "--glyphs", type=click.Choice(GLYPH_CHOICES), help="What the world is drawn with."
+)
+color: Decorator = click.option(
+    "--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too."
 )
 root: Decorator = click.option(
     "--root",

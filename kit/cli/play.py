@@ -8,7 +8,6 @@ from pathlib import Path
 import click
 
 from kit.cli import options
-from kit.tui.terminal import COLOUR_CHOICES, GLYPH_CHOICES, Glyphs, TerminalFacts, TerminalWishes, decide
 
 
 @click.command()
@@ -20,8 +19,8 @@ from kit.tui.terminal import COLOUR_CHOICES, GLYPH_CHOICES, Glyphs, TerminalFact
 @click.option(
     "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
 )
-@click.option("--glyphs", type=click.Choice(GLYPH_CHOICES), help="What the world is drawn with.")
-@click.option("--color", type=click.Choice(COLOUR_CHOICES), help="How many colours; NO_COLOR is heeded too.")
+@options.glyphs
+@options.color
 def command(
     place: str,
     case: str | None,
@@ -29,7 +28,7 @@ def command(
     seed: int,
     workspace: Path | None,
     plain: bool,
-    glyphs: Glyphs | None,
+    glyphs: str | None,
     color: str | None,
 ) -> None:
     """Open the kit on a map: watch the robot, drive it, change what drives it.
@@ -50,7 +49,7 @@ def command(
         find(controller, desk.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
-    terminal = decide(os.environ, TerminalFacts.here(), TerminalWishes(plain, glyphs, color))
+    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
         from kit.cli.plain import play_plainly
 
@@ -58,9 +57,10 @@ def command(
         return
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
+    from kit.tui.screens.play import PlayScreen
 
     app = KitApp(terminal)
-    app.begin(app.play(place, controller, case=case, folder=desk.controllers, seed=seed))
+    app.begin(PlayScreen(app.look, place, controller, case=case, folder=desk.controllers, seed=seed))
     app.run()
     if app.return_code:
         raise SystemExit(app.return_code)

@@ -31,7 +31,7 @@ def _state(view: View, pacing: Pacing) -> Row:
     )
 
 
-def readout(view: View, drive: str) -> tuple[Row, ...]:
+def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     """The side panel, at most 20 rows of 22 characters."""
     rows: list[Row] = []
     if view.pose is not None:
@@ -59,8 +59,8 @@ def readout(view: View, drive: str) -> tuple[Row, ...]:
         rows.append(_figure("after", f"{score.reached_s:.1f}", "s"))
     elif score.target_m is not None:
         rows.append(_figure("to target", f"{score.target_m:.2f}", "m"))
-    rows.append(_title("keys"))
-    rows.append(row(drive))
+    if drive is not None:
+        rows += [_title("keys"), row(f" {drive}")]
     return tuple(rows)
 
 

@@ -46,13 +46,17 @@ class Running:
     def pacing(self) -> Pacing:
         return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
 
-    def open(self, find: Callable[[], Place], controller: ControllerFile | None) -> None:
+    def open(
+        self, find: Callable[[], Place], controller: ControllerFile | None, prepare: Wish | None = None
+    ) -> None:
         """Opens another world in place of the present one, which stays if that fails."""
 
         def job() -> None:
             session = Session(find(), seed=self._seed, watched=True)
             if controller is not None:
                 session.drive_with(controller)
+            if prepare is not None:
+                prepare(session)
             self._replace(session)
 
         self._jobs.put(job)

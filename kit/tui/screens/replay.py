@@ -1,0 +1,30 @@
+"""Watch a recorded run again: no controller, only what the world was told."""
+
+from __future__ import annotations
+
+from kit.places import Place
+from kit.recording import Recording
+from kit.tui.look import Look
+from kit.tui.screens.watch import WatchScreen
+from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
+
+
+class ReplayScreen(WatchScreen):
+    """Plays a recording from its first tick, and stands still at its end."""
+
+    keys = REPLAY_KEYS
+    help = REPLAY_HELP
+    shows_mode = False
+
+    def __init__(self, look: Look, place: Place, recording: Recording, title: str) -> None:
+        super().__init__(look, f"{place.title}, {title}", seed=recording.seed)
+        self._place = place
+        self._recording = recording
+
+    def open_world(self) -> None:
+        self.behind.open(lambda: self._place, None, lambda session: session.play_back(self._recording))
+
+    def action_reset(self) -> None:
+        """From the beginning."""
+        self.trouble = None
+        self.open_world()

@@ -1,0 +1,208 @@
+"""Watch a world: the screen with the picture, the figures beside it, what was said below, and the keys."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Final
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.message import Message
+
+from kit.live import MAXIMUM, REAL_TIME
+from kit.picture.scene import Scene
+from kit.session import Session
+from kit.showing import View
+from kit.tui.input.screen import DriveScreen
+from kit.tui.look import Look
+from kit.tui.readout import PANEL_WIDTH, heading, readout, said
+from kit.tui.running import Running
+from kit.tui.screens.help import Help
+from kit.tui.text_rows import Row, TextRows, row
+from kit.tui.world_view import WorldView
+
+SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
+PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
+MESSAGE_ROWS: Final = 2
+BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide")]
+"""From which width on: without and with the figures beside the world."""
+LOOK_INTERVAL: Final = 0.5
+"""Seconds between two looks at the controller's file while the world is paused."""
+
+
+class NewView(Message):
+    """The world's thread has a newer view."""
+
+
+class Trouble(Message):
+    """Something could not be done; ``text`` says what and why."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.text = text
+
+
+class WatchScreen(DriveScreen):
+    """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
+
+    keys: ClassVar[Row] = ()
+    """The line at the bottom."""
+    help: ClassVar[tuple[Row, ...]] = ()
+    """All keys, for the help page."""
+    shows_mode: ClassVar[bool] = True
+    """Whether keys drive here, so that the panel says how."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("p", "pause", "pause"),
+        Binding("full_stop", "step", "one step"),
+        *(Binding(key, f"speed('{key}')", show=False) for key in SPEEDS),
+        *(Binding(key, f"pan('{key}')", show=False) for key in PANNED),
+        Binding("plus,equals_sign", "zoom(1)", show=False),
+        Binding("minus", "zoom(-1)", show=False),
+        Binding("0", "fit", show=False),
+        Binding("v", "follow", show=False),
+        Binding("b", "beams", show=False),
+        Binding("r", "reset", "reset"),
+        Binding("question_mark", "help", "help"),
+        Binding("ctrl+c,ctrl+q", "app.quit", "leave", priority=True),
+    ]
+    DEFAULT_CSS = f"""
+    WatchScreen {{ layout: vertical; }}
+    WatchScreen #heading {{ height: 1; }}
+    WatchScreen #middle {{ height: 1fr; }}
+    WatchScreen #panel {{ width: {PANEL_WIDTH}; padding: 0 0 0 1; }}
+    WatchScreen #said {{ height: {MESSAGE_ROWS}; }}
+    WatchScreen #keys {{ height: 1; }}
+    WatchScreen.-narrow #panel {{ display: none; }}
+    """
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+
+    def __init__(self, look: Look, place_name: str, *, seed: int = 0) -> None:
+        super().__init__(look.terminal)
+        self.place_name = place_name
+        self.world = WorldView(look.encoder, look.palette)
+        self.view: View | None = None
+        self.trouble: str | None = None
+        self.behind: Running
+        self._announced = False
+        self._beams = False
+        self._seed = seed
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield self.world
+            yield TextRows(id="panel")
+        yield TextRows(id="said")
+        yield TextRows(id="keys")
+
+    def open_world(self) -> None:
+        """Has ``behind`` open what this screen is to show first."""
+
+    def on_mount(self) -> None:
+        self._rows("keys").show([self.keys])
+        self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
+        self.behind = Running(on_view=self._view_arrived, on_trouble=self._trouble_arrived, seed=self._seed)
+        self.open_world()
+        self.set_interval(LOOK_INTERVAL, self._look_around)
+
+    def on_unmount(self) -> None:
+        self.behind.close()
+
+    # What arrives from the world's threads
+
+    def _view_arrived(self, view: View) -> None:
+        self.view = view
+        if not self._announced:  # the newest wins: one announcement at a time is enough
+            self._announced = True
+            self.post_message(NewView())
+
+    def _trouble_arrived(self, text: str) -> None:
+        self.post_message(Trouble(text))
+
+    def on_new_view(self) -> None:
+        self._announced = False
+        self._show()
+
+    def on_trouble(self, event: Trouble) -> None:
+        self.trouble = event.text
+        self._show()
+
+    def on_cursor_position(self) -> None:
+        self.world.answered()
+
+    def on_resize(self) -> None:
+        self._show()
+
+    def mode_changed(self) -> None:
+        self._show()
+
+    def _look_around(self) -> None:
+        """While the world stands still, files may be saved all the same."""
+        if self.view is not None and self.view.paused:
+            self.behind.wish(_nothing)
+
+    def _show(self) -> None:
+        width = self.size.width
+        if self.trouble is not None:
+            lines = self.trouble.splitlines()[:MESSAGE_ROWS]
+            self._rows("said").show([row((line[:width], "bad")) for line in lines])
+        view = self.view
+        if view is None:
+            return
+        self.world.offer(self._newest_scene)
+        self._rows("heading").show([heading(self.place_name, view, self.behind.pacing, width)])
+        self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
+        if self.trouble is None:
+            self._rows("said").show(said(view, MESSAGE_ROWS, width))
+
+    def _newest_scene(self) -> Scene:
+        assert self.view is not None  # nothing is offered before the first view
+        return self.view.scene
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_pause(self) -> None:
+        paused = self.view is not None and self.view.paused
+        if not paused:
+            self.stop_driving()
+        self.behind.set_paused(not paused)
+
+    def action_step(self) -> None:
+        if self.view is not None and not self.view.paused:
+            self.behind.set_paused(True)
+        else:
+            self.behind.step()
+
+    def action_speed(self, key: str) -> None:
+        self.behind.set_factor(SPEEDS[key])
+
+    def action_reset(self) -> None:
+        self.trouble = None
+        self.behind.wish(Session.reset)
+
+    def action_pan(self, key: str) -> None:
+        self.world.pan(*PANNED[key])
+
+    def action_zoom(self, steps: int) -> None:
+        self.world.zoom(steps)
+
+    def action_fit(self) -> None:
+        self.world.fit()
+
+    def action_follow(self) -> None:
+        self.world.follow(None if self.world.followed is not None else 0)
+
+    def action_beams(self) -> None:
+        self._beams = not self._beams
+        self.behind.show_beams(self._beams)
+
+    def action_help(self) -> None:
+        self.app.push_screen(Help("Keys", self.help))
+
+
+def _nothing(session: Session) -> None:
+    """A wish that only has the world looked at again."""
