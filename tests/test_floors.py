@@ -79,6 +79,7 @@ def test_imports_go_down() -> None:
         ("kit.ros.names", ()),
         ("kit.host.agent", ()),
         ("kit.world.records", ()),
+        ("kit.picture.text", ()),
         ("kit.runner", ("numba", "pymunk", "PIL")),
         ("kit.layers", ()),
     ],

@@ -71,9 +71,10 @@ class Frame:
         visible = (self.glyphs[row] != BLANK) | (papers != 0)
         last = np.maximum.accumulate(np.where(visible, np.arange(len(inks)), 0))
         looks = np.where(papers[last] == 0, inks[last], inks).astype(np.int32) * 256 + papers
-        cuts = [0, *(np.flatnonzero(np.diff(looks)) + 1).tolist(), len(looks)]
-        for start, stop in pairwise(cuts):
-            yield Run(text[start:stop], int(looks[start]) >> 8, int(papers[start]))
+        starts = np.concatenate(([0], np.flatnonzero(looks[1:] != looks[:-1]) + 1))
+        cuts = pairwise((*starts.tolist(), len(looks)))
+        for (start, stop), look in zip(cuts, looks[starts].tolist(), strict=True):
+            yield Run(text[start:stop], look >> 8, look & 255)
 
 
 def diff(before: Frame | None, after: Frame, gap: int = GAP) -> list[Span]:

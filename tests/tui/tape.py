@@ -115,3 +115,6 @@ class Display:
 
     def color(self, row: int, column: int) -> str:
         return str(self._screen.buffer[row][column].fg)
+
+    def paper(self, row: int, column: int) -> str:
+        return str(self._screen.buffer[row][column].bg)

@@ -60,7 +60,7 @@ def test_the_terminal_shows_every_frame(glyphs: str, cropped: bool) -> None:
     app = ViewApp(ENCODERS[glyphs](False), cropped=cropped)
 
     async def script(pilot: Pilot[None], display: Display) -> None:
-        for scene in scenes(60, skip=100):
+        for scene in scenes(30, skip=100):
             app.view.show(scene)
             await see(app, display)
             assert display.rows == seen(app)
@@ -100,6 +100,24 @@ def test_without_colours_none_is_sent() -> None:
     in_terminal(app, script)
 
 
+def test_in_a_theme_with_a_paper_of_its_own_the_view_is_on_it_too() -> None:
+    app = ViewApp(ENCODERS["ascii"](False), PALETTES["truecolor"])
+    app.theme = "textual-dark"
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        await see(app, display)
+        papers = {display.paper(row, column) for row in range(24) for column in range(80)}
+        assert len(papers) == 1  # by which name depends on how many colours this terminal has
+        assert papers != {"default"}
+        app.theme = "ansi-dark"
+        await pilot.pause()
+        await see(app, display)
+        assert {display.paper(row, column) for row in range(24) for column in range(80)} == {"default"}
+
+    in_terminal(app, script)
+
+
 @pytest.mark.parametrize(("glyphs", "bound"), [("braille", 300), ("block", 260), ("ascii", 220)])
 def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> None:
     """Counted per frame, not per second: the machine's speed has no part in it."""
@@ -107,7 +125,7 @@ def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> 
     sizes: list[int] = []
 
     async def script(pilot: Pilot[None], display: Display) -> None:
-        first, *others = scenes(240, skip=400)
+        first, *others = scenes(90, skip=400)
         app.view.show(first)
         await see(app, display)
         for scene in others:
@@ -128,7 +146,7 @@ def test_following_a_robot_close_up_stays_within_the_budget() -> None:
         app.view.follow()
         app.view.zoom(3)
         await see(app, display)
-        for scene in scenes(200):
+        for scene in scenes(80):
             app.view.show(scene)
             sizes.append(await see(app, display))
             assert display.rows == seen(app)
@@ -158,7 +176,7 @@ def test_a_storm_of_sizes_leaves_a_whole_picture() -> None:
     sizes = [(120, 40), (40, 10), (1, 1), (200, 50), (2, 30), (81, 25), (80, 24), (33, 7)]
 
     async def script(pilot: Pilot[None]) -> None:
-        for number, scene in enumerate(scenes(40)):
+        for number, scene in enumerate(scenes(16)):
             app.view.show(scene)
             await pilot.resize_terminal(*sizes[number % len(sizes)])
         for size in sizes:
