@@ -115,17 +115,26 @@ class Terminal:
     def send(self, data: bytes) -> None:
         os.write(self.fd, data)
 
-    def pump(self, seconds: float = 0.0) -> None:
-        """Takes what the program says, for a while at most, and answers as a terminal does."""
+    def pump(self, seconds: float = 0.0) -> int:
+        """Takes what the program says, waiting for a while at most, and answers as a terminal does.
+
+        Returns how many bytes came.
+        """
+        count = 0
         readable = select.select([self.fd, self._reports_fd], [], [], seconds)[0]
         if self.fd in readable:
             with contextlib.suppress(OSError):
-                self.output += os.read(self.fd, 65536)
+                data = os.read(self.fd, 65536)
+                count += len(data)
+                self.output += data
                 self._follow()
         if self._reports_fd in readable:
-            self._pending += os.read(self._reports_fd, 65536)
+            data = os.read(self._reports_fd, 65536)
+            count += len(data)
+            self._pending += data
             *lines, self._pending = self._pending.split(b"\n")
             self.reports += [json.loads(line) for line in lines]
+        return count
 
     def _follow(self) -> None:
         """Does what is new in the output, and answers each question as things are at that moment."""
@@ -165,7 +174,8 @@ class Terminal:
     def wait(self) -> int:
         """The program's exit status, when it has ended and all its output is here."""
         self.until(lambda: self.process.poll() is not None, "the end")
-        self.pump(0.05)
+        while self.pump(0.05):
+            pass
         return int(self.process.returncode)
 
     def assert_sane(self) -> None:
