@@ -67,6 +67,8 @@ class LayerReader:
         file = self._documents.named(section, "map")
         if file is None:
             return None
+        if file not in self._maps and len(self._maps) == MAX_LAYERS:
+            return None  # there are too many layers, which is noted; a stranger's pictures take their time
         if file not in self._maps:
             found = self._documents.section(file, section.place_of("map"))
             self._maps[file] = None if found is None else self._map(found, file)

@@ -20,6 +20,9 @@ from kit.world.records import Color, Place
 MAX_NUMBER = 1e12
 """No quantity of a flat world is larger, and nothing computed from smaller ones overflows."""
 
+HAIR = 1e-9
+"""How far above an open bound a number must be, so that nothing divided by it overflows either."""
+
 MAX_INTEGER = 2**31 - 1
 
 T = TypeVar("T")
@@ -344,6 +347,7 @@ class Section:
         for wrong, wanted in (
             (minimum is not None and number < minimum, f"at least {minimum}"),
             (above is not None and number <= above, f"greater than {above}"),
+            (above is not None and number < above + HAIR, f"greater than {above} by {HAIR:g} or more"),
             (maximum is not None and number > maximum, f"at most {maximum}"),
         ):
             if wrong:

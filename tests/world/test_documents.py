@@ -118,6 +118,17 @@ def test_one_model_file_used_very_often_has_an_end(write: WriteFiles) -> None:
     assert "too much to read" in said
 
 
+def test_of_too_many_maps_not_all_are_opened(write: WriteFiles) -> None:
+    layers = "".join(f"  - {{name: layer{i}, map: map{i}.yaml}}\n" for i in range(60))
+    maps = {
+        f"map{i}.yaml": f"image: {i}.png\nresolution: 1\norigin: [0, 0, 0]\noccupied_thresh: 1\n"
+        for i in range(60)
+    }
+    said = refusal(write({"world.yaml": f"properties: {{}}\nlayers:\n{layers}", **maps}))
+    assert said.count(".png") == 16
+    assert said.count("at most 16 layer names") == 44
+
+
 @pytest.mark.parametrize(
     ("value", "iterations"),
     [

@@ -22,6 +22,9 @@ from kit.world.problems import WorldError
 from kit.world.reading import DeviceReader
 from kit.world.report import details, summary
 
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
 WORLDS = 2000
 BATCHES = 20
 SECONDS = 5.0
@@ -196,7 +199,7 @@ def damage_words(rng: random.Random, files: Files, name: str) -> bytes:
 
 def damage_structure(rng: random.Random, files: Files, name: str) -> bytes:
     """Still good YAML, but a key or a value somewhere in it is another one, gone, or there twice."""
-    document = next(iter(yaml.safe_load_all(files[name])), None)
+    document = next(iter(yaml.load_all(files[name], Loader=LOADER)), None)
     for _ in range(rng.randint(1, 3)):
         places = list(containers(document))
         if not places:
@@ -212,7 +215,7 @@ def damage_structure(rng: random.Random, files: Files, name: str) -> bytes:
             place[rng.choice(["name", "type", "layers", "nmae", 1, None, "x" * 300])] = place.pop(key)
         else:
             place[key] = [place[key]] * rng.randint(0, 20)
-    return yaml.safe_dump(document, sort_keys=False, allow_unicode=True).encode()
+    return yaml.dump(document, Dumper=DUMPER, sort_keys=False, allow_unicode=True).encode()
 
 
 def containers(value: Any) -> list[Any]:

@@ -99,4 +99,4 @@ def test_plain_values_cannot_be_changed() -> None:
     value = plain_value(MapNode({"a": entry}, PLACE, 2))
     assert value == {"a": (1,)}
     with pytest.raises(TypeError):
-        value["b"] = 2  # type: ignore[index]  # that it cannot be set is what is tested
+        value["b"] = 2

@@ -117,6 +117,7 @@ BAD: list[tuple[str, Get, object, int, list[str]]] = [
     ("a: .inf", lambda s: s.number("a"), 0.0, 4, [".inf"]),
     ("a: 1e13", lambda s: s.number("a"), 0.0, 4, ["1e13"]),
     ("a: 0", lambda s: s.number("a", above=0), 1.0, 4, ["greater than 0"]),
+    ("a: 1e-320", lambda s: s.number("a", above=0), 1.0, 4, ["greater than 0", "1e-320"]),
     ("a: -1", lambda s: s.number("a", minimum=0), 0.0, 4, ["at least 0"]),
     ("a: 9", lambda s: s.number("a", maximum=8), 0.0, 4, ["at most 8"]),
     ("a: 9", lambda s: s.number("a", maximum=-8), -8.0, 4, ["at most -8"]),
