@@ -260,11 +260,14 @@ class Section:
 
     def finish(self, *, ignore_unknown: bool = False) -> None:
         """Notes every key that nobody asked for; with ``ignore_unknown`` only those that look like a missing one."""
-        unknown = {k: e for k, e in self._entries.items() if k not in self._asked}
-        for key, entry in unknown.items():
+        absent = self._asked - self._entries.keys()
+        for key, entry in self._entries.items():
+            if key in self._asked:
+                continue
             if not ignore_unknown:
-                hint = suggestion(key, self._asked - (self._entries.keys() - unknown.keys()) or self._asked)
-                self._error(f"unknown key {quoted(key)}: {hint}", entry.place)
+                self._error(
+                    f"unknown key {quoted(key)}: {suggestion(key, absent or self._asked)}", entry.place
+                )
             elif (meant := nearest(key, self._missing)) is not None:
                 self._error(f"{quoted(key)} is not read here: did you mean {quoted(meant)}?", entry.place)
 
