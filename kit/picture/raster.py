@@ -91,9 +91,10 @@ def filled_dots(corners: FloatArray, width: int, height: int) -> Dots:
 
 
 def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
-    """Fills up to so many empty dots between two drawn ones of a row, and of a column."""
-    between = _in_gap(grid > 0, across) | _in_gap(grid.T > 0, down).T
-    grid[between] = role
+    """Fills up to so many empty dots between two drawn ones of a column, and then of a row: in this order the
+    corner between two walls is filled with them."""
+    grid.T[_in_gap(grid.T > 0, down)] = role
+    grid[_in_gap(grid > 0, across)] = role
 
 
 def _in_gap(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
