@@ -1,4 +1,4 @@
-"""The ladder of confinement: how far a student's process is locked in, and what this machine allows.
+"""The ladder of confinement: how far a student's process is locked in.
 
 Level 0 is a process of its own, empty-handed: limits, no descriptors, no environment, its own session and
 folder, killed as a whole. Level 1 takes away, for good and without needing any right, the sight of files that
@@ -36,6 +36,9 @@ class Level(IntEnum):
 
 
 DESK_LEVEL = Level.LIMITED
+
+WRITABLE = ("/dev/null",)
+"""What every program may write to, besides its own folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,16 +115,17 @@ def separate(level: Level) -> None:
 
 def lock(cage: Cage) -> None:
     """Called in the process that will run the student's code, just before it does. There is no way back."""
-    user = _new_user(cage) if cage.level >= Level.ANOTHER_USER else None
+    os.umask(0o022)
+    # The folder is there as long as the run, so its number belongs to no other run.
+    user = _FIRST_USER + os.stat(cage.scratch).st_ino % _USERS
     if cage.level >= Level.SEPARATE:
         try:
-            namespaces.narrow(cage.root, cage.readable, (cage.scratch,))
+            namespaces.narrow(cage.root, cage.readable, WRITABLE, cage.scratch, cage.limits.scratch)
         except OSError as problem:
             raise CannotConfine(f"{problem.strerror}. {_namespace_hint()}") from None
-        os.chdir(cage.scratch)
     _limit(cage)
-    if user is not None:
-        _become(user)
+    if cage.level >= Level.ANOTHER_USER:
+        _become(user, cage.scratch)
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
     # Not inherited when a process changes its user, so only now.
     _prctl(_PR_SET_PDEATHSIG, _KILL)
@@ -141,7 +145,7 @@ def _filter(cage: Cage) -> None:
         )
     try:
         _drop_capabilities()
-        landlock.restrict(cage.readable, (cage.scratch,))
+        landlock.restrict(cage.readable, (cage.scratch, *WRITABLE))
         seccomp.install()
     except OSError as problem:
         raise CannotConfine(
@@ -185,31 +189,17 @@ def _threads_of(user: int) -> int:
     return count
 
 
-def _new_user(cage: Cage) -> int:
-    """A user that nobody else is, to whom the scratch folder belongs from now on."""
-    # The folder is there as long as the run, so its number belongs to no other run.
-    user = _FIRST_USER + os.stat(cage.scratch).st_ino % _USERS
+def _become(user: int, scratch: str) -> None:
+    """This process belongs to a user that nobody else is."""
     try:
-        os.chown(cage.scratch, user, user)
-        os.chmod(cage.folder, 0o711)
-    except OSError as problem:
-        raise _no_users(problem) from None
-    return user
-
-
-def _become(user: int) -> None:
-    try:
+        os.chown(scratch, user, user)
         os.setgroups([])
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
     except OSError as problem:
-        raise _no_users(problem) from None
-
-
-def _no_users(problem: OSError) -> CannotConfine:
-    return CannotConfine(
-        f"a user for each run is refused ({problem.strerror}): this root is only a container's."
-    )
+        raise CannotConfine(
+            f"a user for each run is refused ({problem.strerror}): this root is only a container's."
+        ) from None
 
 
 class _Header(ctypes.Structure):

@@ -29,6 +29,8 @@ class Limits:
     """Processes and threads beyond what the user has already; None is no limit. Root is never limited."""
     file_size: int = 256 * MIB
     """Bytes of one written file."""
+    scratch: int = 256 * MIB
+    """Bytes of all files that it writes together. From confinement level 2 on: below, nothing counts them."""
     output: int = 64 * KIB
     """Bytes of printed text kept until somebody takes them; more is counted and dropped."""
     frame: int = 4 * MIB
@@ -47,6 +49,7 @@ GRADER: Final = Limits(
     open_files=64,
     processes=16,
     file_size=8 * MIB,
+    scratch=32 * MIB,
     output=32 * KIB,
     frame=1 * MIB,
 )

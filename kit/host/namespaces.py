@@ -16,6 +16,7 @@ _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
 _READ_ONLY, _NO_SUID, _NO_DEVICES, _NO_EXECUTE = 1, 2, 4, 8
 _REMOUNT, _BIND, _RECURSIVE, _PRIVATE = 32, 4096, 16384, 1 << 18
 _DETACH = 2
+_TREE = "size=1m,mode=755"
 _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 
 
@@ -40,23 +41,27 @@ def separate() -> None:
             file.write(content)
 
 
-def narrow(root: str, readable: Iterable[str], writable: Iterable[str]) -> None:
+def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch: str, room: int) -> None:
     """A file tree with nothing in it but these paths, built on the empty folder ``root``, becomes the only one.
 
-    Paths that do not exist are left out; one that is a link leads to the same file as before.
+    ``scratch`` becomes an empty folder in memory, with ``room`` bytes. Paths that do not exist are left out;
+    one that is a link leads to the same file as before.
     """
     _unshare(_NEW_MOUNT)
     _mount("none", "/", "", _RECURSIVE | _PRIVATE)
-    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, "size=1m,mode=755")
+    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
     for path in readable:
         _show(root, path, _READ_ONLY)
     for path in writable:
         _show(root, path, 0)
-    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, "size=1m,mode=755")
+    os.makedirs(root + scratch)
+    _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes=10k,mode=700")
+    _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)
     # The old root comes to lie over the new one, and is then taken away: pivot_root(2), "pivot_root(., .)".
     _check(_libc().syscall(ctypes.c_long(_PIVOT_ROOT[os.uname().machine]), b".", b"."), "pivot_root")
     _check(_libc().umount2(b".", _DETACH), "umount2")
+    os.chdir(scratch)
 
 
 def _show(root: str, path: str, flags: int) -> None:

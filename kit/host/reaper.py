@@ -15,6 +15,8 @@ from contextlib import suppress
 PATIENCE_S = 2.0
 """How long to go on killing what keeps forking."""
 
+_REMOVE, _UNLOCK = ("rm", "-rf"), ("chmod", "-R", "u+rwx")
+
 
 def descendants(root: int) -> list[int]:
     """The living processes below ``root``, nearest first. Elsewhere than on Linux none is found."""
@@ -49,12 +51,13 @@ def end_descendants(root: int, patience_s: float = PATIENCE_S) -> bool:
 
 
 def remove_folder(folder: str) -> None:
-    """Removes a folder and all in it, however deep, and even if its owner has locked parts of it."""
-    for command in (
-        ("rm", "-rf", "--", folder),
-        ("chmod", "-R", "u+rwx", "--", folder),
-        ("rm", "-rf", "--", folder),
-    ):
+    """Removes a run's folder and all in it, however deep, and even if its owner has locked parts of it."""
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            os.rmdir(f"{folder}/{name}")  # mostly they are empty
+        os.rmdir(folder)
+    for command in (_REMOVE, _UNLOCK, _REMOVE):
         if not os.path.lexists(folder):
             return
-        os.waitpid(os.posix_spawnp(command[0], command, {"PATH": "/usr/bin:/bin"}), 0)
+        arguments = (*command, "--", folder)
+        os.waitpid(os.posix_spawnp(arguments[0], arguments, {"PATH": "/usr/bin:/bin"}), 0)

@@ -61,9 +61,7 @@ def _watch(child: int, ended: int, folder: str) -> int:
     for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
         with suppress(OSError):
             signal.signal(number, signal.SIG_IGN)
-    null = os.open(os.devnull, os.O_RDWR)
-    for descriptor in (1, 2):  # what the child prints ends with the child
-        os.dup2(null, descriptor)
+    _let_go(1, 2)
     poller = select.poll()
     poller.register(PIPE, 0)  # hanging up is always reported
     poller.register(ended, select.POLLIN)
@@ -81,8 +79,7 @@ def _watch(child: int, ended: int, folder: str) -> int:
     remove_folder(folder)
     if status is None:  # the pipe was closed, by the kit or by the child
         return LOST_PIPE
-    code = os.waitstatus_to_exitcode(status)
-    return code if code >= 0 else 128 - code
+    return _exit_status(status)
 
 
 def _collect(child: int) -> int | None:
@@ -98,13 +95,31 @@ def _collect(child: int) -> int | None:
     return status
 
 
+def _exit_status(status: int) -> int:
+    code = os.waitstatus_to_exitcode(status)
+    return code if code >= 0 else 128 - code
+
+
+def _let_go(*descriptors: int) -> None:
+    """What the child prints and says ends with the child."""
+    null = os.open(os.devnull, os.O_RDWR)
+    for descriptor in descriptors:
+        os.dup2(null, descriptor)
+    os.close(null)
+
+
 def _student(role: str, cage: confine.Cage) -> int:
     """In the child: into the cage, then on with the student's code."""
     os.setsid()
+    if cage.level >= confine.Level.SEPARATE:
+        # The first process of a namespace is deaf to most signals, and its end is the end of all: not a
+        # student's place.
+        child = os.fork()
+        if child:
+            return _first(child)
+        os.setsid()
     channel = Channel(os.dup(PIPE))
-    null = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(null, PIPE)
-    os.close(null)
+    _let_go(PIPE)
     try:
         confine.lock(cage)
     except confine.CannotConfine as problem:
@@ -112,3 +127,12 @@ def _student(role: str, cage: confine.Cage) -> int:
         return 1
     channel.send(["confined", int(cage.level)])
     return agent.work(role, channel)
+
+
+def _first(child: int) -> int:
+    """The first process of a namespace: waits for the student's, and collects orphans."""
+    _let_go(PIPE, 1, 2)
+    while True:
+        process, status = os.wait()
+        if process == child:
+            return _exit_status(status)

@@ -1,0 +1,58 @@
+"""Which levels of confinement this machine allows, found out by trying."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from kit.host import landlock
+from kit.host.batch import StudentFunctions
+from kit.host.confine import Level
+from kit.host.failure import FailureKind, GuestError
+
+
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """One level of the ladder on this machine."""
+
+    level: Level
+    is_available: bool
+    reason: str
+    """What it consists of here; or why it cannot be had, and what would help."""
+
+
+def probe() -> tuple[Rung, ...]:
+    """Every level, lowest first. Starts an empty program on each: a fifth of a second in all."""
+    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+        file = Path(folder, "empty.py")
+        file.write_text("")
+        return tuple(_try(level, file) for level in Level)
+
+
+def highest() -> Level:
+    """The highest level that can be had here."""
+    return max(rung.level for rung in probe() if rung.is_available)
+
+
+def _try(level: Level, file: Path) -> Rung:
+    try:
+        StudentFunctions(file, level=level).close()
+    except GuestError as problem:
+        if problem.failure.kind is not FailureKind.CONFINEMENT:
+            raise
+        return Rung(level, False, problem.failure.message)
+    return Rung(level, True, _MEANS[level]())
+
+
+def _limits() -> str:
+    return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
+
+
+_MEANS = {
+    Level.LIMITED: _limits,
+    Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
+    Level.SEPARATE: lambda: "namespaces: no other process, no network and no other file exists for it",
+    Level.ANOTHER_USER: lambda: "a user of its own for every run",
+}
