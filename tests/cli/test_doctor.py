@@ -80,6 +80,16 @@ def test_with_the_whole_extra_nothing_is_said_to_be_missing(monkeypatch: pytest.
     assert {entry["value"] for entry in learning.values()} == {"1.0"}
 
 
+def test_every_level_of_confinement_is_reported_with_its_reason() -> None:
+    levels = json.loads(report("--json"))["Student code"]
+    assert list(levels) == [f"level {number}" for number in range(4)]
+    assert levels["level 0"]["value"] == "available"
+    for entry in levels.values():
+        assert entry["value"] in ("available", "not available")
+        assert entry["meaning"].endswith(".")
+        assert not entry["meaning"].endswith("..")
+
+
 @pytest.mark.parametrize("state", ["missing", "there", "a file"])
 def test_the_workspace(tmp_path: Path, state: str) -> None:
     folder = tmp_path / "own"
