@@ -14,6 +14,7 @@ from textual.widget import Widget
 
 from kit.picture.frame import Frame, diff
 from kit.picture.roles import ANSI, Color, Ink, Palette, Role
+from kit.tui.painting import crop_left
 
 
 class FrameView(Widget):
@@ -33,6 +34,9 @@ class FrameView(Widget):
         self._frame: Frame | None = None
         self._strips: dict[int, Strip] = {}
         self._styles: dict[tuple[int, int], Style | None] = {}
+
+    def on_mount(self) -> None:
+        crop_left(self.screen)
 
     @property
     def frame(self) -> Frame | None:

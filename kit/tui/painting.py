@@ -2,8 +2,7 @@
 
 A widget says which spans of its lines are dirty. Textual's compositor cuts off what lies to the right of a
 span but sends all that lies to its left, from the widget's edge on; with a wide widget and small changes
-that is most of the bytes. ``crop_left`` gives one screen a compositor that sends the span and no more. It
-touches private names, so it is bound to the one Textual version it was read in; with any other, the screen
+that is most of the bytes. ``crop_left`` makes a screen send the span and no more. It touches private names, so it is bound to the one Textual version it was read in; with any other, the screen
 stays as it is and everything works, with more bytes.
 """
 
@@ -50,11 +49,12 @@ class CroppingCompositor(Compositor):
 
 
 def crop_left(screen: Screen[Any]) -> bool:
-    """Makes a screen send no more than what changed; call it in the screen's ``__init__``. False, and
-    nothing done, if the installed Textual is not the one known here."""
+    """Makes a screen send no more than what changed, from now on. False, and nothing done, if the installed
+    Textual is not the one known here."""
     if version("textual") != KNOWN_TEXTUAL:
         return False
-    screen._compositor = CroppingCompositor()
+    # The same compositor with all it knows of the screen, but of the thriftier kind.
+    screen._compositor.__class__ = CroppingCompositor
     return True
 
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 from textual import events
+from textual.message import Message
 from textual.timer import Timer
 
 from kit.picture.camera import Camera
@@ -22,10 +23,7 @@ class WorldView(FrameView):
     """Shows scenes. It fits them to its size until it is told to zoom, pan or follow.
 
     ``offer`` paces itself: give it what makes the newest scene as often as there is news, and it draws as
-    many as the terminal keeps up with. For that the app must hand on the terminal's answers::
-
-        def on_cursor_position(self, event: events.CursorPosition) -> None:
-            self.query_one(WorldView).answered()
+    many as the terminal keeps up with.
     """
 
     DEFAULT_CSS = "WorldView { width: 1fr; height: 1fr; }"
@@ -74,13 +72,6 @@ class WorldView(FrameView):
         self._offered = make_scene
         self._draw_offered()
 
-    def answered(self) -> None:
-        """The terminal has dealt with a frame."""
-        self.credit.answered(self._clock())
-        if self._later is not None:
-            self._later.stop()
-        self._look_again()
-
     def fit(self) -> None:
         """Shows all there is, and stops following."""
         self._free, self._followed, self._fitted = False, None, None
@@ -99,6 +90,9 @@ class WorldView(FrameView):
         """Keeps a robot in the calm middle of the picture; None stops that."""
         self._followed = robot
         self._move(lambda camera: camera)
+
+    def on_mount(self) -> None:
+        self.app.message_signal.subscribe(self, self._heard, immediate=True)
 
     def on_resize(self, event: events.Resize) -> None:
         self._redraw()
@@ -147,6 +141,14 @@ class WorldView(FrameView):
         self.credit.drawn(now)
         if self.show(make_scene()):
             self.call_after_refresh(self._drawn)
+
+    def _heard(self, message: Message) -> None:
+        """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
+        if isinstance(message, events.CursorPosition):
+            self.credit.answered(self._clock())
+            if self._later is not None:
+                self._later.stop()
+            self._look_again()
 
     def _look_again(self) -> None:
         self._later = None

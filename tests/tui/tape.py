@@ -8,14 +8,14 @@ from typing import Any
 
 import pyte
 from textual import events
+from textual._compositor import Compositor
 from textual.app import App
 from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
-from textual.screen import Screen
 
 from kit.picture.encode import Encoder
 from kit.picture.roles import ANSI, Palette
-from kit.tui.painting import ASK_CURSOR, crop_left
+from kit.tui.painting import ASK_CURSOR, CroppingCompositor
 from kit.tui.world_view import WorldView
 
 
@@ -60,17 +60,13 @@ class ViewApp(App[None]):
         self.view = WorldView(encoder, palette, **({"clock": clock} if clock else {}))
         self._cropped = cropped
 
-    def get_default_screen(self) -> Screen[None]:
-        screen: Screen[None] = Screen(id="_default")
-        if self._cropped:
-            assert crop_left(screen)
-        return screen
-
     def compose(self) -> Any:
         yield self.view
 
-    def on_cursor_position(self, event: events.CursorPosition) -> None:
-        self.view.answered()
+    def on_ready(self) -> None:
+        assert type(self.screen._compositor) is CroppingCompositor
+        if not self._cropped:
+            self.screen._compositor.__class__ = Compositor
 
     @property
     def terminal(self) -> TapeDriver:

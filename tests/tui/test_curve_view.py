@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 from textual.app import App
 from textual.pilot import Pilot
-from textual.screen import Screen
 
 from kit.picture.curve import Axes, Curve
 from kit.picture.encode import Ascii
 from kit.tui.curve import CurveView
-from kit.tui.painting import crop_left
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
 
@@ -21,11 +19,6 @@ class CurveApp(App[None]):
         super().__init__(driver_class=TapeDriver)
         self.theme = "ansi-dark"
         self.view = CurveView(Axes("steps", low=0, high=1, goal=0.8))
-
-    def get_default_screen(self) -> Screen[None]:
-        screen: Screen[None] = Screen(id="_default")
-        crop_left(screen)
-        return screen
 
     def compose(self) -> Any:
         yield self.view

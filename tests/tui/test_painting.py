@@ -99,6 +99,15 @@ def test_another_version_of_textual_is_left_alone(monkeypatch: pytest.MonkeyPatc
     assert type(screen._compositor) is _compositor.Compositor
 
 
+def test_a_screen_that_is_already_shown_can_be_made_thrifty() -> None:
+    screen: Screen[None] = Screen()
+    compositor = screen._compositor
+    assert crop_left(screen)
+    assert crop_left(screen)
+    assert screen._compositor is compositor
+    assert isinstance(compositor, CroppingCompositor)
+
+
 def test_the_question_is_put_to_the_terminal_and_to_no_one_else() -> None:
     app = ViewApp()
     asked: list[bool] = []

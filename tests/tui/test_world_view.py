@@ -8,6 +8,7 @@ from itertools import islice
 from typing import Any
 
 import pytest
+from textual import events
 from textual.pilot import Pilot
 
 from kit.geometry import Pose
@@ -282,7 +283,8 @@ def test_offers_wait_for_the_terminals_answer_and_the_newest_wins() -> None:
             clock.now += 0.01
         assert made == [0]
         clock.now += 0.5
-        app.view.answered()
+        app.terminal.send_message(events.CursorPosition(0, 0))
+        await pilot.pause()
         assert made == [0, 7]
 
     run_in(app, script, SIZE)

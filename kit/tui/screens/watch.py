@@ -128,9 +128,6 @@ class WatchScreen(DriveScreen):
         self.trouble = event.text
         self._show()
 
-    def on_cursor_position(self) -> None:
-        self.world.answered()
-
     def on_resize(self) -> None:
         self._show()
 

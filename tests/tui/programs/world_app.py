@@ -10,13 +10,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[3]))
 
-from textual import events
 from textual.app import App, ComposeResult
-from textual.screen import Screen
 from textual.timer import Timer
 
 from kit.tui.input.driver import KeyDriver
-from kit.tui.painting import crop_left
 from kit.tui.world_view import WorldView
 from tests.picture.scenes import drive
 
@@ -33,19 +30,11 @@ class Program(App[None]):
         self.scenes = drive()
         self.clock: Timer
 
-    def get_default_screen(self) -> Screen[None]:
-        screen: Screen[None] = Screen(id="_default")
-        crop_left(screen)
-        return screen
-
     def compose(self) -> ComposeResult:
         yield self.view
 
     def on_mount(self) -> None:
         self.clock = self.set_interval(1 / 20, lambda: self.view.offer(lambda: next(self.scenes)))
-
-    def on_cursor_position(self, event: events.CursorPosition) -> None:
-        self.view.answered()
 
     def on_resize(self) -> None:
         self.set_timer(0.3, self.report_screen)
