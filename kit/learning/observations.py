@@ -1,0 +1,76 @@
+"""What an agent sees: a few numbers made of a scan, and perhaps where the target is and who has arrived."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+RAYS = 91
+"""The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
+AHEAD = 45
+FAR_TARGET = 4.0
+"""A target's distance is given up to here [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """One robot's numbers, in this order: single rays, sector minima, side rays, target, arrived. For two robots
+    the left one's numbers come first, then the right one's."""
+
+    rays: tuple[int, ...]
+    """Rays given as they are."""
+    sectors: tuple[int, ...]
+    """(91): the sector that each ray belongs to, from 0."""
+    side_rays: bool = False
+    """Whether each of two robots has two rays that look at the other one."""
+    clip: float = 2.0
+    """Ranges are given up to here [m]."""
+    scale: float = 1.0
+    """Ranges and distances are multiplied by this."""
+    target: bool = False
+    """Whether distance and rotation to the target are given."""
+    arrived: bool = False
+    """Whether each robot is told if it is in the target."""
+
+    @property
+    def size(self) -> int:
+        """Numbers per robot."""
+        sectors = max(self.sectors) + 1
+        return len(self.rays) + sectors + 2 * self.side_rays + 2 * self.target + self.arrived
+
+    def space(self, robots: int) -> spaces.Box:
+        """Box (robots * size,) float32."""
+        near, far = np.zeros(self.size), np.full(self.size, self.clip * self.scale)
+        if self.target:
+            first = self.size - self.arrived - 2
+            far[first], near[first + 1], far[first + 1] = FAR_TARGET * self.scale, -1.0, 1.0
+        if self.arrived:
+            far[-1] = 1.0
+        low, high = (np.tile(bound, robots).astype(np.float32) for bound in (near, far))
+        return spaces.Box(low, high, dtype=np.float32)
+
+
+def _twelve() -> tuple[int, ...]:
+    """Three sectors of about 60 degrees behind, straight back first, then nine of 20 degrees in front; from the
+    right to the left."""
+    table: NDArray[np.int64] = np.zeros(RAYS, dtype=np.int64)
+    table[8:23] = 1
+    for sector in range(9):
+        table[23 + 5 * sector : 28 + 5 * sector] = 2 + sector
+    table[68:83] = 11
+    return tuple(table.tolist())
+
+
+NINE = Observation(rays=(), sectors=tuple(min(ray // 10, 8) for ray in range(RAYS)), clip=2.0, scale=0.5)
+"""Tutorial 2 (dissertation, figure 5.4): eight sectors of 10 rays, one of 11."""
+
+SEVENTEEN = Observation(
+    rays=(AHEAD, AHEAD + 2, AHEAD - 2, AHEAD + 23, AHEAD - 23), sectors=_twelve(), scale=0.5
+)
+"""Hallways (figure 3.3): ahead, 8 degrees to the left and right of it, left, right; 12 sectors."""
+
+NINETEEN = Observation(SEVENTEEN.rays, SEVENTEEN.sectors, side_rays=True, scale=0.5)
+"""Two wheelchairs (figure 4.8): 38 numbers for both."""
