@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 from kit.controllers import ControllerFile
 from kit.host.failure import Failure, GuestError
 from kit.host.guest import Guest
 from kit.host.limits import Limits
+from kit.host.reload import FileWatch
 from kit.runner import Runner
-
-_Stamp = tuple[int, int, int]
 
 
 @dataclass(slots=True)
@@ -36,7 +34,7 @@ class Seat:
         self._guest: Guest | None = None
         self._coming: _Coming | None = None
         self._failure: Failure | None = None
-        self._file = FileWatch()
+        self._file: FileWatch | None = None
         self.controller: ControllerFile | None = None
         """Who drives or is about to."""
 
@@ -55,7 +53,7 @@ class Seat:
         if controller is None:
             self._leave()
             return
-        self._file.watch(controller.file)
+        self._file = FileWatch(controller.file)
         self._start(controller, then)
 
     def restart(self) -> None:
@@ -73,7 +71,7 @@ class Seat:
         coming = self._coming
         if coming is not None:
             self._settle(coming.guest.is_started)
-        elif self.controller is not None and self._file.has_changed():
+        elif self.controller is not None and self._file is not None and self._file.has_changed():
             self._failure = None
             self._start(self.controller, None)
 
@@ -123,34 +121,3 @@ class Seat:
             self._runner.guests.remove(self._guest)
             self._guest.close()
             self._guest = None
-
-
-class FileWatch:
-    """Notices that a file was saved, by polling, so that network homes work too."""
-
-    def __init__(self) -> None:
-        self._path: Path | None = None
-        self._known: _Stamp | None = None
-        self._seen: _Stamp | None = None
-
-    def watch(self, path: Path) -> None:
-        """From now on this file, as it is now."""
-        self._path = path
-        self._known = self._seen = _stamp(path)
-
-    def has_changed(self) -> bool:
-        """Whether it was saved since, and looks the same as at the last call: a save may take a moment."""
-        stamp = _stamp(self._path) if self._path is not None else None
-        settled = stamp is not None and stamp == self._seen and stamp != self._known
-        self._seen = stamp
-        if settled:
-            self._known = stamp
-        return settled
-
-
-def _stamp(path: Path) -> _Stamp | None:
-    try:
-        found = path.stat()
-    except OSError:  # an editor may be replacing it
-        return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
