@@ -450,3 +450,4 @@ def warm() -> None:
     limited_speed(0.0, 1.0, 1.0, 1.0, 1.0, 0.1)
     normal(1, 0)
     uniform(1, 0)
+    point_polygon(2.0, 0.0, np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]))

@@ -58,30 +58,29 @@ def test_a_tricycle_turns_about_the_point_where_its_axles_meet() -> None:
     assert math.hypot(forward, turn * 0.9) == pytest.approx(0.5)
 
 
-# Flatland's own table: current, target, dt -> new, for each set of limits
-LIMITS = {
-    (0, 0, 0): [(0, 1, 0.05, 1), (1, 1, 0.05, 1), (0.1, 1, 0.05, 1), (-100, 1, 0.1, 1), (-100, -1, 0.1, -1)]
-    + [(-100, -21, 0.1, -21)],
-    (0, 0, 1): [(0, 1, 0.05, 1), (1, 1, 0.05, 1), (0, 2, 0.05, 1), (0, -1, 0.1, -1), (0, -0.5, 0.1, -0.5)]
-    + [(1, -0.5, 0.1, -0.5), (-100, -1, 0.1, -1), (0, -3, 0.1, -1)],
-    (9, 9, 0): [(0, 1, 0.05, 0.45), (1, 0, 0.05, 0.55), (10, 0, 0.05, 9.55), (-10, 0, 0.05, -9.55)]
-    + [(5, -5, 0.05, 4.55), (-3, -2, 0.05, -2.55)],
-    (1, 9, 0): [(0, 1, 0.05, 0.05), (0.97, 1, 0.05, 1), (1, 0, 0.05, 0.55), (-1, -2, 0.05, -1.05)]
-    + [(-2, -1, 0.05, -1.55), (-2, 1, 0.05, -1.55), (-1, 2, 0.05, -0.55), (1, 3, 0.05, 1.05)]
-    + [(3, -1, 0.05, 2.55)],
-    (1, 2, 0): [(2, 0, 0.05, 1.9), (0.08, -1, 0.05, -0.01)],
-    (0, 2, 0): [(2, 0, 0.05, 1.9), (0.08, -1, 0.05, -1)],
-    (2, 0, 0): [(2, 0, 0.05, 0), (1, -1, 0.05, -0.1)],
-    (1, 9, 0.5): [(0, 1, 0.05, 0.05), (0.48, 1.48, 0.05, 0.5), (1, 2, 0.05, 0.55), (0.55, 2, 0.05, 0.5)],
-}
+# Flatland's own table. Acceleration, deceleration and speed limit; dt; then current, target -> new
+LIMITS = [
+    ((0, 0, 0), 0.05, [(0, 1, 1), (1, 1, 1), (0.1, 1, 1)]),
+    ((0, 0, 0), 0.1, [(-100, 1, 1), (-100, -1, -1), (-100, -21, -21)]),
+    ((0, 0, 1), 0.05, [(0, 1, 1), (1, 1, 1), (0, 2, 1)]),
+    ((0, 0, 1), 0.1, [(0, -1, -1), (0, -0.5, -0.5), (1, -0.5, -0.5), (-100, -1, -1), (0, -3, -1)]),
+    ((9, 9, 0), 0.05, [(0, 1, 0.45), (1, 0, 0.55), (10, 0, 9.55), (-10, 0, -9.55), (5, -5, 4.55)]),
+    ((9, 9, 0), 0.05, [(-3, -2, -2.55)]),
+    ((1, 9, 0), 0.05, [(0, 1, 0.05), (0.97, 1, 1), (1, 0, 0.55), (-1, -2, -1.05), (-2, -1, -1.55)]),
+    ((1, 9, 0), 0.05, [(-2, 1, -1.55), (-1, 2, -0.55), (1, 3, 1.05), (3, -1, 2.55)]),
+    ((1, 2, 0), 0.05, [(2, 0, 1.9), (0.08, -1, -0.01)]),
+    ((0, 2, 0), 0.05, [(2, 0, 1.9), (0.08, -1, -1)]),
+    ((2, 0, 0), 0.05, [(2, 0, 0), (1, -1, -0.1)]),
+    ((1, 9, 0.5), 0.05, [(0, 1, 0.05), (0.48, 1.48, 0.5), (1, 2, 0.55), (0.55, 2, 0.5)]),
+]
 
 
 @pytest.mark.parametrize(
-    ("limits", "current", "target", "dt", "new"),
-    [(limits, *case) for limits, cases in LIMITS.items() for case in cases],
+    ("limits", "dt", "current", "target", "new"),
+    [(limits, dt, *case) for limits, dt, cases in LIMITS for case in cases],
 )
 def test_limits_of_a_motor(
-    limits: tuple[float, float, float], current: float, target: float, dt: float, new: float
+    limits: tuple[float, float, float], dt: float, current: float, target: float, new: float
 ) -> None:
     acceleration, deceleration, top = map(float, limits)
     found = kernels.limited_speed(float(current), float(target), acceleration, deceleration, top, dt)
@@ -260,7 +259,7 @@ def test_shapes_hide_walls_by_their_layers_but_not_around_the_sensor() -> None:
     shapes = kernels.Shapes(
         np.array([[2.0, 0.0, 0.5], [0.0, 0.1, 1.0]]),  # one ahead, one around the sensor
         np.array([1, 7]),
-        np.vstack([SQUARE + [0.0, 3.0], SQUARE * 0.5]),  # one to the left, one around
+        np.vstack([SQUARE + np.array([0.0, 3.0]), SQUARE * 0.5]),  # one to the left, one around
         np.array([0, 4, 8]),
         np.array([2, 7]),
     )

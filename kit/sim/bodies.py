@@ -37,6 +37,8 @@ class Rigid:
     angular_damping: float
     command: Twist | None = None
     """What a drive asks for in the next step, of the centre of mass."""
+    held: Pose | None = None
+    """Where it stays during the next step, whatever pushes it."""
 
     @property
     def pose(self) -> Pose:
@@ -78,6 +80,11 @@ class Rigid:
     def move(self, dt: float) -> None:
         """Follows its velocity for ``dt``, after contacts acted on it; at most a stride."""
         body = self.body
+        if self.held is not None:
+            body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+            pymunk.Body.update_position(body, dt)  # uses up what pymunk would correct
+            self.place(self.held)
+            return
         distance = (body.velocity.length + abs(body.angular_velocity) * self.reach) * dt
         if distance > self.stride:
             body.velocity *= self.stride / distance
@@ -148,6 +155,11 @@ class PhysicalBody:
     def place(self, pose: Pose) -> None:
         """Puts the body, and what is stiffly welded to it, there. Velocities stay."""
         self.rigid.place(pose.compose(self.offset.relative(Pose())))
+
+    def hold(self, pose: Pose) -> None:
+        """Puts the body there for a whole step, at rest: it passes through what is in its way."""
+        self.place(pose)
+        self.rigid.held = self.rigid.pose
 
     def _from_center(self) -> tuple[float, float]:
         """The origin as seen from the centre of mass, in the world frame [m]."""

@@ -137,7 +137,7 @@ class Physics:
             for rigid in self._moving:
                 rigid.move(self._substep)
         for rigid in self._moving:
-            rigid.command = None
+            rigid.command = rigid.held = None
         self.version += 1
 
     def _parts(self, rigid: Rigid) -> int:
@@ -145,9 +145,9 @@ class Physics:
         distance = rigid.speed() * self._step_size
         return 1 if distance <= rigid.stride else min(MAX_SUBSTEPS, math.ceil(distance / rigid.stride))
 
-    def place(self, body: PhysicalBody, pose: Pose) -> None:
-        """Puts a body, and what is stiffly welded to it, there. Velocities and contacts stay."""
-        body.place(pose)
+    def hold(self, body: PhysicalBody, pose: Pose) -> None:
+        """Puts a body, and what is stiffly welded to it, there for a step, whatever is in its way."""
+        body.hold(pose)
         self.version += 1
 
     def move_model(self, name: str, pose: Pose) -> None:

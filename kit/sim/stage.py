@@ -13,7 +13,7 @@ from kit.sim.physics import Physics
 from kit.sim.plugin import Plugin
 from kit.sim.site import Params, Site, WorldParams, WorldSite
 from kit.sim.surroundings import Surroundings
-from kit.world.records import Model, World
+from kit.world.records import Model, PluginSpec, World
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Stage:
             self.add_model(model)
         for spec in world.plugins:
             site = WorldSite(spec.name, world, self.clock, self.physics)
-            plugin = cast(WorldParams, spec.params).build(site)
+            plugin = cast(WorldParams, _read(spec)).build(site)
             plugin.reset(stream_of(seed, spec.name))
             self._world_plugins.append(plugin)
         self._line_up()
@@ -57,7 +57,7 @@ class Stage:
         plugins = []
         for spec in model.plugins:
             site = Site(spec.name, model, by_name, self.clock, self.physics, self.surroundings, self._wanted)
-            plugin = cast(Params, spec.params).build(site)
+            plugin = cast(Params, _read(spec)).build(site)
             plugin.reset(stream_of(self._seed, model.name, spec.name))
             plugins.append(plugin)
         self.models[model.name] = StandingModel(model, bodies, tuple(plugins))
@@ -81,6 +81,15 @@ class Stage:
             for endpoint in plugin.endpoints:
                 if endpoint.direction == "subscribe":
                     self.listeners.setdefault(endpoint.topic, []).append(plugin)
+
+
+def _read(spec: PluginSpec) -> object:
+    """The parameters of a plugin, as its device read them."""
+    if not hasattr(spec.params, "build"):
+        raise TypeError(
+            f"{spec.place}: nobody has read this plugin; load the world with kit.sim.loading.load"
+        )
+    return spec.params
 
 
 def _overrides(plugin: Plugin, method: str) -> bool:

@@ -24,7 +24,9 @@ def command(forward: float, turn: float = 0.0) -> Twist:
 
 
 def driven(workshop: Workshop, *footprints: dict, **more: object) -> dict:
-    return workshop.model(*footprints, plugins=[{"type": "DiffDrive", "name": "drive", "body": "base"}], **more)
+    return workshop.model(
+        *footprints, plugins=[{"type": "DiffDrive", "name": "drive", "body": "base"}], **more
+    )
 
 
 # Walls
@@ -190,7 +192,8 @@ def test_a_push(workshop: Workshop) -> None:
     """A driven robot pushes a box in front of it."""
     box = workshop.model(workshop.rectangle(-0.1, 0.1, -0.1, 0.1))
     world = workshop.world(
-        {"robot": driven(workshop, workshop.rectangle(-0.1, 0.1, -0.1, 0.1)), "box": box}, poses={"box": (0.5, 0, 0)}
+        {"robot": driven(workshop, workshop.rectangle(-0.1, 0.1, -0.1, 0.1)), "box": box},
+        poses={"box": (0.5, 0, 0)},
     )
     simulation = Simulation(world)
     simulation.accept("/cmd_vel", command(0.5))
@@ -296,7 +299,9 @@ def test_a_stiff_weld_is_one_body_from_the_start(workshop: Workshop) -> None:
         first, second = simulation.state().bodies
         assert first.pose.relative(second.pose) == pytest.approx((0.3, 0, 0.5), abs=1e-12)
         simulation.step()
-    assert simulation.pose("pair") == pytest.approx((0.5 * math.sin(1), 0.5 * (1 - math.cos(1)), 1), abs=1e-12)
+    assert simulation.pose("pair") == pytest.approx(
+        (0.5 * math.sin(1), 0.5 * (1 - math.cos(1)), 1), abs=1e-12
+    )
 
 
 def test_a_hinge_turns_and_a_limited_one_to_its_limit(workshop: Workshop) -> None:
@@ -340,7 +345,9 @@ def test_a_soft_weld_swings_with_its_frequency(workshop: Workshop) -> None:
 
 
 @pytest.mark.parametrize(("collide", "count"), [(False, 0), (True, 1)])
-def test_joined_bodies_collide_only_where_the_joint_says_so(workshop: Workshop, collide: bool, count: int) -> None:
+def test_joined_bodies_collide_only_where_the_joint_says_so(
+    workshop: Workshop, collide: bool, count: int
+) -> None:
     for kind in ("revolute", "weld"):
         pair = joined(workshop, {"type": kind, "collide_connected": collide})
         pair["joints"][0]["bodies"][0]["anchor"] = [0.05, 0]
@@ -374,7 +381,9 @@ def test_unconnected_bodies_of_one_model_do_collide(workshop: Workshop) -> None:
 
 
 def test_footprints_of_one_body_never_collide(workshop: Workshop) -> None:
-    simulation = Simulation(workshop.world({"body": workshop.model(workshop.circle(0.1), workshop.circle(0.2))}))
+    simulation = Simulation(
+        workshop.world({"body": workshop.model(workshop.circle(0.1), workshop.circle(0.2))})
+    )
     simulation.step(3)
     assert simulation.state().contacts == ()
 
@@ -383,7 +392,9 @@ def test_footprints_of_one_body_never_collide(workshop: Workshop) -> None:
 
 
 def test_a_contact(workshop: Workshop) -> None:
-    world = workshop.world({"robot": driven(workshop, workshop.rectangle(-0.1, 0.1, -0.1, 0.1))}, {"a b": WALL})
+    world = workshop.world(
+        {"robot": driven(workshop, workshop.rectangle(-0.1, 0.1, -0.1, 0.1))}, {"a b": WALL}
+    )
     simulation = Simulation(world)
     simulation.accept("/cmd_vel", command(1))
     simulation.step(150)

@@ -89,7 +89,10 @@ class Workshop:
 
     def model(self, *footprints: Mapped, plugins: Sequence[Mapped] = (), **body: Any) -> dict[str, Any]:
         """A model of one body, ``base``."""
-        return {"bodies": [{"name": "base", "footprints": list(footprints), **body}], "plugins": list(plugins)}
+        return {
+            "bodies": [{"name": "base", "footprints": list(footprints), **body}],
+            "plugins": list(plugins),
+        }
 
     def circle(self, radius: float, **more: Any) -> dict[str, Any]:
         return {"type": "circle", "radius": radius, "density": 1, **more}

@@ -168,7 +168,7 @@ class Tween(Plugin):
         else:
             self._share = min(self._share + part, 1.0) if self._forward else max(self._share - part, 0.0)
         way = self._way()
-        self._physics.place(
+        self._physics.hold(
             self._body,
             Pose(self._start.x + way.x, self._start.y + way.y, self._start.theta + way.theta),
         )

@@ -164,7 +164,12 @@ def test_it_looks_before_the_step_and_stamps_that_time(workshop: Workshop) -> No
 def test_noise_has_its_deviation_and_hits_only(workshop: Workshop) -> None:
     angle = {"min": 0, "max": 6, "increment": 0.001}
     model = workshop.model(workshop.circle(0.1), plugins=[laser(noise_std_dev=0.015, angle=angle)])
-    simulation = Simulation(workshop.world({"robot": model, "post": workshop.model(workshop.circle(1.0), type="static")}, poses={"post": (3, 0, 0)}))
+    simulation = Simulation(
+        workshop.world(
+            {"robot": model, "post": workshop.model(workshop.circle(1.0), type="static")},
+            poses={"post": (3, 0, 0)},
+        )
+    )
     first, second = (np.array(scans(simulation)["/scan"].ranges) for _ in range(2))
     view = simulation.scan_views()[0]
     assert np.array_equal(view.ranges, second.astype(np.float32), equal_nan=True)
@@ -182,7 +187,9 @@ def test_noise_comes_from_the_seed_and_from_nothing_else(workshop: Workshop) -> 
     model = workshop.model(workshop.circle(0.1), plugins=lasers)
     world = workshop.world({"robot": model}, {"walls": [[5, -1, 5, 1]]})
     assert ranges(1) == ranges(1) != ranges(2)
-    assert ranges(1) == ranges(1, wanted=lambda topic: topic == "/scan")  # whether the other looks is no matter
+    assert ranges(1) == ranges(
+        1, wanted=lambda topic: topic == "/scan"
+    )  # whether the other looks is no matter
     simulation = Simulation(world, seed=1)
     last = simulation.step(1)
     by_topic = {s.topic: list(s.message.ranges) for s in last if isinstance(s.message, LaserScan)}

@@ -1,0 +1,24 @@
+"""Streams of randomness."""
+
+from __future__ import annotations
+
+from kit.sim.noise import Noise, stream_of
+
+
+def test_every_device_has_its_own_stream() -> None:
+    streams = [stream_of(seed, model, plugin) for seed in range(5) for model in "ab" for plugin in "ab"]
+    assert len(set(streams)) == 20
+    assert stream_of(1, "ab", "c") != stream_of(1, "a", "bc")
+    assert all(0 <= stream < 2**63 for stream in streams)
+
+
+def test_a_stream_is_the_same_everywhere() -> None:
+    """Names are hashed by what they say, not by Python's hash, which differs from process to process."""
+    assert stream_of(0, "serp", "lidar") == 765590480410567935
+    assert round(Noise(stream_of(0, "serp", "lidar")).normal(7), 12) == -0.921868894492
+
+
+def test_no_deviation_is_no_noise() -> None:
+    assert Noise(1).normal(3, 0.0) == 0.0
+    assert Noise(1).normal(3, 2.0) == 2.0 * Noise(1).normal(3)
+    assert 0.0 <= Noise(1).uniform(3) < 1.0
