@@ -66,6 +66,8 @@ def holds(case: Case, candidates: Candidates, certificate: Certificate) -> bool:
     parts = [{requirement: Fraction(1)} for requirement in certificate.apart] + list(certificate.parts)
     number = {requirement: i for i, requirement in enumerate(case.requirements)}
     weight = {number[r]: (part, value) for part, weights in enumerate(parts) for r, value in weights.items()}
+    if len(weight) < sum(map(len, parts)) or any(value < 0 for _, value in weight.values()):
+        return False  # something is counted twice
     for served in candidates.covers:
         counted = [weight[row] for row in served if row in weight]
         if len({part for part, _ in counted}) > 1 or sum(value for _, value in counted) > 1:

@@ -1,0 +1,165 @@
+"""The optimum: against exhaustive search, against families whose optimum is known, and the slides' own case."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Callable
+from itertools import combinations
+
+import pytest
+
+from kit.layers.assignment import breaches
+from kit.layers.examples import EXAMPLES
+from kit.layers.planning import solve
+from kit.layers.requirements import Case, Contact, Sight, fit_together
+from tests.layers.cases import (
+    bipartite,
+    cocktail_party,
+    complete,
+    fewest_layers,
+    graph,
+    planted,
+    random_case,
+    random_graph,
+    random_tree,
+)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_same_optimum_as_exhaustive_search_on_a_thousand_cases(seed: int) -> None:
+    rng = random.Random(seed)
+    for _ in range(100):
+        case = random_case(rng, rng.randint(0, 7), rng.randint(0, 3), rng.random())
+        plan = solve(case)
+        assert plan.optimal
+        assert plan.size == fewest_layers(case), case
+        assert breaches(case, plan.assignment) == ()
+
+
+def test_the_random_cases_are_not_all_easy() -> None:
+    """The cases above need anything from none to many layers, and use every kind of requirement."""
+    rng = random.Random(0)
+    cases = [random_case(rng, rng.randint(0, 7), rng.randint(0, 3), rng.random()) for _ in range(100)]
+    assert {fewest_layers(case) for case in cases} >= set(range(8))
+    assert any(case.either for case in cases)
+    assert any(laser.either for case in cases for laser in case.lasers)
+    assert any(e.ghost for case in cases for e in case.entities)
+    assert any(c.a == c.b for case in cases for c in case.collide)
+
+
+@pytest.mark.parametrize(
+    ("case", "optimum"),
+    [
+        (graph(""), 0),
+        (complete(2), 1),
+        (complete(9), 1),
+        (bipartite(1, 7), 7),
+        (bipartite(4, 4), 16),
+        (bipartite(4, 5), 20),
+        (cocktail_party(2), 4),
+        (cocktail_party(3), 4),
+        (cocktail_party(4), 5),
+        (cocktail_party(5), 6),
+        (cocktail_party(6), 6),
+        (graph("a-b b-c c-d d-e e-a"), 5),
+        (graph("a-b b-c c-a c-d d-e e-c"), 2),
+    ],
+)
+def test_families_whose_optimum_is_known(case: Case, optimum: int) -> None:
+    """K_n takes one clique, a triangle-free graph one per edge, a cocktail party of n couples the least k with
+    n <= binomial(k - 1, ceil(k / 2)) (Gregory and Pullman 1982)."""
+    plan = solve(case)
+    assert (plan.size, plan.bound) == (optimum, optimum)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_tree_takes_as_many_layers_as_it_has_edges(seed: int) -> None:
+    case = random_tree(random.Random(seed), 30)
+    assert solve(case).size == 29
+
+
+def test_eight_entities_always_fit_sixteen_layers() -> None:
+    rng = random.Random(3)
+    assert all(solve(random_graph(rng, 8, rng.random())).size <= 16 for _ in range(200))
+
+
+@pytest.mark.parametrize(
+    ("name", "one_model_never_collides", "optimum"),
+    [("slides", False, 6), ("slides-lasers", False, 10), ("slides-lasers", True, 9)],
+)
+def test_the_slides(name: str, one_model_never_collides: bool, optimum: int) -> None:
+    case = EXAMPLES[name].with_one_model_free() if one_model_never_collides else EXAMPLES[name]
+    plan = solve(case)
+    assert (plan.size, plan.bound, plan.certificate.bound) == (optimum, optimum, optimum)
+    assert len(plan.certificate.apart) == optimum
+    assert all(fit_together(case, one, two) for one, two in combinations(plan.certificate.apart, 2))
+
+
+def test_the_slides_six_maximal_cliques_are_all_needed() -> None:
+    found = {layer.members for layer in solve(EXAMPLES["slides"]).assignment.layers}
+    assert found == {
+        frozenset(names.split())
+        for names in (
+            "Map1 M4.B1 M4.B2",
+            "M4.B1 M4.B2 M2",
+            "M2 M3.B2",
+            "M3.B2 M1",
+            "Map2 M1 M3.B1",
+            "Map2 M2 M3.B1",
+        )
+    }
+
+
+def test_a_ghost_beacon_saves_the_tutorials_fourth_layer() -> None:
+    plan = solve(EXAMPLES["beacon"])
+    assert {layer.members for layer in plan.assignment.layers} == {
+        frozenset({"walls", "robot"}),
+        frozenset({"walls"}),
+        frozenset({"robot"}),
+    }
+    assert plan.assignment.layers_of("beacon") == ()
+
+
+@pytest.mark.parametrize(
+    "make", [lambda rng: random_case(rng, 12, 3, 0.5), lambda rng: planted(rng, 30, 4, 9, 12)]
+)
+def test_the_same_plan_every_time(make: Callable[[random.Random], Case]) -> None:
+    case = make(random.Random(11))
+    assert solve(case).assignment == solve(case).assignment
+
+
+def test_a_planted_plan_is_never_beaten_by_a_worse_one() -> None:
+    rng = random.Random(5)
+    for _ in range(10):
+        plan = solve(planted(rng, 25, 3, 8, 10))
+        assert plan.optimal
+        # eight groups, and for a laser at worst those it watches once more, without what it must not see
+        assert plan.size <= 8 + 3 * 3
+
+
+def test_a_plan_cut_short_is_honest() -> None:
+    """Too little time: a plan that does what is asked, with a bound that is one, and no claim that it is the best."""
+    case = random_graph(random.Random(1), 45, 0.5)
+    start = time.monotonic()
+    plan = solve(case, time_limit=0.3)
+    assert time.monotonic() - start < 5
+    assert breaches(case, plan.assignment) == ()
+    assert 0 < plan.bound <= plan.size
+    assert plan.certificate.bound <= plan.bound
+    assert plan.gap == plan.size - plan.bound
+
+
+def test_no_time_at_all_still_gives_a_plan_and_a_bound() -> None:
+    case = EXAMPLES["slides-lasers"]
+    plan = solve(case, time_limit=1e-9)
+    assert breaches(case, plan.assignment) == ()
+    assert plan.bound <= 10 <= plan.size
+
+
+def test_a_laser_and_a_contact_need_not_cost_two_layers() -> None:
+    case = graph("a-b", lasers={"eye": "a b"})
+    plan = solve(case)
+    assert plan.size == 1
+    assert plan.assignment.watches["eye"] == ("C1",)
+    assert plan.case.requirements == (Contact("a", "b"), Sight("eye", "a"), Sight("eye", "b"))
