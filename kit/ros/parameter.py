@@ -40,23 +40,22 @@ class Parameter:
         @classmethod
         def from_parameter_value(cls, parameter_value: Any) -> Parameter.Type:
             """The type of a Python value; an empty list is a BYTE_ARRAY, as in ROS 2. TypeError if there is none."""
-            if type(parameter_value) in _SINGLE:
-                return _SINGLE[type(parameter_value)]
-            if isinstance(parameter_value, array):
-                return cls.DOUBLE_ARRAY if parameter_value.typecode in "fd" else cls.INTEGER_ARRAY
-            if isinstance(parameter_value, (list, tuple)):
-                if not parameter_value:
-                    return cls.BYTE_ARRAY
-                kinds = {type(entry) for entry in parameter_value}
-                if len(kinds) == 1 and kinds <= _MANY.keys():
-                    return _MANY[kinds.pop()]
-                found = ", ".join(sorted(kind.__name__ for kind in kinds))
+            if parameter_value is None:
+                return cls.NOT_SET
+            for kind, (single, _) in _KINDS.items():
+                if single is not None and isinstance(parameter_value, kind):
+                    return single
+            if not isinstance(parameter_value, (list, tuple, array)):
                 raise TypeError(
-                    f"A parameter's list must hold values of one type (bool, int, float, str), not {found}"
+                    f"The given value is not one of the allowed types '{parameter_value}': a parameter can be a bool, "
+                    f"an int, a float, a str or a list of these, not {type(parameter_value).__name__}"
                 )
+            for kind, (_, many) in _KINDS.items():
+                if all(isinstance(entry, kind) for entry in parameter_value):
+                    return many
+            found = ", ".join(sorted({type(entry).__name__ for entry in parameter_value}))
             raise TypeError(
-                f"The given value is not one of the allowed types '{parameter_value}': a parameter can be a bool, an int, "
-                f"a float, a str or a list of these, not {type(parameter_value).__name__}"
+                f"A parameter's list must hold values of one type (bool, int, float, str), not {found}"
             )
 
         def check(self, parameter_value: Any) -> bool:
@@ -125,20 +124,15 @@ class Parameter:
         )
 
 
-_SINGLE: dict[type, Parameter.Type] = {
-    type(None): Parameter.Type.NOT_SET,
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
+_KINDS: dict[type, tuple[Parameter.Type | None, Parameter.Type]] = {
+    bytes: (None, Parameter.Type.BYTE_ARRAY),
+    bool: (Parameter.Type.BOOL, Parameter.Type.BOOL_ARRAY),
+    int: (Parameter.Type.INTEGER, Parameter.Type.INTEGER_ARRAY),
+    float: (Parameter.Type.DOUBLE, Parameter.Type.DOUBLE_ARRAY),
+    str: (Parameter.Type.STRING, Parameter.Type.STRING_ARRAY),
 }
-_MANY: dict[type, Parameter.Type] = {
-    bytes: Parameter.Type.BYTE_ARRAY,
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
+"""The types of one value and of a list of values, by Python type; the first that fits counts."""
+
 _FIELDS = {
     Parameter.Type.BOOL: "bool_value",
     Parameter.Type.INTEGER: "integer_value",

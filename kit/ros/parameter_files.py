@@ -131,5 +131,9 @@ def _plain(text: str) -> Any:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """What a text means as a parameter, as a message."""
-    return Parameter("value", value=parse_value(string_value)).get_parameter_value()
+    """What a text means as a parameter, as a message; itself, if it is nothing else."""
+    try:
+        value = parse_value(string_value)
+    except InvalidRosArguments:
+        value = string_value
+    return Parameter("value", value=value).get_parameter_value()

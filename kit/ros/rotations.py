@@ -149,7 +149,8 @@ def unit_vector(data: Sequence[float]) -> Matrix:
     import numpy
 
     array = numpy.array(data, dtype=float)
-    return array / numpy.linalg.norm(array)
+    unit: Matrix = array / numpy.linalg.norm(array)
+    return unit
 
 
 def _unit(quaternion: Sequence[float]) -> Quaternion:

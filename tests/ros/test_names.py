@@ -1,0 +1,130 @@
+"""ROS 2's import names: there for those who ask, nowhere else."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kit.msg.interfaces import PACKAGES, interfaces
+from kit.msg.message import Message, Service
+from kit.ros import names_folder
+
+FOLDER = names_folder()
+MODULES = sorted(
+    str(file.relative_to(FOLDER).with_suffix("")).replace("/", ".").removesuffix(".__init__")
+    for file in FOLDER.rglob("*.py")
+)
+
+
+def python(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """A fresh process; ``{names}`` in the code puts the folder on its path."""
+    prelude = f"import sys; sys.path.insert(0, {str(FOLDER)!r})\n"
+    return subprocess.run(
+        [sys.executable, "-c", prelude + code, *arguments],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+@pytest.mark.usefixtures("import_names")
+@pytest.mark.parametrize("module", MODULES)
+def test_every_name_can_be_imported(module: str) -> None:
+    found = importlib.import_module(module)
+    for name in getattr(found, "__all__", ()):
+        assert hasattr(found, name)
+
+
+@pytest.mark.usefixtures("import_names")
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_package_of_messages_has_all_of_them(package: str) -> None:
+    for part, kind in (("msg", Message), ("srv", Service)):
+        ours = {cls.__name__: cls for cls in interfaces(package) if issubclass(cls, kind)}
+        if ours:
+            named = importlib.import_module(f"{package}.{part}")
+            assert {name: getattr(named, name) for name in named.__all__} == ours
+
+
+def test_without_the_folder_the_names_mean_nothing() -> None:
+    for name in ("rclpy", "std_msgs", "tf2_ros"):
+        run = subprocess.run(
+            [sys.executable, "-c", f"import kit.ros.node, {name}"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert f"No module named '{name}'" in run.stderr
+
+
+def test_a_fresh_process_starts_light() -> None:
+    run = python(
+        "import rclpy; from rclpy.node import Node; from sensor_msgs.msg import LaserScan; from std_srvs.srv import Trigger\n"
+        "rclpy.init(args=[]); n = Node('n'); n.create_subscription(LaserScan, 's', print, 1)\n"
+        "print(*[m for m in ('numpy', 'yaml', 'rosbags', 'asyncio', 'numba', 'pymunk', 'logging') if m in sys.modules])"
+    )
+    assert run.stderr == ""
+    assert run.stdout.split() == []
+
+
+TALKER = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.publisher_ = self.create_publisher(String, "chatter", 10)
+        self.subscription = self.create_subscription(String, "chatter", self.listener_callback, 10)
+        self.timer = self.create_timer(0.001, self.timer_callback)
+        self.graph, self.agenda, self.i = "mine", "mine too", 0
+
+    def timer_callback(self):
+        msg = String()
+        msg.data = "Hello World: %d" % self.i
+        self.publisher_.publish(msg)
+        self.get_logger().info('Publishing: "%s"' % msg.data)
+        self.i += 1
+
+    def listener_callback(self, msg):
+        self.get_logger().info('I heard: "%s"' % msg.data)
+        if self.i == 3:
+            raise SystemExit
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    talker = Talker()
+    try:
+        rclpy.spin(talker)
+    finally:
+        talker.destroy_node()
+        rclpy.shutdown()
+
+
+main()
+"""
+
+
+def test_the_first_program_of_every_tutorial_runs() -> None:
+    run = python(TALKER)
+    assert run.returncode == 0, run.stderr
+    texts = [line.split("]: ")[1] for line in run.stderr.splitlines()]
+    assert texts[:2] == ['Publishing: "Hello World: 0"', 'I heard: "Hello World: 0"']
+    assert run.stderr.startswith("[INFO] [")
+
+
+def test_and_with_arguments() -> None:
+    run = python(TALKER, "--ros-args", "-r", "__node:=other", "-r", "chatter:=talk")
+    assert "[other]: I heard" in run.stderr
+
+
+def test_a_folder_without_an_init_is_no_package_of_the_kit() -> None:
+    assert not (FOLDER / "__init__.py").exists()
+    assert Path(FOLDER).name == "names"
