@@ -49,24 +49,28 @@ class WorldCase:
     """In which the files, list by list, differ from what is asked."""
 
 
-def today_case(slots: Slots) -> WorldCase:
-    """What happens today is what shall happen."""
+def today_case(slots: Slots, *, grouped: bool = True) -> WorldCase:
+    """What happens today is what shall happen. ``grouped``: as in ``case_of``."""
     return case_of(
         slots,
         lambda a, b: "collide" if a.category & b.category else "apart",
         lambda laser, use, spot: "sees" if use[1].bits & spot.category else "blind",
         title=f"{slots.world.file.parent.name}/{slots.world.file.name}",
+        grouped=grouped,
     )
 
 
-def case_of(slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "") -> WorldCase:
+def case_of(
+    slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "", grouped: bool = True
+) -> WorldCase:
     """The case in which wishes about spots have become relations of entities, each a group of slots.
 
-    Raises WorldError where a list would have to do two things at once.
+    ``grouped``: slots with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
+    WorldError where a list would have to do two things at once.
     """
     table = _Table(slots, pair, view)
     asked = deepcopy(table.relation)
-    groups = table.merged()
+    groups = table.merged() if grouped else [[i] for i in range(len(table.rows))]
     names = _names(slots, groups)
     everything = [(name, group) for name, group in zip(names, groups, strict=True)]
     try:
@@ -139,11 +143,22 @@ class _Table:
             for weak in sorted(groups, reverse=True):
                 strong = next((i for i in groups if self._can_absorb(i, weak, groups)), None)
                 if strong is not None:
-                    if "collide" in (self.relation[strong][weak], self.relation[weak][weak]):
-                        self.relation[strong][strong] = "collide"
+                    self._join(strong, weak)
                     groups[strong] += groups.pop(weak)
                     absorbed = True
         return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
+
+    def _join(self, strong: int, weak: int) -> None:
+        """Makes the needs of ``strong`` those of both."""
+        for relation in ("apart", "collide"):
+            if relation in (self.relation[strong][weak], self.relation[weak][weak]):
+                self.relation[strong][strong] = relation
+        for w, relation in enumerate(self.relation[weak]):
+            if relation == "apart" and w != strong:
+                self.relation[strong][w] = self.relation[w][strong] = "apart"
+        for seen in self.sighting:
+            if seen[weak] == "blind":
+                seen[strong] = "blind"
 
     def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
         """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
@@ -325,18 +340,14 @@ def _laser_names(slots: Slots) -> list[str]:
 def _today(
     slots: Slots, entities: Mapping[str, tuple[Slot, ...]], lasers: Mapping[str, LaserSlot]
 ) -> Assignment:
-    """What the files say now. An entity is in a layer if any of its lists is.
+    """What the files say now, of every entity the first of its lists, which is the neediest.
 
     A world that names no layer can still have things in all of them: they meet in one called "all".
     """
     bits = dict(slots.world.layer_bits) or {"all": ALL_LAYERS}
     layers = []
     for name, bit in bits.items():
-        members = [
-            entity
-            for entity, lists in entities.items()
-            if any(s.category & bit for t in lists for s in t.spots)
-        ]
+        members = [entity for entity, lists in entities.items() if lists[0].spots[0].category & bit]
         layers.append(NamedLayer(name, frozenset(members)))
     watches = {
         name: tuple(layer for layer, bit in bits.items() if laser.uses[0][1].bits & bit)

@@ -80,6 +80,8 @@ def patch_of(plan: WorldPlan, *, root: Path | None = None, also_shared: bool = F
 
     ``root``: where else to look for worlds that share a model file. ``also_shared``: patch such files as well.
     """
+    if plan.changes_nothing:
+        return Patch((), ())
     by_file: defaultdict[Path, list[_Wanted]] = defaultdict(list)
     for wanted in _wanted(plan):
         by_file[wanted.place.file].append(wanted)

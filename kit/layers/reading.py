@@ -131,6 +131,9 @@ def _lists(section: Section, key: str) -> dict[str, tuple[str, ...]]:
 
 def _names(section: Section, copies: Mapping[str, tuple[str, ...]]) -> Names:
     maps, models = section.texts("maps", ()), section.texts("models", ())
+    for key, listed in (("maps", maps), ("models", models)):
+        for name in dict.fromkeys(name for name in listed if listed.count(name) > 1):
+            section.error(f"{quoted(name)} is named twice", key)
     parts = _lists(section, "parts")
     _check_keys(section, "parts", parts, models, "model")
     grouped = {
@@ -199,13 +202,13 @@ def _pairs(first: tuple[str, ...], second: tuple[str, ...], same: bool) -> Itera
 def _impossible(contact: Contact, relation: Relation, names: Names) -> str | None:
     """Why Flatland rules a wish out, in words."""
     a, b = names.entities[contact.a], names.entities[contact.b]
+    if a == b and a.kind == "map":
+        return f"{a.name} is a map: it cannot collide with itself"
     if a.kind == b.kind == "map" and relation != "apart":
         return (
             f"{a.name} and {b.name} are maps: maps never collide, and a layer name belongs to one entry of the "
             "world file, so no layer holds two"
         )
-    if a == b and a.kind == "map":
-        return f"{a.name} is a map: it cannot collide with itself"
     if relation == "collide" and (a.ghost or b.ghost):
         return f"{(a if a.ghost else b).name} is one of the ghosts: it cannot collide with anything"
     return None

@@ -160,7 +160,8 @@ class _Document:
     def _replace(self, key: yaml.Node, value: yaml.Node, names: Sequence[str]) -> Iterator[_Edit]:
         """The edits that make the value of a key a list of names."""
         start, end = value.start_mark.index, value.end_mark.index
-        if self._uses[id(value)] > 1 or self._text[start] in "&*!":
+        shared = any(self._uses[id(node)] > 1 for node in (value, *_leaves(value)))
+        if shared or self._text[start] in "&*!":
             raise Unsafe(f"the list in line {value.start_mark.line + 1} has an anchor, an alias or a tag")
         if any(_COMPUTED.match(leaf.value) for leaf in _leaves(value)):
             raise Unsafe(f"the list in line {value.start_mark.line + 1} is computed ($include, env or $eval)")
