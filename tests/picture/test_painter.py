@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from kit.geometry import Pose
+from kit.picture import painter as painter_module
 from kit.picture.camera import Camera
 from kit.picture.encode import ENCODERS, Ascii, Braille, Encoder, HalfBlock
 from kit.picture.frame import BLANK, Frame
@@ -210,13 +212,13 @@ def test_what_is_nowhere_is_left_out(encoder: Encoder) -> None:
 
 def test_standing_walls_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = []
-    original = Painter._standing.__globals__["_draw_walls"]
+    draw_walls = painter_module._draw_walls
 
-    def counted(*args: object) -> object:
+    def counted(*args: Any) -> Any:
         drawn.append(args)
-        return original(*args)
+        return draw_walls(*args)
 
-    monkeypatch.setitem(Painter._standing.__globals__, "_draw_walls", counted)
+    monkeypatch.setattr(painter_module, "_draw_walls", counted)
     painter, walls = Painter(Braille()), maze()
     camera = Camera.fit(Bounds(0, 0, 8.25, 5.175), 80, 22)
     frames = [
