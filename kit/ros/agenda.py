@@ -170,8 +170,3 @@ class Agenda:
                 self._timers += timers
                 heapify(self._timers)
             self.graph.notify()
-
-    def forget_ready(self) -> None:
-        """Empties the line. The items' own queues are theirs to empty."""
-        with self.graph.lock:
-            self.ready.clear()

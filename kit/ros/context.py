@@ -100,9 +100,6 @@ class Context:
     def get_domain_id(self) -> int:
         return self._domain_id
 
-    def track_node(self, node: object) -> None:
-        """Does nothing; ROS 2 has it."""
-
     def __enter__(self) -> Context:
         if not self._initialised:
             self.init()

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 from kit.ros.event_handler import QoSIncompatibility
 from kit.ros.exceptions import InvalidHandle
+from kit.ros.task import Task
 
 if TYPE_CHECKING:
     from kit.ros.callback_groups import CallbackGroup
     from kit.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
     from kit.ros.handle import NodeHandle
     from kit.ros.node import Node
+    from kit.ros.qos import QoSPolicyKind
 
 
 class Destroyable:
@@ -74,18 +76,23 @@ class Entity(Destroyable):
         """Forgets the work that waits in it. With the graph's lock held."""
 
 
-def report_incompatible(
-    handle: NodeHandle,
-    callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None,
-    info: QoSIncompatibility,
-    warning: str,
-) -> None:
-    """Calls the event callback for it, or else warns."""
-    if callbacks is not None and callbacks.incompatible_qos is not None:
-        from kit.ros.task import Task
+class Incompatibilities:
+    """What an end of a topic does about partners whose quality of service does not fit."""
 
-        task: Task[Any] = Task(callbacks.incompatible_qos, (info,))
-        task.belong_to(handle)
-        handle.agenda.post(task)
-    elif callbacks is None or callbacks.use_default_callbacks:
-        handle.logger.warning(warning)
+    def __init__(
+        self, handle: NodeHandle, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None
+    ) -> None:
+        self._handle = handle
+        self._callbacks = callbacks
+        self._count = 0
+
+    def report(self, policy: QoSPolicyKind, warning: str) -> None:
+        """Calls the event callback for it, or else warns."""
+        self._count += 1
+        callbacks = self._callbacks
+        if callbacks is not None and callbacks.incompatible_qos is not None:
+            task: Task[Any] = Task(callbacks.incompatible_qos, (QoSIncompatibility(policy, self._count),))
+            task.belong_to(self._handle)
+            self._handle.agenda.post(task)
+        elif callbacks is None or callbacks.use_default_callbacks:
+            self._handle.logger.warning(warning)

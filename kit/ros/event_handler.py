@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from kit.ros.qos import QoSPolicyKind
@@ -14,7 +14,8 @@ class QoSIncompatibility:
     """What an ``incompatible_qos`` callback is given."""
 
     last_policy_kind: QoSPolicyKind
-    total_count: int = 1
+    total_count: int
+    """Partners that did not fit so far."""
     total_count_change: int = 1
 
 
@@ -48,8 +49,3 @@ class SubscriptionEventCallbacks:
     incompatible_type: EventCallback | None = None
     matched: EventCallback | None = None
     use_default_callbacks: bool = True
-
-
-def given(callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks) -> list[str]:
-    """The names of the callbacks that somebody set."""
-    return [field.name for field in fields(callbacks) if callable(getattr(callbacks, field.name))]

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future as Job
-from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -23,6 +21,8 @@ from kit.ros.instants import S_TO_NS
 from kit.ros.task import Future, Task
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future as Job
+
     from kit.ros.node import Node
 
 __all__ = [
@@ -116,7 +116,7 @@ class Executor:
         self._graph.notify()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stops spinning and lets go of the nodes. False if callbacks still run after the time given."""
+        """Stops spinning and lets go of the nodes. True: nothing goes on behind the caller's back."""
         self._is_shutdown = True
         self._graph.notify()
         for node in self.get_nodes():
@@ -128,11 +128,13 @@ class Executor:
     def spin(self) -> None:
         """Runs callbacks until the executor or the context is shut down. What a callback raises comes out.
 
-        Raises ExternalShutdownException if somebody else than the program ends the context while it waits.
+        Raises ExternalShutdownException if somebody else than the program ends the context.
         """
         with _Spinning(self):
             while self._context.ok() and not self._is_shutdown:
                 self._turn(None)
+        if self._context.ended_from_outside:
+            raise ExternalShutdownException
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Waits for one callback and runs it. None or negative: as long as it takes; 0: not at all."""
@@ -241,6 +243,8 @@ class MultiThreadedExecutor(Executor):
     exclusive = False
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        from concurrent.futures import ThreadPoolExecutor  # only now: few programs need it
+
         super().__init__(context=context)
         count = max(2, os.cpu_count() or 2) if num_threads is None else num_threads
         self._pool = ThreadPoolExecutor(count, thread_name_prefix="ros-callback")
@@ -248,6 +252,7 @@ class MultiThreadedExecutor(Executor):
         self._jobs: set[Job[None]] = set()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """As ever, and waits for the callbacks that run. False if some still do after the seconds given."""
         super().shutdown(timeout_sec)
         self._pool.shutdown(wait=False, cancel_futures=True)
         if threading.current_thread().name.startswith("ros-callback"):

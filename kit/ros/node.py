@@ -91,6 +91,8 @@ class Node(NodeGraph, NodeParameters):
         self.declare_parameter("use_sim_time", handle.graph.is_simulated)
         if start_parameter_services:
             ParameterServices(self)
+        if enable_logger_service:
+            handle.logger.warning("services for log levels are not offered here; use --ros-args --log-level")
         if automatically_declare_parameters_from_overrides:
             rest = [(name, entry.value) for name, entry in overrides.items() if not self.has_parameter(name)]
             self.declare_parameters("", rest, ignore_override=True)

@@ -6,8 +6,8 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
 
 from kit.msg.message import Message, check_message
-from kit.ros.endpoint import Destroyable, report_incompatible
-from kit.ros.event_handler import PublisherEventCallbacks, QoSIncompatibility
+from kit.ros.endpoint import Destroyable, Incompatibilities
+from kit.ros.event_handler import PublisherEventCallbacks
 from kit.ros.instants import Duration
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class Publisher(Destroyable, Generic[M]):
         self.routes: tuple[Subscription[M], ...] = ()
         """The subscriptions that what is published reaches."""
         self.number = self._graph.next_number()
-        self._event_callbacks = event_callbacks
+        self.incompatibilities = Incompatibilities(handle, event_callbacks)
         # What a transient-local publisher keeps for subscriptions that come later.
         self._kept: deque[M] | None = None
         if qos_profile.is_transient_local:
@@ -104,9 +104,6 @@ class Publisher(Destroyable, Generic[M]):
         if self._kept is not None and subscription.qos_profile.is_transient_local:
             for msg in self._kept:
                 subscription.arrive(msg.__deepcopy__(None))
-
-    def report_incompatible(self, info: QoSIncompatibility, warning: str) -> None:
-        report_incompatible(self._handle, self._event_callbacks, info, warning)
 
     def _check(self, msg: M) -> None:
         if self._destroyed:

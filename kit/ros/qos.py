@@ -184,12 +184,6 @@ class QoSProfile:
         return None if self.history == HistoryPolicy.KEEP_ALL else max(1, self.depth)
 
 
-class DeprecatedQoSProfile(QoSProfile):
-    """A preset under a name it had once."""
-
-    __slots__ = ()
-
-
 def _profile(depth: int = 10, **settings: Any) -> QoSProfile:
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth, **settings)
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 from kit.msg.message import Message
 from kit.ros.agenda import NOTHING
 from kit.ros.callbacks import arguments_taken
-from kit.ros.endpoint import Entity, report_incompatible
-from kit.ros.event_handler import QoSIncompatibility, SubscriptionEventCallbacks
+from kit.ros.endpoint import Entity, Incompatibilities
+from kit.ros.event_handler import SubscriptionEventCallbacks
 
 if TYPE_CHECKING:
     from kit.ros.callback_groups import CallbackGroup
@@ -61,7 +61,7 @@ class Subscription(Entity, Generic[M]):
         self.raw = False
         self.number = self._graph.next_number()
         self._with_info = arguments_taken(callback, (1, 2), f"the subscription of {topic}") == 2
-        self._event_callbacks = event_callbacks
+        self.incompatibilities = Incompatibilities(handle, event_callbacks)
         self._queue: deque[M] = deque(maxlen=qos_profile.queue_length)
         with self._graph.lock:
             self._graph.directory.topic(topic).add_subscription(self)
@@ -120,9 +120,6 @@ class Subscription(Entity, Generic[M]):
 
     def discard_queue(self) -> None:
         self._queue.clear()
-
-    def report_incompatible(self, info: QoSIncompatibility, warning: str) -> None:
-        report_incompatible(self._handle, self._event_callbacks, info, warning)
 
     def _leave(self) -> None:
         self._queue.clear()

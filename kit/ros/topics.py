@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from kit.msg.message import type_name
-from kit.ros.event_handler import QoSIncompatibility
 from kit.ros.qos import QoSPolicyKind, first_incompatibility
 
 if TYPE_CHECKING:
@@ -82,13 +81,13 @@ def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any])
         f" (the publisher of {publisher.handle.full_name} offers {_shown(offered)}, "
         f"the subscription of {subscription.handle.full_name} asks for {_shown(asked)})"
     )
-    publisher.report_incompatible(
-        QoSIncompatibility(mismatch),
+    publisher.incompatibilities.report(
+        mismatch,
         f"New subscription discovered on topic '{topic}', requesting incompatible QoS. "
         f"No messages will be sent to it. Last incompatible policy: {mismatch.name}{why}",
     )
-    subscription.report_incompatible(
-        QoSIncompatibility(mismatch),
+    subscription.incompatibilities.report(
+        mismatch,
         f"New publisher discovered on topic '{topic}', offering incompatible QoS. "
         f"No messages will be received from it. Last incompatible policy: {mismatch.name}{why}",
     )

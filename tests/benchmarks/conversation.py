@@ -1,0 +1,160 @@
+"""What the conversation costs: ``python tests/benchmarks/conversation.py``.
+
+Scans of 91 rays to ten subscriptions, in lock-step and to a thread that spins; then the maze world with a node
+that drives by its scans, through the graph and by plain function calls: the difference is the graph's share of a
+tick. Then what starting costs. Every figure is the best or the median of several runs.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+import time
+from array import array
+from collections.abc import Callable
+from statistics import median
+
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.msg.sensor_msgs import LaserScan
+from kit.places import place_on_map
+from kit.ros.executors import SingleThreadedExecutor
+from kit.ros.graph import Graph
+from kit.runner import Runner
+from kit.sim.simulation import Simulation
+from kit.world.catalogue import find_map
+
+RAYS, READERS, SCANS = 91, 10, 2000
+TICKS, REPEATS = 2000, 7
+
+
+def per_second(work: Callable[[], object], count: int) -> float:
+    """How often per second ``work``, which does ``count`` of them at once; the best of several runs."""
+    best = 0.0
+    for _ in range(REPEATS):
+        began = time.perf_counter()
+        work()
+        best = max(best, count / (time.perf_counter() - began))
+    return best
+
+
+def lock_step() -> float:
+    """Scans published and received by all readers, per second."""
+    graph = Graph()
+    node = graph.create_node("node")
+    received: list[int] = []
+    for _ in range(READERS):
+        node.create_subscription(LaserScan, "scan", lambda scan: received.append(1), 10)
+    publisher = node.create_publisher(LaserScan, "scan", 10)
+    ranges = array("f", [1.5]) * RAYS
+
+    def work() -> None:
+        received.clear()
+        for _ in range(SCANS):
+            publisher.publish(LaserScan(ranges=ranges))
+            graph.run_due()
+        assert len(received) == SCANS * READERS
+
+    return per_second(work, SCANS)
+
+
+def free_running() -> float:
+    """The same to another thread, which spins."""
+    graph = Graph(None)
+    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    received: list[int] = []
+    for _ in range(READERS):
+        listener.create_subscription(LaserScan, "scan", lambda scan: received.append(1), SCANS)
+    publisher = talker.create_publisher(LaserScan, "scan", 10)
+    ranges = array("f", [1.5]) * RAYS
+    executor = SingleThreadedExecutor(context=graph.context)
+    executor.add_node(listener)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+
+    def work() -> None:
+        received.clear()
+        for _ in range(SCANS):
+            publisher.publish(LaserScan(ranges=ranges))
+        while len(received) < SCANS * READERS:
+            time.sleep(0.0005)
+
+    rate = per_second(work, SCANS)
+    executor.shutdown()
+    thread.join()
+    return rate
+
+
+def command(scan: LaserScan) -> Twist:
+    """Forward, or a turn where a wall is near."""
+    if scan.ranges[RAYS // 2] < 0.4:
+        return Twist(angular=Vector3(z=1.5))
+    return Twist(linear=Vector3(x=0.5))
+
+
+LISTENED = ("/static_laser", "/cmd_vel")
+
+
+def bare_tick() -> float:
+    """Seconds per tick of the maze with the driver called directly."""
+    simulation = Simulation(place_on_map(find_map("maze")).world, wanted=LISTENED.__contains__)
+
+    def work() -> None:
+        for _ in range(TICKS):
+            for sent in simulation.step():
+                if sent.topic == "/static_laser":
+                    simulation.accept("/cmd_vel", command(sent.message))
+
+    return 1 / per_second(work, TICKS)
+
+
+def graph_tick() -> float:
+    """Seconds per tick of the same world and driver, through nodes and topics."""
+    graph = Graph()
+    runner = Runner(
+        Simulation(
+            place_on_map(find_map("maze")).world, wanted=lambda topic: graph.subscription_count(topic) > 0
+        ),
+        graph,
+    )
+    node = graph.create_node("driver")
+    drive = node.create_publisher(Twist, "/cmd_vel", 10)
+    node.create_subscription(LaserScan, "/static_laser", lambda scan: drive.publish(command(scan)), 10)
+
+    def work() -> None:
+        for _ in range(TICKS):
+            runner.tick()
+
+    return 1 / per_second(work, TICKS)
+
+
+def start_ms(code: str) -> float:
+    """Milliseconds that a fresh process takes for the code, beyond what an empty one takes; median of several."""
+    timed = f"import time; t = time.perf_counter(); {code}; print((time.perf_counter() - t) * 1000)"
+    runs = [
+        subprocess.run([sys.executable, "-c", timed], capture_output=True, text=True, check=True)
+        for _ in range(9)
+    ]
+    return median(float(run.stdout) for run in runs)
+
+
+def main() -> None:
+    rate = lock_step()
+    print(
+        f"91-ray scans to {READERS} readers, lock-step [1/s]        {rate:10.0f}   {rate * READERS:.0f} deliveries/s"
+    )
+    rate = free_running()
+    print(
+        f"91-ray scans to {READERS} readers, spinning [1/s]         {rate:10.0f}   {rate * READERS:.0f} deliveries/s"
+    )
+    bare, whole = bare_tick() * 1e6, graph_tick() * 1e6
+    share = (whole - bare) / whole
+    print(f"maze tick, driver called directly [us]            {bare:10.1f}")
+    print(f"maze tick, driver through the graph [us]          {whole:10.1f}   the graph's share: {share:.0%}")
+    print(f"import kit.ros [ms]                               {start_ms('import kit.ros.running'):10.1f}")
+    node = "from kit.ros.graph import Graph; Graph().create_node('n')"
+    print(f"import and make a node [ms]                       {start_ms(node):10.1f}")
+
+
+if __name__ == "__main__":
+    main()
