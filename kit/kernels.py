@@ -226,24 +226,29 @@ def uniform(key: int, counter: int) -> float:
 
 @jit
 def normal(key: int, counter: int) -> float:
-    """Standard normal: Box and Muller (1958), from the two halves of one draw; never beyond 6.8."""
-    bits = random_bits(key, counter)
-    first = (float(bits >> Bits(32)) + 0.5) * (1.0 / 4294967296.0)
-    second = float(bits & Bits(0xFFFFFFFF)) * (1.0 / 4294967296.0)
-    return math.sqrt(-2.0 * math.log(first)) * math.cos(2.0 * math.pi * second)
+    """Standard normal, from one draw; never beyond 4.9.
+
+    The sum of four 16-bit uniforms, bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off
+    by less than 0.007 up to 3.5. Without logarithm and cosine, so that a loop over rays vectorises.
+    """
+    bits, low = random_bits(key, counter), Bits(0xFFFF)
+    four = (bits & low) + ((bits >> Bits(16)) & low) + ((bits >> Bits(32)) & low) + (bits >> Bits(48))
+    u = float(np.int64(four)) * (1.0 / 65536.0) - 2.0 * 65535.0 / 65536.0
+    u2 = u * u
+    return u * (1.66182467 + u2 * (0.08163078 + u2 * (-0.02656002 + u2 * 0.01351341)))
 
 
 # --- what a lidar sees ------------------------------------------------------------------------------------
 
 
 class Segments(NamedTuple):
-    """Walls, sorted into blocks of neighbours, each within a circle; made by ``in_blocks``."""
+    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.blocks.in_blocks``."""
 
     ends: Floats
     """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
     starts: Integers
     """(blocks + 1): block k is ``ends[starts[k]:starts[k + 1]]``."""
-    circles: Floats
+    discs: Floats
     """(blocks, 3) ``x y radius``, each containing its block."""
 
 
@@ -265,31 +270,6 @@ class Beams(NamedTuple):
 
     cos: Floats
     sin: Floats
-
-
-def in_blocks(ends: Floats, size: int = 16) -> Segments:
-    """Walls ``(n, 4)`` as a lidar wants them: halved along the longer side until no block exceeds ``size``.
-
-    A scan then looks at a block only where some ray meets its circle; measured best at 8 to 32.
-    """
-    middles = 0.5 * (ends[:, :2] + ends[:, 2:])
-    blocks, waiting = [], [np.arange(len(ends))]
-    while waiting:
-        block = waiting.pop()
-        if len(block) <= size:
-            blocks.append(block)
-            continue
-        longer = int(np.argmax(np.ptp(middles[block], axis=0)))
-        block = block[np.argsort(middles[block, longer], kind="stable")]
-        waiting += [block[len(block) // 2 :], block[: len(block) // 2]]
-    starts = np.cumsum([0] + [len(block) for block in blocks], dtype=np.int64)
-    ordered = np.ascontiguousarray(ends[np.concatenate(blocks)], dtype=np.float64)
-    circles = np.zeros((len(blocks), 3))
-    for k in range(len(blocks) if len(ends) else 0):
-        points = ordered[starts[k] : starts[k + 1]].reshape(-1, 2)
-        circles[k, :2] = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        circles[k, 2] = np.hypot(*(points - circles[k, :2]).T).max()
-    return Segments(ordered, starts, circles)
 
 
 @jit
@@ -326,9 +306,9 @@ def meet_segment(
 @jit
 def meet_walls(x: float, y: float, cos: Singles, sin: Singles, walls: Segments, ranges: Singles) -> None:
     """Shortens every range to the nearest wall."""
-    for k in range(walls.circles.shape[0]):
-        cx, cy = Single(walls.circles[k, 0] - x), Single(walls.circles[k, 1] - y)
-        first, end = rays_meeting(cos, sin, cx, cy, Single(walls.circles[k, 2]), ranges)
+    for k in range(walls.discs.shape[0]):
+        cx, cy = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
+        first, end = rays_meeting(cos, sin, cx, cy, Single(walls.discs[k, 2]), ranges)
         if first >= end:
             continue
         near_cos, near_sin, near = cos[first:end], sin[first:end], ranges[first:end]
@@ -362,6 +342,15 @@ def meet_shapes(
 
 
 @jit
+def turn_beams(theta: float, beams: Beams, cos: Singles, sin: Singles) -> None:
+    """Fills ``cos``, ``sin`` with the rays' directions in the world, for a sensor that points to ``theta``."""
+    turn_cos, turn_sin = math.cos(theta), math.sin(theta)
+    for i in range(beams.cos.shape[0]):
+        cos[i] = turn_cos * beams.cos[i] - turn_sin * beams.sin[i]
+        sin[i] = turn_sin * beams.cos[i] + turn_cos * beams.sin[i]
+
+
+@jit
 def scan(
     pose: tuple[float, float, float],
     beams: Beams,
@@ -378,11 +367,8 @@ def scan(
     sensor is not seen. Rays are the inner loop, for there vector instructions take 4 to 16 at once.
     """
     x, y, theta = pose
-    turn_cos, turn_sin = math.cos(theta), math.sin(theta)
     cos, sin = np.empty_like(ranges), np.empty_like(ranges)
-    for i in range(ranges.shape[0]):
-        cos[i] = turn_cos * beams.cos[i] - turn_sin * beams.sin[i]
-        sin[i] = turn_sin * beams.cos[i] + turn_cos * beams.sin[i]
+    turn_beams(theta, beams, cos, sin)
     far = Single(reach)
     ranges[:] = far
     meet_walls(x, y, cos, sin, walls, ranges)
@@ -436,18 +422,17 @@ def place_shapes(
 
 def warm() -> None:
     """Compiles, or loads from disk, what the interactive world calls: seconds the first time, then moments."""
-    ranges = np.ones(2, dtype=np.float32)
-    walls = in_blocks(np.array([[1.0, -1.0, 1.0, 1.0]]))
-    none, ints = np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
-    shapes = Shapes(np.zeros((0, 3)), ints, none, np.zeros(1, dtype=np.int64), ints)
+    ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
+    walls = Segments(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
+    shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
     scan((0.0, 0.0, 0.0), Beams(np.ones(2), np.zeros(2)), 2.0, walls, shapes, 1, ranges)
     add_noise(ranges, 0.0, 1, 0)
-    place_shapes(np.zeros((1, 3)), ints, ints, shapes, shapes)
+    place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     sector_minima(ranges, 2.0, np.zeros(1))
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
     tricycle_twist(1.0, 0.0, 1.0)
     limited_speed(0.0, 1.0, 1.0, 1.0, 1.0, 0.1)
+    point_polygon(2.0, 0.0, corners)
     normal(1, 0)
     uniform(1, 0)
-    point_polygon(2.0, 0.0, np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from kit import kernels
+from kit.blocks import in_blocks
 
 FAR = np.float32(10)
 NOTHING = kernels.Shapes(
@@ -225,7 +226,7 @@ def test_a_scan_is_exact(count: int) -> None:
     ends = walls(count)
     angles = np.linspace(-3, 3, 37)
     ranges = np.empty(37, dtype=np.float32)
-    kernels.scan((0.5, -1.0, 0.7), beams(*angles), 6.0, kernels.in_blocks(ends), NOTHING, 1, ranges)
+    kernels.scan((0.5, -1.0, 0.7), beams(*angles), 6.0, in_blocks(ends), NOTHING, 1, ranges)
     expected = [plainly(0.5, -1.0, 0.7 + angle, ends, 6.0) for angle in angles]
     assert ranges == pytest.approx(np.array(expected), abs=1e-5, nan_ok=True)
 
@@ -233,9 +234,9 @@ def test_a_scan_is_exact(count: int) -> None:
 def test_blocks_never_change_what_is_seen() -> None:
     ends = walls(1000, seed=4)
     angles = np.linspace(-math.pi, math.pi, 181)
-    whole = kernels.in_blocks(ends, size=1000)
+    whole = in_blocks(ends, size=1000)
     for size in (1, 7, 16, 64):
-        blocks = kernels.in_blocks(ends, size)
+        blocks = in_blocks(ends, size)
         assert sorted(map(tuple, blocks.ends)) == sorted(map(tuple, ends))
         for x, y in np.random.default_rng(size).uniform(-9, 9, (50, 2)):
             one, other = np.empty((2, 181), dtype=np.float32)
@@ -249,8 +250,8 @@ def test_far_from_the_origin_it_is_as_exact() -> None:
     ends = walls(50)
     near, far = np.empty((2, 19), dtype=np.float32)
     rays = beams(*np.linspace(-3, 3, 19))
-    kernels.scan((0.0, 0.0, 0.0), rays, 6.0, kernels.in_blocks(ends), NOTHING, 1, near)
-    moved = kernels.in_blocks(ends + 1e6)
+    kernels.scan((0.0, 0.0, 0.0), rays, 6.0, in_blocks(ends), NOTHING, 1, near)
+    moved = in_blocks(ends + 1e6)
     kernels.scan((1e6, 1e6, 0.0), rays, 6.0, moved, NOTHING, 1, far)
     assert far == pytest.approx(near, abs=1e-5, nan_ok=True)
 
@@ -263,7 +264,7 @@ def test_shapes_hide_walls_by_their_layers_but_not_around_the_sensor() -> None:
         np.array([0, 4, 8]),
         np.array([2, 7]),
     )
-    room = kernels.in_blocks(np.array([[-5.0, 5, 5, 5], [5, 5, 5, -5]]))
+    room = in_blocks(np.array([[-5.0, 5, 5, 5], [5, 5, 5, -5]]))
     seen = {}
     for bits in (1, 2, 3, 4):
         ranges = np.empty(2, dtype=np.float32)

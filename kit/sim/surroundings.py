@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit import kernels
+from kit.blocks import in_blocks
 from kit.geometry import Pose
 from kit.sim.bodies import PhysicalBody, Rigid
 from kit.sim.physics import Physics
@@ -61,6 +62,8 @@ class _Visible:
     """Every footprint that a laser could see: in the frames of the bodies that carry them, and in the world."""
 
     rigids: tuple[Rigid, ...]
+    poses: NDArray[np.float64]
+    """(rigids, 3) ``x y theta``."""
     circle_rigid: NDArray[np.int64]
     corner_rigid: NDArray[np.int64]
     local: kernels.Shapes
@@ -106,7 +109,7 @@ class Surroundings:
     def _walls_with(self, bits: int, among: int) -> kernels.Segments:
         if (bits, among) not in self._walls:
             ends = [w.ends for w in self._physics.walls if w.bits & bits and w.bits & among]
-            self._walls[bits, among] = kernels.in_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
+            self._walls[bits, among] = in_blocks(np.concatenate([np.zeros((0, 4)), *ends]))
         return self._walls[bits, among]
 
     def _refresh(self) -> None:
@@ -119,8 +122,9 @@ class Surroundings:
             self._walls = {}
             self._visible = _visible(self._physics.bodies)
         seen = self._visible
-        poses = np.array([rigid.pose for rigid in seen.rigids]).reshape(-1, 3)
-        kernels.place_shapes(poses, seen.circle_rigid, seen.corner_rigid, seen.local, seen.world)
+        for i, rigid in enumerate(seen.rigids):
+            seen.poses[i] = rigid.pose
+        kernels.place_shapes(seen.poses, seen.circle_rigid, seen.corner_rigid, seen.local, seen.world)
 
 
 def _visible(bodies: Iterable[PhysicalBody]) -> _Visible:
@@ -151,6 +155,7 @@ def _visible(bodies: Iterable[PhysicalBody]) -> _Visible:
     world = local._replace(circles=local.circles.copy(), corners=local.corners.copy())
     return _Visible(
         tuple(rigids),
+        np.zeros((len(rigids), 3)),
         np.array(circle_rigid, dtype=np.int64),
         np.array(corner_rigid, dtype=np.int64),
         local,

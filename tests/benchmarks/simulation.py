@@ -1,0 +1,175 @@
+"""What the simulated world costs: ``python tests/benchmarks/simulation.py``.
+
+The dissertation's robot drives in a circle and scans with 91 rays at every step, in the maze and among 5,000
+wall segments; the same is done in the plain way, with pymunk's own step and one segment query per ray, without
+messages and devices. Then a world as large as Flatland's limits allow: 16 layers, 50 robots with lasers and bumpers, and
+5,000 segments. Every figure is the best of ``REPEATS``.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import pymunk
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT))
+
+from kit import kernels
+from kit.geometry import Pose
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.sim.loading import load, load_model
+from kit.sim.plugins.laser import LaserParams
+from kit.sim.simulation import Simulation
+from kit.world.records import Layer, Model, Place, Polygon, Walls, World
+
+REPEATS = 15
+RAYS, REACH = 91, 10.0
+STEP = 0.01
+FORWARD, TURN = 0.2, 1.0
+"""A circle of 0.2 m radius."""
+
+HERE = Path(__file__)
+SERP = ROOT / "maps" / "robots" / "serp.model.yaml"
+
+
+def pillars(count: int, size: float = 16.0) -> np.ndarray:
+    """(4 * count, 4): small square pillars in a square hall, none within half a metre of the middle."""
+    rng = np.random.default_rng(0)
+    centers = rng.uniform(-size / 2, size / 2, (4 * count, 2))
+    centers = centers[np.abs(centers).max(axis=1) > 0.6][:count]
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 0.04
+    points = centers[:, None] + corners
+    return np.concatenate([points, np.roll(points, -1, axis=1)], axis=2).reshape(-1, 4)
+
+
+def walled(ends: np.ndarray, names: tuple[str, ...], bits: int) -> Layer:
+    walls = Walls(local=ends, origin=Pose(), file=HERE, source=HERE)
+    return Layer(names, bits, (1, 1, 1, 1), walls, MappingProxyType({}), Place(HERE))
+
+
+def hall(count: int) -> World:
+    """One robot in the middle of a hall of pillars."""
+    bits = {"solid": 1, "seen": 2}
+    world = World(HERE, (walled(pillars(count), ("solid", "seen"), 3),), layer_bits=MappingProxyType(bits))
+    return replace(world, models=(load_model(SERP, world, name="serp", namespace="", pose=Pose()),))
+
+
+def scanning(world: World) -> World:
+    """The same, but every laser scans at every step."""
+
+    def always(model: Model) -> Model:
+        plugins = (
+            replace(spec, params=replace(spec.params, rate=math.inf))
+            if isinstance(spec.params, LaserParams)
+            else spec
+            for spec in model.plugins
+        )
+        return replace(model, plugins=tuple(plugins))
+
+    return replace(world, models=tuple(map(always, world.models)))
+
+
+def per_second(advance: Callable[[int], object], steps: int) -> float:
+    """Steps per second of the best of a few runs."""
+    advance(20)
+    best = math.inf
+    for _ in range(REPEATS):
+        start = time.perf_counter()
+        advance(steps)
+        best = min(best, time.perf_counter() - start)
+    return steps / best
+
+
+def ours(world: World) -> Callable[[int], object]:
+    simulation = Simulation(world, wanted=lambda topic: topic.endswith("laser"))
+    simulation.accept("/cmd_vel", Twist(linear=Vector3(x=FORWARD), angular=Vector3(z=TURN)))
+    return simulation.step
+
+
+def plain(world: World) -> Callable[[int], object]:
+    """pymunk alone: walls, the robot, and a segment query for every ray."""
+    space = pymunk.Space()
+    for layer in world.layers:
+        for x1, y1, x2, y2 in layer.walls.segments.tolist() if layer.walls else ():
+            space.add(pymunk.Segment(space.static_body, (x1, y1), (x2, y2), 0))
+    model = next(model for model in world.models if model.name == "serp")
+    body = pymunk.Body()
+    for footprint in model.bodies[0].footprints:
+        assert isinstance(footprint.shape, Polygon)
+        shape = pymunk.Poly(body, footprint.shape.points)
+        shape.density = 1
+        shape.filter = pymunk.ShapeFilter(categories=2)
+        space.add(*([] if body.space else [body]), shape)
+    body.angle = model.pose.theta
+    body.position = model.pose.x, model.pose.y
+    others = pymunk.ShapeFilter(mask=pymunk.ShapeFilter.ALL_MASKS() ^ 2)
+    angles = np.linspace(-math.pi, math.pi, RAYS)
+
+    def drive(body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
+        body.velocity = pymunk.Vec2d(FORWARD, 0).rotated(body.angle)
+        body.angular_velocity = TURN
+
+    body.velocity_func = drive
+
+    def advance(steps: int) -> None:
+        for _ in range(steps):
+            x, y = body.position
+            ranges = []
+            for angle in (angles + body.angle).tolist():
+                end = (x + REACH * math.cos(angle), y + REACH * math.sin(angle))
+                hit = space.segment_query_first((x, y), end, 0, others)
+                ranges.append(REACH * hit.alpha if hit else math.nan)
+            space.step(STEP)
+
+    return advance
+
+
+def crowd() -> World:
+    """16 layers with 5,000 segments between them, and 50 robots in them, each scanning ten times a second."""
+    names = [f"layer{i}" for i in range(16)]
+    bits = MappingProxyType({name: 1 << i for i, name in enumerate(names)} | {"solid": 1, "seen": 2})
+    parts = np.array_split(pillars(1250), 16)
+    layers = tuple(
+        walled(ends, (name,), 1 << i) for i, (name, ends) in enumerate(zip(names, parts, strict=True))
+    )
+    world = World(HERE, layers, layer_bits=bits)
+    places = [Pose(-4.0 + 0.9 * (i % 10), -2.0 + 0.9 * (i // 10), float(i)) for i in range(50)]
+    return replace(
+        world,
+        models=tuple(
+            load_model(SERP, world, name=f"robot{i}", namespace=f"robot{i}", pose=pose)
+            for i, pose in enumerate(places)
+        ),
+    )
+
+
+def real_time_factor(world: World) -> float:
+    simulation = Simulation(world)
+    for model in world.models:
+        simulation.accept(f"/{model.name}/cmd_vel", Twist(linear=Vector3(x=0.5), angular=Vector3(z=0.3)))
+    return per_second(simulation.step, 50) * STEP
+
+
+def main() -> None:
+    start = time.perf_counter()
+    kernels.warm()
+    print(f"compiled code ready: {time.perf_counter() - start:.2f} s")
+    maze = load(ROOT / "maps" / "maze" / "world.yaml", root=ROOT / "maps")
+    for name, world, steps in (("maze", maze, 2000), ("5,000 segments", hall(1250), 1000)):
+        fast, slow = per_second(ours(scanning(world)), steps), per_second(plain(world), steps // 20)
+        print(
+            f"{name}, 91 rays at every step: {fast:,.0f} steps/s; plain pymunk: {slow:,.0f}; {fast / slow:.1f} times"
+        )
+    print(f"16 layers, 50 robots, 5,000 segments: {real_time_factor(crowd()):.1f} times real time")
+
+
+if __name__ == "__main__":
+    main()
