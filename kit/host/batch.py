@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Any, Self
 
 from kit.host import verdicts
 from kit.host.confine import DESK_LEVEL, Level
@@ -15,7 +16,10 @@ from kit.host.launcher import Child
 from kit.host.limits import DESK, Limits
 from kit.host.output import Printed
 from kit.host.protocol import Functions, Values
-from kit.host.wire import Json
+from kit.host.wire import Json, numbers_to_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class StudentFunctions:
@@ -59,15 +63,30 @@ class StudentFunctions:
     def call(self, name: str, batch: Sequence[Mapping[str, Json]]) -> list[float]:
         """``name(**record)`` for each record, in order: as many finite numbers.
 
-        Records hold plain data: None, truth values, finite numbers, texts, lists and dicts of these
-        (ValueError or TypeError otherwise: that is the caller's mistake).
+        All records have the same names. They hold plain data: None, truth values, numbers, texts, lists and
+        dicts of these. ValueError or TypeError otherwise: that is the caller's mistake.
         """
+        names = batch[0].keys() if batch else ()
+        if any(record.keys() != names for record in batch):
+            raise ValueError("the records of a batch must all have the same names")
+        return list(self._call(name, len(batch), {key: [record[key] for record in batch] for key in names}))
+
+    def call_columns(self, name: str, columns: Mapping[str, Sequence[Json] | NDArray[Any]]) -> array[float]:
+        """Like ``call``, with one sequence or one-dimensional array for each parameter, all equally long."""
+        lengths = {len(column) for column in columns.values()}
+        if len(lengths) != 1:
+            raise ValueError("columns must be equally long, and there must be at least one")
+        return self._call(name, lengths.pop(), columns)
+
+    def _call(
+        self, name: str, count: int, columns: Mapping[str, Sequence[Json] | NDArray[Any]]
+    ) -> array[float]:
         if name not in self.names:
             raise GuestError(self._missing(name))
-        answer = self._child.ask("call", name, [dict(record) for record in batch])
-        if not isinstance(answer, Values) or len(answer.values) != len(batch):
-            self.close()
-            raise GuestError(verdicts.nonsense(f"something else than {len(batch)} numbers"))
+        packed = {key: _packed(column) for key, column in columns.items()}
+        answer = self._child.ask("call", name, count, packed)
+        if not isinstance(answer, Values) or len(answer.values) != count:
+            raise self._child.condemn(verdicts.nonsense(f"something else than {count} numbers"))
         return answer.values
 
     def take_output(self) -> Printed:
@@ -82,3 +101,13 @@ class StudentFunctions:
         near = get_close_matches(name, self.names, n=1)
         hint = f" Is it the one that is called {near[0]}?" if near else ""
         return Failure(FailureKind.IMPORT, f"there is no function {name}() in it.{hint}", self.file.name)
+
+
+def _packed(column: Sequence[Json] | NDArray[Any]) -> Json:
+    """A column as it travels: floats as the text of their bytes, anything else as a list."""
+    # Not isinstance against numpy.ndarray, which would have to import numpy.
+    if not isinstance(column, Sequence):
+        column = array("d", column.astype("d").tobytes()) if column.dtype.kind == "f" else column.tolist()
+    elif all(type(value) is float for value in column):
+        column = array("d", column)
+    return numbers_to_text(column) if isinstance(column, array) else column

@@ -7,11 +7,10 @@ which JSON has no sign for, is one of the words ``nan``, ``inf`` and ``-inf``.
 
 from __future__ import annotations
 
-import binascii
 import math
-import sys
 from array import array
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from kit.host import wire
@@ -27,9 +26,6 @@ MAY_BE_INFINITE: Final = frozenset(
     }
 )
 """Fields in which a student's message may hold NaN or infinity: readings beyond range (REP 117)."""
-
-MAX_ENTRIES: Final = 200_000
-"""Numbers in one array of a student's message."""
 
 Pack = Callable[[Any], Json]
 Unpack = Callable[[Json], Any]
@@ -114,22 +110,16 @@ def _number_or_word(value: float) -> Json:
     return value if value - value == 0 else repr(value)
 
 
+def _numbers_to_text(values: Any) -> str:
+    if type(values) is not array:  # a fixed one that somebody has looked at: numpy's
+        values = array(values.dtype.char, values.tobytes())
+    return wire.numbers_to_text(values)
+
+
 def _finite_numbers_to_text(values: Any) -> str:
     if not all(map(math.isfinite, values)):
         raise NotFiniteError("")
     return _numbers_to_text(values)
-
-
-def _numbers_to_text(values: Any) -> str:
-    if sys.byteorder == "big":
-        values = values.byteswap() if hasattr(values, "dtype") else _swapped(values)
-    return binascii.b2a_base64(values.tobytes(), newline=False).decode("ascii")
-
-
-def _swapped(values: array[Any]) -> array[Any]:
-    copy = values[:]
-    copy.byteswap()
-    return copy
 
 
 def _unpacker(cls: type[Message], strict: bool) -> Unpack:
@@ -140,7 +130,7 @@ def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     ]
 
     def unpack(content: Json) -> Any:
-        values = wire.array(content, len(names))
+        values = wire.items(content, len(names))
         try:
             return cls(**{name: step(value) for name, step, value in zip(names, steps, values, strict=True)})
         except FieldError as problem:
@@ -153,12 +143,12 @@ def _unpacker_of(kind: Kind, strict: bool, finite: bool) -> Unpack:
     if isinstance(kind, Nested):
         return _unpacker(kind.cls, strict)
     if isinstance(kind, Fixed):
-        return _numbers(kind.item.code, finite)
+        return partial(wire.text_to_numbers, code=kind.item.code, finite=finite)
     if isinstance(kind, Many):
         if kind.code:
-            return _numbers(kind.code, finite)
+            return partial(wire.text_to_numbers, code=kind.code, finite=finite)
         item = _unpacker_of(kind.item, strict, finite)
-        return lambda content: [item(value) for value in wire.array(content)]
+        return lambda content: [item(value) for value in wire.items(content)]
     assert isinstance(kind, Scalar)
     if kind.python is float:
         return wire.number if finite else _any_number
@@ -181,27 +171,6 @@ def _truth(content: Json) -> bool:
 
 def _words(content: Json) -> str:
     """Text as it is: a message may hold line breaks. Whoever shows it makes it printable."""
-    if type(content) is not str or len(content) > MAX_ENTRIES:
-        raise ProtocolError(f"not a text of at most {MAX_ENTRIES} characters")
+    if type(content) is not str or len(content) > wire.MAX_NUMBERS:
+        raise ProtocolError(f"not a text of at most {wire.MAX_NUMBERS} characters")
     return content.encode("utf-8", "replace").decode("utf-8")
-
-
-def _numbers(code: str, finite: bool) -> Unpack:
-    finite_check = code in "fd" and finite
-    size = array(code).itemsize
-
-    def unpack(content: Json) -> array[Any]:
-        if type(content) is not str or len(content) > MAX_ENTRIES * size * 4 // 3 + 4:
-            raise ProtocolError(f"not an array of at most {MAX_ENTRIES} numbers")
-        values = array(code)
-        try:
-            values.frombytes(binascii.a2b_base64(content, strict_mode=True))
-        except ValueError:
-            raise ProtocolError("an array that is not whole numbers of bytes in base64") from None
-        if sys.byteorder == "big":
-            values.byteswap()
-        if finite_check and not all(map(math.isfinite, values)):
-            raise ProtocolError("an array with a number that is not finite")
-        return values
-
-    return unpack

@@ -20,7 +20,7 @@ from kit.host.limits import DESK, Limits
 from kit.host.output import Printed
 from kit.host.protocol import Ended, Event, Frame, Reply
 from kit.host.remote import Census, Mirror, RemoteClient
-from kit.host.wire import Json, ProtocolError, array, integer
+from kit.host.wire import Json, ProtocolError, integer, items
 from kit.msg.message import Message
 from kit.ros.graph import Graph
 from kit.ros.publisher import Publisher
@@ -179,7 +179,7 @@ class Guest:
             self._census.seen()
 
     def _hear_message(self, event: Event) -> None:
-        identity, content = array(event.fields, 2)
+        identity, content = items(event.fields, 2)
         publisher = self._mirror.end(identity, Publisher)
         message = self._codec.unpack(publisher.msg_type, content)
         # Among themselves the student's nodes have heard it already.
@@ -190,12 +190,12 @@ class Guest:
             self._speaking = False
 
     def _hear_request(self, event: Event) -> None:
-        identity, number, content = array(event.fields, 3)
+        identity, number, content = items(event.fields, 3)
         client = self._mirror.end(identity, RemoteClient)
         client.ask(integer(number), self._codec.unpack(client.srv_type.Request, content))
 
     def _hear_response(self, event: Event) -> None:
-        identity, number, content = array(event.fields, 3)
+        identity, number, content = items(event.fields, 3)
         service = self._mirror.end(identity, Service)
         asked = self._asked.pop(integer(number), None)
         if asked is None or asked.service != identity:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import sys
 import tempfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import Final
 
 from kit.host import landlock
 from kit.host.batch import StudentFunctions
@@ -50,9 +53,11 @@ def _limits() -> str:
     return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
 
 
-_MEANS = {
-    Level.LIMITED: _limits,
-    Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
-    Level.SEPARATE: lambda: "namespaces: no other process, no network and no other file exists for it",
-    Level.ANOTHER_USER: lambda: "a user of its own for every run",
-}
+_MEANS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
+    {
+        Level.LIMITED: _limits,
+        Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
+        Level.SEPARATE: lambda: "namespaces: no other process, no network and no other file exists for it",
+        Level.ANOTHER_USER: lambda: "a user of its own for every run",
+    }
+)

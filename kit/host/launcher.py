@@ -134,7 +134,7 @@ class Child:
                 self._unsent += encode(["start", 0, self._start])
                 self._start = {}
             elif isinstance(frame, Refused):
-                self._stop(verdicts.cannot_confine(self._level, frame.reason))
+                raise self.condemn(verdicts.cannot_confine(self._level, frame.reason))
             elif frame is not None:
                 self._answer = self._checked(frame)
             elif time.monotonic() >= self._deadline:
@@ -164,11 +164,12 @@ class Child:
         """What the program has printed since the last time."""
         return self._output.take()
 
-    def condemn(self, failure: Failure) -> None:
-        """Ends the child for this reason."""
+    def condemn(self, failure: Failure) -> GuestError:
+        """Ends the child for this reason; what to raise then."""
         self.failure = failure
         self._output.finish()
         self.close()
+        return GuestError(failure)
 
     def close(self) -> None:
         """Ends the child and everything that came out of it, and removes its folder. May be called twice."""
@@ -200,9 +201,9 @@ class Child:
                 if time.monotonic() >= deadline:
                     return None
         except ProtocolError as problem:
-            self._stop(verdicts.nonsense(str(problem)))
+            raise self.condemn(verdicts.nonsense(str(problem))) from None
         except (EOFError, ConnectionError):
-            self._stop(self._post_mortem())
+            raise self.condemn(self._post_mortem()) from None
 
     def _post_mortem(self) -> Failure:
         """Why the child is gone, after its last words."""
@@ -215,10 +216,6 @@ class Child:
 
     def _where(self) -> Position | None:
         return self._output.position(str(self._file.parent))
-
-    def _stop(self, failure: Failure) -> NoReturn:
-        self.condemn(failure)
-        raise GuestError(failure)
 
     def _send(self) -> None:
         if not self._unsent:
@@ -254,9 +251,9 @@ class Child:
     def _checked(self, frame: Frame) -> Frame:
         """An answer to what was asked last."""
         if isinstance(frame, (Confined, Refused)) or frame.seq != self._seq:
-            self._stop(verdicts.nonsense("an answer to a question that was not asked"))
+            raise self.condemn(verdicts.nonsense("an answer to a question that was not asked"))
         if isinstance(frame, Failed):
-            self._stop(verdicts.told(frame.failure, self._limits))
+            raise self.condemn(verdicts.told(frame.failure, self._limits))
         if isinstance(frame, Ended):
             self.close()
         return frame
@@ -282,7 +279,7 @@ class Child:
         deadline = time.monotonic() + DUMP_S
         while self._where() is None and time.monotonic() < deadline:
             self._drain_until(time.monotonic() + DUMP_S / 10)
-        self._stop(verdicts.too_slow(which, limit_s, self._where()))
+        raise self.condemn(verdicts.too_slow(which, limit_s, self._where()))
 
 
 def _program(file: Path) -> dict[str, Json]:

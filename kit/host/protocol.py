@@ -8,20 +8,21 @@ anything else is ended.
     setup  (how to lock itself in)               confined level, or refused reason
     start  0 ...                                 reply 0 ..., or functions 0 ...
     tick   n, time, events                       reply n, wake time, events
-    call   n, function, batch                    values n, numbers
+    call   n, function, count, columns           values n, numbers
                                                  ended n, events        the program is over, as it wished
                                                  failed n, what, where  the program is over, by its own fault
 """
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from kit.host.failure import REPORTABLE, Failure
-from kit.host.wire import MAX_NAME, Json, ProtocolError, array, integer, number, shown, text
+from kit.host.wire import MAX_NAME, Json, ProtocolError, integer, items, shown, text, text_to_numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ class Values:
     """What a function returned for each record of a batch: finite numbers."""
 
     seq: int
-    values: list[float]
+    values: array[float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,11 +107,11 @@ def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
 
 
 def _functions(seq: Json, names: Json) -> Functions:
-    return Functions(integer(seq), tuple(text(name, MAX_NAME) for name in array(names)))
+    return Functions(integer(seq), tuple(text(name, MAX_NAME) for name in items(names)))
 
 
 def _values(seq: Json, values: Json) -> Values:
-    return Values(integer(seq), [number(value) for value in array(values)])
+    return Values(integer(seq), text_to_numbers(values, "d", finite=True))
 
 
 def _ended(seq: Json, events: Json) -> Ended:
@@ -129,8 +130,8 @@ def _failed(seq: Json, kind: Json, message: Json, file: Json, line: Json) -> Fai
 
 def _events(events: Json) -> tuple[Event, ...]:
     found = []
-    for event in array(events):
-        name, *fields = array(event) or [None]
+    for event in items(events):
+        name, *fields = items(event) or [None]
         found.append(Event(text(name, MAX_NAME), fields))
     return tuple(found)
 
@@ -150,7 +151,7 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
 
 def parse(content: Json) -> Frame:
     """The frame a child sent, every value checked. ProtocolError if there is anything wrong with it."""
-    name, *fields = array(content) or [None]
+    name, *fields = items(content) or [None]
     if type(name) is not str or name not in _FRAMES:
         raise ProtocolError(f"no such kind of frame: {shown(name)}")
     count, read = _FRAMES[name]

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
-from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, array, integer, text
+from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
 from kit.msg.interfaces import Interface, UnknownInterface, find_interface
 from kit.msg.message import Message, type_name
 from kit.msg.message import Service as Definition
@@ -184,16 +184,16 @@ class Mirror:
     def take_in(self, name: str, fields: list[Json]) -> None:
         """Notes what the other side tells of itself: ``node``, one of the endpoints, or ``gone``."""
         if name == "gone":
-            (identity,) = array(fields, 1)
+            (identity,) = items(fields, 1)
             self._forget(integer(identity))
         elif len(self._nodes) + len(self._ends) >= MOST:
             raise ProtocolError(f"more than {MOST} nodes, publishers, subscriptions, services and clients")
         elif name == "node":
-            self._add_node(*array(fields, 3))
+            self._add_node(*items(fields, 3))
         elif name in ("publisher", "subscription"):
-            self._add_topic_end(name, *array(fields, 5))
+            self._add_topic_end(name, *items(fields, 5))
         else:
-            self._add_service_end(name, *array(fields, 4))
+            self._add_service_end(name, *items(fields, 4))
 
     def clear(self) -> None:
         """Takes all of them out of the graph."""
@@ -356,7 +356,7 @@ def _words(end: End) -> list[Json]:
 
 
 def _read_qos(content: Json) -> QoSProfile:
-    history, depth, reliability, durability = (integer(value, 0, 10**6) for value in array(content, 4))
+    history, depth, reliability, durability = (integer(value, 0, 10**6) for value in items(content, 4))
     try:
         return QoSProfile(history=history, depth=depth, reliability=reliability, durability=durability)
     except ValueError:

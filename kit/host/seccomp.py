@@ -2,7 +2,7 @@
 
 Classic BPF through ``prctl``, so no library is needed. Threads, files (which Landlock governs) and numbers
 stay possible. A refused call gives EPERM, which Python shows as PermissionError at the student's own line.
-Numbers: arch/x86/entry/syscalls/syscall_64.tbl and include/uapi/asm-generic/unistd.h (aarch64).
+array: arch/x86/entry/syscalls/syscall_64.tbl and include/uapi/asm-generic/unistd.h (aarch64).
 """
 
 from __future__ import annotations

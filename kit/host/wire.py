@@ -6,9 +6,13 @@ type each: a number is no text, true is no number, and NaN is nothing at all.
 
 from __future__ import annotations
 
+import binascii
 import json
 import re
 import struct
+import sys
+from array import array
+from copy import copy
 from math import isfinite
 from typing import Any, Final, TypeAlias
 
@@ -21,12 +25,14 @@ LOST_PIPE: Final = 70
 MAX_DEPTH: Final = 24
 """Arrays in arrays: a message in an event in a frame needs ten at most."""
 MAX_ITEMS: Final = 1_000_000
+MAX_NUMBERS: Final = 1_000_000
+"""In one array."""
 MAX_TEXT: Final = 4_000
 """Characters of a line of log or of an error's text."""
 MAX_NAME: Final = 255
 """Characters of a topic, node, type, function or file name."""
 MAX_ID: Final = 2**53
-"""Numbers above are not exact in every JSON reader."""
+"""array above are not exact in every JSON reader."""
 
 
 class ProtocolError(Exception):
@@ -96,10 +102,34 @@ def text(value: Json, longest: int = MAX_TEXT) -> str:
     return printable(value)
 
 
-def array(value: Json, length: int | None = None) -> list[Json]:
+def items(value: Json, length: int | None = None) -> list[Json]:
     if type(value) is not list or (length is not None and len(value) != length):
         raise ProtocolError(f"not a list{'' if length is None else f' of {length}'}: {shown(value)}")
     return value
+
+
+def numbers_to_text(numbers: array[Any]) -> str:
+    """The bytes of an array of numbers (little-endian) in base64: exact, and quicker than decimal digits."""
+    if sys.byteorder == "big":
+        numbers = copy(numbers)
+        numbers.byteswap()
+    return binascii.b2a_base64(numbers.tobytes(), newline=False).decode("ascii")
+
+
+def text_to_numbers(value: Json, code: str, *, finite: bool) -> array[Any]:
+    """The array with this type code that ``numbers_to_text`` made a text of."""
+    numbers: array[Any] = array(code)
+    if type(value) is not str or len(value) > MAX_NUMBERS * numbers.itemsize * 4 // 3 + 4:
+        raise ProtocolError(f"not an array of at most {MAX_NUMBERS} numbers: {shown(value)}")
+    try:
+        numbers.frombytes(binascii.a2b_base64(value, strict_mode=True))
+    except ValueError:
+        raise ProtocolError("an array that is not whole numbers of bytes in base64") from None
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    if finite and code in "fd" and not all(map(isfinite, numbers)):
+        raise ProtocolError("an array with a number that is not finite")
+    return numbers
 
 
 def printable(value: str) -> str:

@@ -7,13 +7,17 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import struct
 import subprocess
 import textwrap
+import time
+from array import array
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from kit.controllers import find
 from kit.host import landlock, seccomp
 from kit.host.batch import StudentFunctions
 from kit.host.confine import Level
@@ -21,6 +25,8 @@ from kit.host.failure import FailureKind, GuestError
 from kit.host.guest import Guest
 from kit.host.ladder import Rung, highest, probe
 from kit.host.limits import MIB
+from kit.msg.geometry_msgs import Twist
+from kit.msg.sensor_msgs import LaserScan
 from kit.ros.graph import Graph
 from tests.host.conftest import LINUX, QUICK, Student
 
@@ -216,17 +222,14 @@ def test_honest_work_goes_on(student: Student, level: Level) -> None:
 
 
 def test_a_controller_runs_on_every_level(student: Student, level: Level) -> None:
-    from kit.controllers import shipped
-    from kit.msg.geometry_msgs import Twist
-    from kit.msg.sensor_msgs import LaserScan
-
-    (avoid,) = (item.file for item in shipped() if item.name == "avoid")
-    graph, commands = Graph(), []
+    avoid = find("avoid").file
+    graph = Graph()
+    commands: list[Twist] = []
     node = graph.create_node("world")
     node.create_subscription(Twist, "cmd_vel", commands.append, 10)
     scans = node.create_publisher(LaserScan, "static_laser", 10)
     with Guest.start(graph, avoid, limits=QUICK, level=level) as guest:
-        scans.publish(LaserScan(ranges=[3.0] * 91))
+        scans.publish(LaserScan(ranges=array("f", [3.0] * 91)))
         while graph.run_due() or guest.exchange():
             pass
         assert guest.failure is None
@@ -304,9 +307,11 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
                 threading.Thread(target=time.sleep, args=(5,), daemon=True).start()
         """
     limits = dataclasses.replace(QUICK, processes=16, memory=4096 * MIB)
-    with StudentFunctions(student(source), limits=limits, level=level) as functions:
-        with pytest.raises(GuestError, match="can't start new thread"):
-            functions.call("f", [{}])
+    with (
+        StudentFunctions(student(source), limits=limits, level=level) as functions,
+        pytest.raises(GuestError, match="can't start new thread"),
+    ):
+        functions.call("f", [{}])
 
 
 def test_the_ladder_says_what_is_missing() -> None:
@@ -413,8 +418,9 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
         return _interpret(code, number, audit, first)
 
     for name, numbers in seccomp.DENIED.items():
-        if numbers[column] is not None:
-            assert decide(numbers[column]) == 0x00050001, name
+        number = numbers[column]
+        if number is not None:
+            assert decide(number) == 0x00050001, name
     assert decide(seccomp.CLONE3) == 0x00050026
     assert decide(500) == 0x00050026
     assert decide(architecture.clone, 0x003D0F00) == allow  # what a new thread asks for
@@ -433,8 +439,6 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
 
 def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
     """Classic BPF, as far as the filter uses it."""
-    import struct
-
     data = struct.pack("<IIQ6Q", number, audit, 0, first, 0, 0, 0, 0, 0)
     instructions = list(struct.iter_unpack("=HBBI", code))
     accumulator = at = 0
@@ -457,8 +461,6 @@ def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
 @LINUX
 def test_the_cage_is_quick_to_close(student: Student) -> None:
     """Level 1 adds less than 20 ms to a start; measured as the best of several, and with room to spare."""
-    import time
-
     if landlock.abi() == 0:
         pytest.skip("no Landlock")
 

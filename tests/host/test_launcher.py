@@ -12,8 +12,11 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from kit.host.batch import StudentFunctions
@@ -34,7 +37,7 @@ def fail(file: Path, limits: Limits = QUICK) -> Failure:
 
 
 def _folders() -> set[str]:
-    return {name for name in os.listdir(tempfile.gettempdir()) if name.startswith("kit-")}
+    return {path.name for path in Path(tempfile.gettempdir()).glob("kit-*")}
 
 
 @pytest.fixture(autouse=True)
@@ -58,10 +61,9 @@ def test_functions_answer_in_order(student: Student) -> None:
     )
     with StudentFunctions(file, limits=QUICK) as functions:
         assert functions.names == ("reward",)
-        assert functions.call("reward", [{"x": 3, "y": 4}, {"x": 0.1, "y": 0.0, "collision": True}]) == [
-            5.0,
-            -0.9,
-        ]
+        batch: list[dict[str, Any]] = [{"x": 3, "y": 4, "collision": False}, {"x": 0.1, "y": 0.0, "collision": True}]
+        assert functions.call("reward", batch) == [5.0, -0.9]
+        assert functions.call("reward", [{"x": 6, "y": 8}]) == [10.0]
         assert functions.call("reward", []) == []
         assert functions.failure is None
 
@@ -147,11 +149,10 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
     file = student("import friend\n\n\ndef f():\n    return friend.deeper('{')")
     failure = fail(file)
     assert (failure.file, failure.line) == ("friend.py", 3)
-    with pytest.raises(GuestError), StudentFunctions(file, limits=QUICK) as functions:
-        try:
+    with StudentFunctions(file, limits=QUICK) as functions:
+        with pytest.raises(GuestError):
             functions.call("f", [{}])
-        finally:
-            shown = [line.text for line in functions.take_output().lines]
+        shown = [line.text for line in functions.take_output().lines]
     assert any("work.py:5 in f: return friend.deeper('{')" in line for line in shown)
     assert not any("json/" in line for line in shown)
 
@@ -164,8 +165,7 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
         ("def f():\n  g()\ndef g():\n  sum(iter(int, 1))", (4,), "g()"),
         ("import signal\ndef f():\n  signal.signal(signal.SIGTERM, signal.SIG_IGN)\n  while 1: pass", (4,), "f()"),
         ("class Sticky:\n  def __del__(self):\n    while 1: pass\ndef f():\n  Sticky()", (3,), "__del__()"),
-        ("import signal\nfor n in set(range(1, 32)) - {9, 19}: signal.signal(n, signal.SIG_IGN)\n"
-         "def f():\n  while 1: pass", (None,), "the program"),
+        ("import signal\ndef f():\n  signal.signal(signal.SIGALRM, signal.SIG_IGN)\n  while 1: pass", (None,), "the program"),
         ("import re\ndef f():\n  re.match('(a+)+$', 'a' * 60 + 'b')", (3,), "f()"),
     ],
 )  # fmt: skip
@@ -250,13 +250,14 @@ def test_prints_arrive_with_the_answer_and_harmless(student: Student) -> None:
 
 
 PIPE = """
-import os, socket, struct, json
+import base64, os, socket, struct, json
 def pipe():
     for fd in range(3, 64):
         try:
-            os.getpeername if False else os.fstat(fd)
             if os.readlink(f"/proc/self/fd/{fd}").startswith("socket:"): return fd
         except OSError: pass
+def values(*numbers):
+    return base64.b64encode(struct.pack(f"<{len(numbers)}d", *numbers)).decode()
 def frame(content):
     data = json.dumps(content).encode()
     return struct.pack(">I", len(data)) + data
@@ -270,12 +271,12 @@ def frame(content):
         "os.write(pipe(), b'x' * 100)",
         "os.write(pipe(), struct.pack('>I', 2**31))",
         "os.write(pipe(), struct.pack('>I', 70_000) + b'[' * 70_000)",
-        "os.write(pipe(), frame(['values', 1, [99]]))",
-        "os.write(pipe(), frame(['values', 1, [99]]) * 2)",
-        "os.write(pipe(), frame(['values', 2, [99]]))",
-        "os.write(pipe(), frame(['values', 1, [1, 2, 3]])); os.pause if False else os.read(pipe(), 1)",
+        "os.write(pipe(), frame(['values', 1, values(99)]))",
+        "os.write(pipe(), frame(['values', 1, values(99)]) * 2)",
+        "os.write(pipe(), frame(['values', 2, values(99)]))",
+        "os.write(pipe(), frame(['values', 1, values(1, 2, 3)])); os.read(pipe(), 1)",
         "os.write(pipe(), struct.pack('>I', 20) + b'[' * 200 + b'NaN')",
-        "os.write(pipe(), frame(['values', 1, [float('nan')]])[:-1])",
+        "os.write(pipe(), frame(['values', 1, values(float('nan'))])[:-1])",
         "os.closerange(3, 64)",
         "socket.socket(fileno=pipe()).shutdown(socket.SHUT_RDWR)",
         "os.close(pipe())",
@@ -285,17 +286,19 @@ def test_a_broken_conversation_ends_it(student: Student, attack: str) -> None:
     """At worst a file forges the number that it may choose anyway; then its next answer is one too many."""
     file = student(f"{PIPE}\ndef f():\n    {attack}\n    return 1")
     before = _folders()
-    with pytest.raises(GuestError) as caught, StudentFunctions(file, limits=QUICK) as functions:
+    with StudentFunctions(file, limits=QUICK) as functions:
         for _ in range(3):
-            functions.call("f", [{}])
-    assert caught.value.failure.kind in (FailureKind.PROTOCOL, FailureKind.TIMEOUT)
+            with suppress(GuestError):
+                functions.call("f", [{}])
+        assert functions.failure is not None
+        assert functions.failure.kind in (FailureKind.PROTOCOL, FailureKind.TIMEOUT)
     assert _folders() == before
 
 
 @LINUX
 def test_bytes_that_dribble_do_not_extend_the_deadline(student: Student) -> None:
     file = student(
-        f"{PIPE}\ndef f():\n    import time\n    for byte in frame(['values', 1, [1]] + [0] * 99):\n"
+        f"{PIPE}\ndef f():\n    import time\n    for byte in frame(['values', 1, values(1)] + [0] * 99):\n"
         "        os.write(pipe(), bytes([byte])); time.sleep(0.1)"
     )
     began = time.monotonic()
@@ -472,10 +475,31 @@ def test_source_in_any_encoding_it_declares(student: Student) -> None:
 
 def test_records_must_be_plain(student: Student) -> None:
     with StudentFunctions(student("def f(x): return 1"), limits=QUICK) as functions:
-        for record in ({"x": float("nan")}, {"x": object()}):
+        for batch in (
+            [{"x": [float("nan")]}],
+            [{"x": object()}],
+            [{"x": 1}, {"y": 1}],
+            [{"x": 1}, {"x": 1, "y": 2}],
+        ):
             with pytest.raises((ValueError, TypeError)):
-                functions.call("f", [record])
-        assert functions.call("f", [{"x": [1, None, {"y": "z"}]}]) == [1.0]
+                functions.call("f", batch)
+        assert functions.call("f", [{"x": [1, None, {"y": "z"}]}, {"x": None}]) == [1.0, 1.0]
+        assert functions.call("f", [{"x": float("nan")}, {"x": float("inf")}]) == [1.0, 1.0]
+
+
+def test_columns_and_records_are_the_same(student: Student) -> None:
+    file = student("def f(x, hit, name='n'): return x + hit + len(name)")
+    x = np.linspace(0, 1, 50)
+    hit = x > 0.5
+    with StudentFunctions(file, limits=QUICK) as functions:
+        columns = functions.call_columns("f", {"x": x, "hit": hit})
+        records = functions.call("f", [{"x": float(a), "hit": bool(b)} for a, b in zip(x, hit, strict=True)])
+        assert list(columns) == records == [float(a) + bool(b) + 1 for a, b in zip(x, hit, strict=True)]
+        assert list(
+            functions.call_columns("f", {"x": np.array([0.5], "f"), "hit": [2], "name": ["abc"]})
+        ) == [5.5]
+        with pytest.raises(ValueError, match="equally long"):
+            functions.call_columns("f", {"x": x, "hit": hit[1:]})
 
 
 def test_a_batch_larger_than_the_pipe(student: Student) -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import copy
 import random
+from array import array
 
 import pytest
 
+from kit.host import wire
 from kit.host.failure import Failure, FailureKind
 from kit.host.protocol import Confined, Ended, Event, Failed, Functions, Refused, Reply, Values, parse
 from kit.host.wire import Json, ProtocolError
@@ -20,7 +22,7 @@ GOOD: list[tuple[list[Json], object]] = [
         Reply(3, 100, (Event("gone", [7]), Event("publish", [1, [0.5]]))),
     ),
     (["functions", 0, ["reward"]], Functions(0, ("reward",))),
-    (["values", 9, [1, 2.5]], Values(9, [1.0, 2.5])),
+    (["values", 9, wire.numbers_to_text(array("d", [1, 2.5]))], Values(9, array("d", [1.0, 2.5]))),
     (["ended", 2, []], Ended(2, ())),
     (
         ["failed", 2, "exception", "E: x", "a.py", 3],
@@ -53,11 +55,13 @@ def test_good_frames(content: list[Json], frame: object) -> None:
         ["reply", 1, None, None],
         ["reply", 1, None, [[]]],
         ["reply", 1, None, [[1]]],
-        ["values", 1, [True]],
-        ["values", 1, ["1"]],
-        ["values", 1, [None]],
-        ["values", 1, {"0": 1}],
-        ["values", 1, [float("inf")]],
+        ["values", 1, [1.0]],
+        ["values", 1, None],
+        ["values", 1, "AAAA"],
+        ["values", 1, "AAAAAAAA8D8"],
+        ["values", 1, "AAAAAAAA 8D8="],
+        ["values", 1, wire.numbers_to_text(array("d", [float("inf")]))],
+        ["values", 1, wire.numbers_to_text(array("d", [float("nan")]))],
         ["functions", 0, ["x" * 1000]],
         ["confined", 4],
         ["confined", "1"],

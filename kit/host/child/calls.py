@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from array import array
+from collections.abc import Iterator
+from itertools import repeat
 from types import FunctionType
 
 from kit.host.child.conversation import Conversation
 from kit.host.child.program import Program, shown
 from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.wire import Json
+from kit.host.wire import Json, numbers_to_text, text_to_numbers
 
 MODULE = "student"
 """The name of the module that the file becomes: no file of the library's may be hidden by it."""
@@ -22,13 +25,25 @@ def serve(program: Program, conversation: Conversation) -> None:
     }
     conversation.answer("functions", sorted(functions))
     while True:
-        _, name, batch = conversation.next_question()
-        conversation.answer("values", _values(functions[name], batch, program))
+        _, name, count, columns = conversation.next_question()
+        values = _values(functions[name], _records(count, columns), program)
+        conversation.answer("values", numbers_to_text(values))
 
 
-def _values(function: FunctionType, batch: list[dict[str, Json]], program: Program) -> list[float]:
-    values = []
-    for record in batch:
+def _records(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:
+    """The rows of a table that came as columns; columns of floats came as text."""
+    lists = [
+        text_to_numbers(column, "d", finite=False) if type(column) is str else column
+        for column in columns.values()
+    ]
+    names = tuple(columns)
+    for row in zip(*lists, strict=True) if names else repeat((), count):
+        yield dict(zip(names, row, strict=True))
+
+
+def _values(function: FunctionType, records: Iterator[dict[str, Json]], program: Program) -> array[float]:
+    values = array("d")
+    for record in records:
         value = function(**record)
         number = value if type(value) is float else _number(value)
         if number is None or number - number != 0:
