@@ -6,32 +6,21 @@ key that reaches a student's node in one tick moves the wheels in the same tick,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from types import MappingProxyType, TracebackType
-from typing import Final, NamedTuple, Self
+from types import TracebackType
+from typing import Self
 
 from kit.host import verdicts
-from kit.host.codec import Codec
 from kit.host.confine import DESK_LEVEL, Level
+from kit.host.delegation import Delegation
 from kit.host.failure import Failure, GuestError
 from kit.host.launcher import Child
 from kit.host.limits import DESK, Limits
 from kit.host.output import Printed
-from kit.host.protocol import Ended, Event, Frame, Reply
-from kit.host.remote import Census, Mirror, RemoteClient
-from kit.host.wire import Json, ProtocolError, integer, items
-from kit.msg.message import Message
+from kit.host.protocol import Ended, Frame, Reply
+from kit.host.wire import ProtocolError
 from kit.ros.graph import Graph
-from kit.ros.publisher import Publisher
-from kit.ros.service import Call, Service
-
-
-class _Asked(NamedTuple):
-    """A request to one of the student's services that waits for its answer."""
-
-    service: int
-    call: Call
 
 
 class Guest:
@@ -55,19 +44,14 @@ class Guest:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``."""
         self.file = file
         self._graph = graph
-        self._inbox: list[list[Json]] = []
-        self._asked: dict[int, _Asked] = {}
-        self._codec = Codec(in_child=False)
-        self._mirror = Mirror(graph, self)
-        self._census = Census(graph, self._mirror)
-        self._speaking = False
+        self._delegation = Delegation(graph)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
         self._first: Frame | None = None
         self._joined = False
         self.has_ended = False
         """Whether the program has come to its own end."""
-        begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._census.news()}
+        begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._delegation.news()}
         self._child = Child("node", file, begin, limits=limits, level=level)
 
     @classmethod
@@ -137,18 +121,18 @@ class Guest:
         now = self._graph.now_ns
         # Not twice at one time for the time's sake: what wants to go on at once would go on for ever.
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._now_ns
-        is_due = self._inbox or has_woken or now < self._now_ns or self._census.has_news
+        is_due = self._delegation.has_news or has_woken or now < self._now_ns
         if not is_due or not self.is_running:
             return False
         self._now_ns = now
-        events, self._inbox = [*self._census.news(), *self._inbox], []
+        events = self._delegation.fetch()
         self._attend(lambda: self._child.ask("tick", now, events))
         return True
 
     def close(self) -> None:
         """Takes the nodes out of the graph and ends the process. May be called twice."""
         self._joined = False
-        self._mirror.clear()
+        self._delegation.clear()
         self._child.close()
 
     def _attend(self, answer: Callable[[], Frame | None]) -> None:
@@ -157,76 +141,13 @@ class Guest:
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
-            with self._graph.lock:
-                for event in frame.events:
-                    _HEARD.get(event.name, Guest._hear_news)(self, event)
+            self._delegation.take_in(frame.events)
             self._wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
             if isinstance(frame, Ended):
                 self.has_ended = True
-                self._mirror.clear()
+                self._delegation.clear()
         except ProtocolError as problem:
             self._child.condemn(verdicts.nonsense(str(problem)))
-            self._mirror.clear()
+            self._delegation.clear()
         except GuestError:
-            self._mirror.clear()
-
-    # What the student's nodes say
-
-    def _hear_news(self, event: Event) -> None:
-        unchanged = not self._census.has_news
-        self._mirror.take_in(event.name, event.fields)
-        if unchanged:
-            self._census.seen()
-
-    def _hear_message(self, event: Event) -> None:
-        identity, content = items(event.fields, 2)
-        publisher = self._mirror.end(identity, Publisher)
-        message = self._codec.unpack(publisher.msg_type, content)
-        # Among themselves the student's nodes have heard it already.
-        self._speaking = True
-        try:
-            publisher.hand_over(message)
-        finally:
-            self._speaking = False
-
-    def _hear_request(self, event: Event) -> None:
-        identity, number, content = items(event.fields, 3)
-        client = self._mirror.end(identity, RemoteClient)
-        client.ask(integer(number), self._codec.unpack(client.srv_type.Request, content))
-
-    def _hear_response(self, event: Event) -> None:
-        identity, number, content = items(event.fields, 3)
-        service = self._mirror.end(identity, Service)
-        asked = self._asked.pop(integer(number), None)
-        if asked is None or asked.service != identity:
-            raise ProtocolError("a response to a request that was not made")
-        response = self._codec.unpack(service.srv_type.Response, content)
-        self._graph.tell_watchers(service.handle.node, service.service_name, response)
-        asked.call.client.arrive(asked.call.number, response)
-        self._graph.notify()
-
-    # What the student's nodes are told
-
-    def on_message(self, subscription: int, message: Message) -> None:
-        if not self._speaking:
-            self._inbox.append(["message", subscription, self._codec.pack(message)])
-
-    def on_request(self, service: int, call: Call) -> None:
-        number = self._graph.next_number()
-        self._asked[number] = _Asked(service, call)
-        self._inbox.append(["request", service, number, self._codec.pack(call.request)])
-
-    def on_response(self, client: int, number: int, response: Message) -> None:
-        self._inbox.append(["response", client, number, self._codec.pack(response)])
-
-    def on_discard(self, end: int) -> None:
-        self._inbox = [event for event in self._inbox if event[1] != end]
-
-
-_HEARD: Final[Mapping[str, Callable[[Guest, Event], None]]] = MappingProxyType(
-    {
-        "message": Guest._hear_message,
-        "request": Guest._hear_request,
-        "response": Guest._hear_response,
-    }
-)
+            self._delegation.clear()
