@@ -367,4 +367,4 @@ def _valid(check: Callable[[str], bool], name: str) -> None:
     try:
         check(name)
     except NameValidationException as problem:
-        raise ProtocolError(str(problem)) from None
+        raise ProtocolError(f"{name}: {problem.error_msg}") from None

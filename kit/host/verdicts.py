@@ -10,7 +10,7 @@ from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind
 from kit.host.limits import MIB, Limits
 from kit.host.output import Position
-from kit.host.wire import LOST_PIPE
+from kit.host.wire import LOST_PIPE, printable
 
 Budget: TypeAlias = Literal["start", "reply", "total"]
 
@@ -63,9 +63,8 @@ def told(failure: Failure, limits: Limits) -> Failure:
 
 def nonsense(what: str) -> Failure:
     """The child broke the protocol."""
-    return Failure(
-        FailureKind.PROTOCOL, f"the program disturbed its conversation with the kit, which got {what}."
-    )
+    message = f"the program disturbed its conversation with the kit, which got {what}."
+    return Failure(FailureKind.PROTOCOL, printable(message))
 
 
 def cannot_confine(level: Level, reason: str) -> Failure:

@@ -61,7 +61,10 @@ def test_functions_answer_in_order(student: Student) -> None:
     )
     with StudentFunctions(file, limits=QUICK) as functions:
         assert functions.names == ("reward",)
-        batch: list[dict[str, Any]] = [{"x": 3, "y": 4, "collision": False}, {"x": 0.1, "y": 0.0, "collision": True}]
+        batch: list[dict[str, Any]] = [
+            {"x": 3, "y": 4, "collision": False},
+            {"x": 0.1, "y": 0.0, "collision": True},
+        ]
         assert functions.call("reward", batch) == [5.0, -0.9]
         assert functions.call("reward", [{"x": 6, "y": 8}]) == [10.0]
         assert functions.call("reward", []) == []
