@@ -130,6 +130,22 @@ class TestSpinning:
         with pytest.raises(RuntimeError):
             node.context.shutdown()
 
+    def test_a_shutdown_from_outside_during_a_callback_raises_too(self, alone: Graph) -> None:
+        node = alone.create_node("node")
+        node.create_timer(0.001, node.context.end_from_outside)
+        with pytest.raises(ExternalShutdownException):
+            rclpy.spin(node)
+
+    def test_a_wait_with_a_deadline_ends_when_time_jumps_back(self, graph: Graph) -> None:
+        graph.advance(1_000_000 * MS)
+        node = graph.create_node("node")
+        thread = threading.Thread(target=rclpy.spin_once, args=(node,), kwargs={"timeout_sec": 1.0})
+        thread.start()
+        until(lambda: bool(graph.looks))
+        graph.advance(0)
+        thread.join(5)
+        assert not thread.is_alive()
+
     def test_a_shutdown_by_the_program_in_another_thread_just_ends_it(self, alone: Graph) -> None:
         node = alone.create_node("node")
         threading.Timer(0.02, node.context.shutdown).start()

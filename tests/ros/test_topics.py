@@ -87,8 +87,15 @@ class TestQueues:
         node.create_subscription(Int32, "x", lambda message: heard.append(message.data), 3)
         for number in range(10):
             publisher.publish(Int32(data=number))
-        graph.run_due()
+        assert graph.run_due() == 3
         assert heard == [7, 8, 9]
+
+    def test_a_full_queue_does_not_hold_up_the_line(self, graph: Graph, node: Node) -> None:
+        publisher = node.create_publisher(Int32, "x", 10)
+        node.create_subscription(Int32, "x", lambda message: None, 2)
+        for number in range(100):
+            publisher.publish(Int32(data=number))
+        assert len(graph.agenda.ready) == 2
 
     def test_keep_all_keeps_all(self, graph: Graph, node: Node) -> None:
         heard: list[int] = []

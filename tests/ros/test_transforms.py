@@ -151,6 +151,13 @@ class TestFrames:
         assert newest.header.stamp == Stamp(sec=3)
         assert (newest.header.frame_id, newest.child_frame_id) == ("odom", "laser")
 
+    def test_the_newest_is_what_all_frames_on_the_way_have(self, buffer: Buffer) -> None:
+        for second in (1.0, 2.5):
+            buffer.set_transform(placed("laser", "mirror", 0.0, seconds=second), "test")
+        assert buffer.lookup_transform("odom", "mirror", Time()).header.stamp == Stamp(
+            sec=2, nanosec=500_000_000
+        )
+
     def test_later_news_out_of_order_are_sorted_in(self, buffer: Buffer) -> None:
         buffer.set_transform(placed("odom", "base", 9.0, seconds=1.5), "test")
         buffer.set_transform(placed("odom", "base", 7.0, seconds=1.5), "test")
