@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import combinations_with_replacement, groupby
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -178,7 +178,7 @@ def _contacts(section: Section, names: Names, places: dict[Requirement, Place]) 
             assert inner is not None
             first = names.meant(name, inner, name)
             for other in inner.texts(name):
-                for contact in _pairs(first, names.meant(other, inner, name), name == other):
+                for contact in _pairs(first, names.meant(other, inner, name), names):
                     if wrong := _impossible(contact, relation, names):
                         inner.error(wrong, name)
                         continue
@@ -191,10 +191,11 @@ def _contacts(section: Section, names: Names, places: dict[Requirement, Place]) 
     return {contact: relation for contact, (relation, _) in said.items()}
 
 
-def _pairs(first: tuple[str, ...], second: tuple[str, ...], same: bool) -> Iterator[Contact]:
-    """Each of one with each of the other; of a model with itself, each with each of the others."""
-    if same and len(first) > 1:
-        yield from (Contact(a, b) for i, a in enumerate(first) for b in first[i + 1 :])
+def _pairs(first: tuple[str, ...], second: tuple[str, ...], names: Names) -> Iterator[Contact]:
+    """Each of one with each of the other. Of a model with itself: its parts with one another, and its copies."""
+    if first == second and len(first) > 1:
+        pairs = combinations_with_replacement(first, 2)
+        yield from (Contact(a, b) for a, b in pairs if a != b or names.entities[a].copies > 1)
     else:
         yield from (Contact(a, b) for a in first for b in second)
 

@@ -54,7 +54,11 @@ def _model(rng: random.Random, names: Sequence[str]) -> str:
     if lasers := rng.randint(0, 2):
         lines.append("plugins:")
         for i in range(lasers):
-            lines += [f"  - type: Laser  # number {i}", f"    name: eye{i}", f"    body: {rng.choice(bodies)}"]
+            lines += [
+                f"  - type: Laser  # number {i}",
+                f"    name: eye{i}",
+                f"    body: {rng.choice(bodies)}",
+            ]
             lines += ["    range: 5", "    angle: {min: 0, max: 1, increment: 0.5}"]
             lines += _list(rng, names, "    ")
     return "\n".join(lines) + "\n"
