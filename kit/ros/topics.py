@@ -65,6 +65,19 @@ def _mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> QoS
     return first_incompatibility(publisher.qos_profile, subscription.qos_profile)
 
 
+def mismatch_in_words(publisher: Publisher[Any], subscription: Subscription[Any]) -> str | None:
+    """Why the two do not talk, with the policy's name first: "RELIABILITY: /a offers ..., /b asks for ..."; None
+    if they do."""
+    mismatch = _mismatch(publisher, subscription)
+    if mismatch is None or isinstance(mismatch, str):
+        return mismatch
+    offered, asked = (_setting(end, mismatch) for end in (publisher, subscription))
+    return (
+        f"{mismatch.name}: {publisher.handle.full_name} offers {offered}, "
+        f"{subscription.handle.full_name} asks for {asked}"
+    )
+
+
 def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
     """Tells both sides, as ROS 2 does: its words first, then what they mean."""
     mismatch = _mismatch(publisher, subscription)
@@ -76,10 +89,10 @@ def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any])
         for handle in (publisher.handle, subscription.handle):
             handle.logger.warning(warning)
         return
-    offered, asked = (getattr(end.qos_profile, mismatch.name.lower()) for end in (publisher, subscription))
+    offered, asked = (_setting(end, mismatch) for end in (publisher, subscription))
     why = (
-        f" (the publisher of {publisher.handle.full_name} offers {_shown(offered)}, "
-        f"the subscription of {subscription.handle.full_name} asks for {_shown(asked)})"
+        f" (the publisher of {publisher.handle.full_name} offers {offered}, "
+        f"the subscription of {subscription.handle.full_name} asks for {asked})"
     )
     publisher.incompatibilities.report(
         mismatch,
@@ -93,7 +106,9 @@ def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any])
     )
 
 
-def _shown(setting: object) -> str:
+def _setting(end: Publisher[Any] | Subscription[Any], policy: QoSPolicyKind) -> str:
+    """What an end's profile says on a policy."""
+    setting = getattr(end.qos_profile, policy.name.lower())
     return str(getattr(setting, "name", setting))
 
 
