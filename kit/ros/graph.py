@@ -40,6 +40,11 @@ MOST_CALLBACKS = 10_000
 """In one ``run_due``, likewise."""
 
 
+MOST_POLLS = 100
+"""How often a program may look, without waiting, whether there is something to do, before it waits all the same:
+``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from ever going on."""
+
+
 class Pump(Protocol):
     """How a program waits when its time and messages come from somewhere else."""
 
@@ -109,6 +114,7 @@ class Graph:
         self._jumps = 0
         self._driver: int | None = None
         self._count = 0
+        self._polls = (0, 0)
         self._known_loops: set[tuple[str, ...]] = set()
 
     # Time
@@ -205,6 +211,8 @@ class Graph:
             jumps = self._jumps
             while not ready():
                 if until_ns is not None and (self.now_ns >= until_ns or jumps != self._jumps):
+                    if self._polls_in_vain():
+                        self._wait_once(until_ns)
                     return False
                 self._refuse_to_hang(what)
                 self._wait_once(until_ns)
@@ -236,6 +244,16 @@ class Graph:
                 self._changed.notify_all()
         finally:
             del self.looks[me]
+
+    def _polls_in_vain(self) -> bool:
+        """Whether a pumped program has looked so often at this instant that only a later one can bring anything."""
+        now = self.now_ns
+        instant, count = self._polls
+        self._polls = (now, count + 1 if instant == now else 1)
+        if self.pump is None or count < MOST_POLLS:
+            return False
+        self._polls = (now, 0)
+        return True
 
     def _refuse_to_hang(self, what: str) -> None:
         work = self.performing.work

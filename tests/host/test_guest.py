@@ -275,6 +275,17 @@ def test_programs_with_a_loop_of_their_own(bench: Bench, student: Student, loop:
     assert len(beat) == 6
 
 
+def test_a_program_that_never_waits_does_not_stop_the_time(bench: Bench, student: Student) -> None:
+    loop = "\nrclpy.init()\necho = Echo()\nwhile rclpy.ok():\n    rclpy.spin_once(echo, timeout_sec=0)\n"
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(student(ECHO + loop))
+    for text in "abc":
+        bench.say("/questions", String(data=text))
+        bench.tick()
+    assert texts(answers) == ["A", "B", "C"]
+    assert guest.failure is None
+
+
 def test_services_both_ways(bench: Bench, student: Student) -> None:
     file = student(
         """
