@@ -135,14 +135,15 @@ class Runner:
             self._publish[endpoint.topic] = publisher.hand_over
             self._wires[endpoint] = partial(self._node.destroy_publisher, publisher)
         else:
-            accept = partial(self._accept, endpoint.topic)
+            accept = partial(self.accept, endpoint.topic)
             subscription = self._node.create_subscription(endpoint.type, endpoint.topic, accept, 10)
             self._wires[endpoint] = partial(self._node.destroy_subscription, subscription)
 
     def _unwire(self, endpoint: Endpoint) -> None:
         self._wires.pop(endpoint)()
 
-    def _accept(self, topic: str, message: Any) -> None:
+    def accept(self, topic: str, message: Any) -> None:
+        """Hands a message to the devices that subscribe to the topic."""
         for observer in self.observers:
             observer.accepted(topic, message)
         self.simulation.accept(topic, message)

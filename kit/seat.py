@@ -20,14 +20,25 @@ class _Coming:
 
     controller: ControllerFile
     guest: Guest
-    then: Callable[[], object] | None
 
 
 class Seat:
     """Whose guest takes part in the runner's ticks. Belongs to the thread that ticks."""
 
-    def __init__(self, runner: Runner, arguments: Sequence[str], *, seed: int, limits: Limits) -> None:
+    def __init__(
+        self,
+        runner: Runner,
+        arguments: Sequence[str],
+        *,
+        seed: int,
+        limits: Limits,
+        on_empty: Callable[[], object] = lambda: None,
+        on_print: Callable[[str], object] = lambda line: None,
+    ) -> None:
+        """``on_empty``: called when a controller has stopped driving; ``on_print``: with each line it prints."""
         self._runner = runner
+        self._on_empty = on_empty
+        self._on_print = on_print
         self._arguments: Final = tuple(arguments)
         self._seed = seed
         self._limits = limits
@@ -45,7 +56,7 @@ class Seat:
             return self._guest.failure
         return self._failure
 
-    def seat(self, controller: ControllerFile | None, then: Callable[[], object] | None = None) -> None:
+    def seat(self, controller: ControllerFile | None) -> None:
         """Starts a controller, without waiting; None leaves the seat empty."""
         self._give_up_coming()
         self._failure = None
@@ -54,7 +65,7 @@ class Seat:
             self._leave()
             return
         self._file = FileWatch(controller.file)
-        self._start(controller, then)
+        self._start(controller)
 
     def restart(self) -> None:
         """The same controller, from its beginning; the old one stops driving at once."""
@@ -69,17 +80,22 @@ class Seat:
     def look(self) -> None:
         """Lets a controller that is ready take over, and starts a new version of a file that was saved."""
         coming = self._coming
+        if self._guest is not None:
+            self._hear(self._guest)
+            if self._guest.failure is not None and self._failure is None:
+                self._failure = self._guest.failure
+                self._on_empty()
         if coming is not None:
             self._settle(coming.guest.is_started)
         elif self.controller is not None and self._file is not None and self._file.has_changed():
             self._failure = None
-            self._start(self.controller, None)
+            self._start(self.controller)
 
     def close(self) -> None:
         self._give_up_coming()
         self._leave()
 
-    def _start(self, controller: ControllerFile, then: Callable[[], object] | None) -> None:
+    def _start(self, controller: ControllerFile) -> None:
         try:
             guest = Guest(
                 self._runner.graph,
@@ -91,7 +107,7 @@ class Seat:
         except GuestError as error:
             self._failure = error.failure
             return
-        self._coming = _Coming(controller, guest, then)
+        self._coming = _Coming(controller, guest)
 
     def _settle(self, is_ready: Callable[[], bool | None]) -> None:
         coming = self._coming
@@ -101,6 +117,7 @@ class Seat:
                 return
         except GuestError as error:
             self._failure = error.failure
+            self._hear(coming.guest)
             self._give_up_coming()
             return
         self._coming = None
@@ -108,8 +125,6 @@ class Seat:
         coming.guest.join()
         self._guest = coming.guest
         self._runner.guests.append(coming.guest)
-        if coming.then is not None:
-            coming.then()
 
     def _give_up_coming(self) -> None:
         if self._coming is not None:
@@ -118,6 +133,12 @@ class Seat:
 
     def _leave(self) -> None:
         if self._guest is not None:
+            self._hear(self._guest)
             self._runner.guests.remove(self._guest)
             self._guest.close()
             self._guest = None
+            self._on_empty()
+
+    def _hear(self, guest: Guest) -> None:
+        for line in guest.take_output().lines:
+            self._on_print(line.text)

@@ -6,8 +6,8 @@ whoever ticks the runner: a face posts its wishes to the world's thread.
 
 from __future__ import annotations
 
+import re
 from collections import deque
-from collections.abc import Callable
 from types import TracebackType
 from typing import Final
 
@@ -15,16 +15,18 @@ from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
 from kit.host.failure import Failure
 from kit.host.limits import DESK, Limits
+from kit.msg.geometry_msgs import Twist
 from kit.places import Place
 from kit.recording import Playback, Recording
 from kit.ros.graph import Graph
-from kit.ros.log import LogRecord
+from kit.ros.log import LoggingSeverity, LogRecord
 from kit.runner import Runner
 from kit.seat import Seat
 from kit.sim.simulation import Simulation
 from kit.trip import Trip
 
 KEPT_MESSAGES: Final = 200
+LOG_LINE: Final = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d.]+\] \[([^]]*)\]: (.*)")
 
 
 class Session:
@@ -52,7 +54,14 @@ class Session:
         self.trip = Trip(place.robot, place.case)
         self.runner.observers.append(self.trip)
         self.keys = KeystrokePublisher(self.graph)
-        self.seat = Seat(self.runner, self._arguments(), seed=seed, limits=limits)
+        self.seat = Seat(
+            self.runner,
+            self._arguments(),
+            seed=seed,
+            limits=limits,
+            on_empty=self.stop_robot,
+            on_print=self._print,
+        )
 
     def __enter__(self) -> Session:
         return self
@@ -72,9 +81,9 @@ class Session:
         """Why the controller does not run, or why its newest version was not taken; None while all is well."""
         return self.seat.failure
 
-    def drive_with(self, controller: ControllerFile | None, then: Callable[[], object] | None = None) -> None:
-        """Starts a controller and, as soon as it has started well, lets it take over; ``then`` is called next."""
-        self.seat.seat(controller, then)
+    def drive_with(self, controller: ControllerFile | None) -> None:
+        """Starts a controller and, as soon as it has started well, lets it take over. None: nobody drives."""
+        self.seat.seat(controller)
 
     def play_back(self, recording: Recording) -> None:
         """Has the world told again what it was told then; at the recording's end it stands still."""
@@ -90,6 +99,29 @@ class Session:
     def look_around(self) -> None:
         """To be called a few times a second: new versions of the controller, ones that are ready, ones that failed."""
         self.seat.look()
+        self.keys.look_around()
+
+    def stop_robot(self) -> None:
+        """Takes the last command off the robot: nobody drives it who would."""
+        robot = next((model for model in self.place.world.models if model.name == self.place.robot), None)
+        if robot is None:
+            return
+        others = [other.topic("") for other in self.place.world.models if other.namespace != robot.namespace]
+        for end in self.runner.simulation.endpoints:
+            if end.direction == "subscribe" and end.type is Twist and end.topic.startswith(robot.topic("")):
+                if not robot.namespace and end.topic.startswith(tuple(others)):
+                    continue
+                self.runner.accept(end.topic, Twist())
+
+    def _print(self, line: str) -> None:
+        """A line that the controller printed, as one of the session's messages."""
+        found = LOG_LINE.fullmatch(line)
+        severity, name, text = (
+            found.groups() if found else ("INFO", self.controller.name if self.controller else "", line)
+        )
+        self.messages.append(
+            LogRecord(self.runner.simulation.time_ns, LoggingSeverity[severity], name, text, "", "", 0)
+        )
 
     def reset(self, seed: int | None = None) -> None:
         """The world back to its start; the controller starts anew too."""

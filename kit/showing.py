@@ -21,10 +21,10 @@ SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back"
 """Of a robot: name and direction [rad] of the middle of each quarter."""
 
 
-def clock(seconds: float) -> str:
-    """Minutes, seconds and tenths: 1:02.3."""
-    tenths = math.floor(seconds * 10 + 1e-6)
-    return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
+def clock(seconds: float, digits: int = 1) -> str:
+    """Minutes and seconds: ``1:02.3``. Cut, not rounded: a clock does not show what is not over."""
+    minutes, rest = divmod(math.floor(seconds * 10**digits + 1e-6), 60 * 10**digits)
+    return f"{minutes}:{rest / 10**digits:0{3 + digits}.{digits}f}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,6 +24,8 @@ class KeystrokePublisher:
         self._keys = node.create_publisher(String, TOPIC, 10)
         self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC, 10)
         self._strength = 1.0
+        self._held: list[str] = []
+        self._listeners = 0
 
     @property
     def has_listener(self) -> bool:
@@ -36,3 +38,14 @@ class KeystrokePublisher:
             self._strengths.publish(Float32(data=float(strength)))
         for message in messages:
             self._keys.publish(String(data=message))
+            event, _, key = message.partition("_")
+            self._held = [held for held in self._held if held != key]
+            if event == "p":
+                self._held.append(key)
+
+    def look_around(self) -> None:
+        """A listener that has just come is told which keys are down: they went down while it was starting."""
+        listeners = self._graph.subscription_count(TOPIC)
+        if listeners > self._listeners:
+            self.publish([f"p_{key}" for key in self._held], self._strength)
+        self._listeners = listeners

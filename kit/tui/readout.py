@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 from kit.live import MAXIMUM, Pacing
 from kit.ros.log import LoggingSeverity, LogRecord
@@ -18,7 +19,7 @@ def heading(title: str, view: View, pacing: Pacing, width: int) -> Row:
     """Map and controller on the left; state, speed and time on the right."""
     who = view.controller or "nobody drives"
     left = row((title, "bold"), "  ", who)
-    return spread(left, (*_state(view, pacing), (f"  {clock(view.time_s)}", "bold")), width)
+    return spread(left, (*_state(view, pacing), (f"  {clock(view.time_s, 2 if view.paused else 1)}", "bold")), width)
 
 
 def _state(view: View, pacing: Pacing) -> Row:
@@ -37,12 +38,12 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     if view.pose is not None:
         rows += [
             _title("pose"),
-            _figure("x", f"{view.pose.x:.2f}", "m"),
-            _figure("y", f"{view.pose.y:.2f}", "m"),
+            _figure("x", _two(view.pose.x), "m"),
+            _figure("y", _two(view.pose.y), "m"),
             _figure("heading", f"{math.degrees(math.remainder(view.pose.theta, math.tau)):.0f}", "°"),
             _title("speed"),
-            _figure("forward", f"{view.speed[0]:.2f}", "m/s"),
-            _figure("turning", f"{view.speed[1]:.2f}", "rad/s"),
+            _figure("forward", _two(view.speed[0]), "m/s"),
+            _figure("turning", _two(view.speed[1]), "rad/s"),
         ]
     if view.nearest:
         rows.append(_title("nearest"))
@@ -64,6 +65,11 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     return tuple(rows)
 
 
+def _two(value: float) -> str:
+    """With two decimals, and no minus before a zero."""
+    return f"{round(value, 2) + 0.0:.2f}"
+
+
 def _title(text: str) -> Row:
     return row((text, "dim"))
 
@@ -75,8 +81,8 @@ def _figure(name: str, value: str, unit: str) -> Row:
 def said(view: View, rows: int, width: int) -> tuple[Row, ...]:
     """What went wrong with the controller, in sight as long as it holds; else the newest messages."""
     if view.failure is not None:
-        lines = [("  " if n else "") + line for n, line in enumerate(str(view.failure).splitlines())]
-        return tuple(row((line[:width], "bad")) for line in lines[:rows])
+        lines = textwrap.wrap(str(view.failure), width, max_lines=rows, placeholder=" ...")
+        return tuple(row((line, "bad")) for line in lines)
     return tuple(_message(record, width) for record in view.messages[-rows:])
 
 

@@ -57,12 +57,11 @@ class PlayScreen(WatchScreen):
             return
         self._strength = strength
         moves = any(named(message[2:]).moves for message in messages if message.startswith("p_"))
-        held = tuple(named(name).pressed for name in state.held)
 
         def press(session: Session) -> None:
             if moves and not session.keys.has_listener and session.controller != self._teleop:
                 self._before_takeover = session.controller
-                session.drive_with(self._teleop, then=lambda: session.keys.publish(held, strength))
+                session.drive_with(self._teleop)
             session.keys.publish(messages, strength)
 
         self.behind.wish(press)
@@ -84,7 +83,6 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             name, _, case = chosen.partition("/")
             self.place_name = case if len(cards[name].cases) > 1 else name
-            self.trouble = None
             self._find = partial(find_place, name, case)
             self.behind.open(self._find, self._controller)
 
@@ -94,6 +92,6 @@ class PlayScreen(WatchScreen):
         choices = [Choice(key, each.name, each.title) for key, each in files.items()]
         chosen = await self.app.push_screen_wait(Picker(f"Controllers; yours are in {self._folder}", choices))
         if chosen is not None:
-            self._controller, self._before_takeover, self.trouble = files[chosen], None, None
+            self._controller, self._before_takeover = files[chosen], None
             controller = self._controller
             self.behind.wish(lambda session: session.drive_with(controller))

@@ -26,5 +26,4 @@ class ReplayScreen(WatchScreen):
 
     def action_reset(self) -> None:
         """From the beginning."""
-        self.trouble = None
         self.open_world()

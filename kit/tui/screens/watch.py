@@ -17,7 +17,7 @@ from kit.tui.input.screen import DriveScreen
 from kit.tui.look import Look
 from kit.tui.readout import PANEL_WIDTH, heading, readout, said
 from kit.tui.running import Running
-from kit.tui.screens.help import Help
+from kit.tui.screens.page import Page, wrapped
 from kit.tui.text_rows import Row, TextRows, row
 from kit.tui.world_view import WorldView
 
@@ -82,7 +82,6 @@ class WatchScreen(DriveScreen):
         self.place_name = place_name
         self.world = WorldView(look.encoder, look.palette)
         self.view: View | None = None
-        self.trouble: str | None = None
         self.behind: Running
         self._announced = False
         self._beams = False
@@ -125,8 +124,9 @@ class WatchScreen(DriveScreen):
         self._show()
 
     def on_trouble(self, event: Trouble) -> None:
-        self.trouble = event.text
-        self._show()
+        self.app.push_screen(Page("That did not work", wrapped(event.text)))
+        if self.view is None:
+            self._rows("heading").show([row(("nothing is open", "dim"))])
 
     def on_resize(self) -> None:
         self._show()
@@ -141,17 +141,13 @@ class WatchScreen(DriveScreen):
 
     def _show(self) -> None:
         width = self.size.width
-        if self.trouble is not None:
-            lines = self.trouble.splitlines()[:MESSAGE_ROWS]
-            self._rows("said").show([row((line[:width], "bad")) for line in lines])
         view = self.view
         if view is None:
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(self.place_name, view, self.behind.pacing, width)])
         self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
-        if self.trouble is None:
-            self._rows("said").show(said(view, MESSAGE_ROWS, width))
+        self._rows("said").show(said(view, MESSAGE_ROWS, width))
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view
@@ -178,7 +174,6 @@ class WatchScreen(DriveScreen):
         self.behind.set_factor(SPEEDS[key])
 
     def action_reset(self) -> None:
-        self.trouble = None
         self.behind.wish(Session.reset)
 
     def action_pan(self, key: str) -> None:
@@ -198,7 +193,7 @@ class WatchScreen(DriveScreen):
         self.behind.show_beams(self._beams)
 
     def action_help(self) -> None:
-        self.app.push_screen(Help("Keys", self.help))
+        self.app.push_screen(Page("Keys", self.help))
 
 
 def _nothing(session: Session) -> None:

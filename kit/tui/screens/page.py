@@ -1,8 +1,10 @@
-"""Every key of a screen on one page; any key leaves it."""
+"""One page of text over the screen, such as all keys or what went wrong; any key leaves it."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
+from typing import Final
 
 from textual import events
 from textual.app import ComposeResult
@@ -10,14 +12,25 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 
 from kit.tui.input.keys import base_key
-from kit.tui.text_rows import Row, TextRows
+from kit.tui.text_rows import Row, TextRows, row
+
+WIDTH: Final = 74
 
 
-class Help(ModalScreen[None]):
-    DEFAULT_CSS = """
-    Help { align: center middle; }
-    Help > Vertical { width: 74; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }
-    Help TextRows { height: auto; }
+def wrapped(text: str, style: str = "") -> list[Row]:
+    """The text's lines as rows of a page, the long ones on several."""
+    return [
+        row((part, style))
+        for line in text.splitlines()
+        for part in textwrap.wrap(line, WIDTH - 4, subsequent_indent="    ") or [""]
+    ]
+
+
+class Page(ModalScreen[None]):
+    DEFAULT_CSS = f"""
+    Page {{ align: center middle; }}
+    Page > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
+    Page TextRows {{ height: auto; }}
     """
 
     def __init__(self, title: str, rows: Sequence[Row]) -> None:
