@@ -23,6 +23,9 @@ CORRECTION = 0.5**100
 MAX_TRAVEL, MAX_ROTATION = 2.0, math.pi / 2
 """Nothing is driven farther in a step [m, rad]: Box2D's limits, which are 200 m/s at steps of 0.01 s."""
 
+MIN_MASS, MIN_GYRATION = 1e-15, 1e-6
+"""What weighs less [kg] counts as weightless, and no mass is nearer to its centre [m]: else the solver overflows."""
+
 BOUNCY = 1
 """pymunk's collision type of footprints with restitution."""
 
@@ -203,12 +206,13 @@ def _weigh(body: pymunk.Body, masses: list[tuple[pymunk.Shape, float]]) -> None:
     Without any mass it weighs 1 kg about its origin and nothing turns it, as in Box2D.
     """
     total = sum(mass for _, mass in masses)
-    if total == 0.0:
+    if total < MIN_MASS:
         body.mass, body.moment = 1.0, math.inf
         return
     x = sum(mass * shape.center_of_gravity.x for shape, mass in masses) / total
     y = sum(mass * shape.center_of_gravity.y for shape, mass in masses) / total
-    body.mass, body.moment = total, sum(_moment(shape, mass, (x, y)) for shape, mass in masses)
+    moment = sum(_moment(shape, mass, (x, y)) for shape, mass in masses)
+    body.mass, body.moment = total, max(moment, total * MIN_GYRATION**2)
     body.center_of_gravity = x, y
 
 
@@ -272,6 +276,7 @@ def _constraints(joint: Joint, a: PhysicalBody, b: PhysicalBody, step_size: floa
         found.append(_spring(joint, first, second, joint.angle + twisted, step_size))
     for constraint in found:
         constraint.error_bias = CORRECTION
+        constraint.max_bias = MAX_TRAVEL / step_size
     return found
 
 

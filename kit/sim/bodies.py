@@ -80,12 +80,13 @@ class Rigid:
     def move(self, dt: float) -> None:
         """Follows its velocity for ``dt``, after contacts acted on it; at most a stride."""
         body = self.body
-        if self.held is not None:
+        distance = (body.velocity.length + abs(body.angular_velocity) * self.reach) * dt
+        if self.held is not None or not math.isfinite(distance):  # the solver gives up on absurd joints
+            stay = self.held or self.pose
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
             pymunk.Body.update_position(body, dt)  # uses up what pymunk would correct
-            self.place(self.held)
+            self.place(stay)
             return
-        distance = (body.velocity.length + abs(body.angular_velocity) * self.reach) * dt
         if distance > self.stride:
             body.velocity *= self.stride / distance
             body.angular_velocity *= self.stride / distance

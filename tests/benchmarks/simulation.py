@@ -9,7 +9,6 @@ messages and devices. Then a world as large as Flatland's limits allow: 16 layer
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,9 +18,6 @@ from types import MappingProxyType
 import numpy as np
 import pymunk
 
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT))
-
 from kit import kernels
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -29,6 +25,8 @@ from kit.sim.loading import load, load_model
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation
 from kit.world.records import Layer, Model, Place, Polygon, Walls, World
+
+ROOT = Path(__file__).parents[2]
 
 REPEATS = 15
 RAYS, REACH = 91, 10.0
