@@ -102,7 +102,8 @@ class Terminal:
             stdout=self.other_fd,
             stderr=self.other_fd,
             env={
-                **os.environ,
+                # The size is the terminal's business, but pytest-xdist's workers carry one in their environment.
+                **{name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")},
                 "TERM": "xterm-256color",
                 "REPORT": str(report_fd),
                 "TEXTUAL_ANIMATIONS": "none",

@@ -36,9 +36,6 @@ class Program(App[None]):
     def on_mount(self) -> None:
         self.clock = self.set_interval(1 / 20, lambda: self.view.offer(lambda: next(self.scenes)))
 
-    def on_resize(self) -> None:
-        self.set_timer(0.3, self.report_screen)
-
     def report_screen(self) -> None:
         frame, lag = self.view.frame, self.view.credit.lag
         report("screen", frame.rows() if frame else [], self.view.credit.fps, lag)
