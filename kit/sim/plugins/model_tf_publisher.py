@@ -27,7 +27,7 @@ class ModelTfPublisherParams:
 
 
 def read(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
-    world_frame = section.name("world_frame_id", "map")
+    world_frame = section.name("world_frame_id", "map").removeprefix("/")
     first = scope.model.bodies[0].name if scope.model.bodies else ""
     return ModelTfPublisherParams(
         reference=scope.body(section, "reference", first),
@@ -48,7 +48,7 @@ class ModelTfPublisher(Plugin):
     exclude           names of bodies that are left out
     ================= =========================================================================
 
-    Frames are named ``namespace_body``.
+    Bodies' frames are named ``namespace_body``; the world's, which all models share, has no prefix.
     """
 
     def __init__(self, params: ModelTfPublisherParams, site: Site) -> None:
@@ -71,7 +71,7 @@ class ModelTfPublisher(Plugin):
             if body is not self._reference and body.name not in self._params.exclude
         ]
         if self._params.world_frame is not None:
-            found.append(transform(stamp, frame(self._params.world_frame), parent, pose))
+            found.append(transform(stamp, self._params.world_frame, parent, pose))
         return transforms(*found)
 
 

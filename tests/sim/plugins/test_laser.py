@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kit.geometry import Pose
 from kit.msg.sensor_msgs import LaserScan
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
@@ -150,6 +151,18 @@ def test_what_it_sees_of_others(workshop: Workshop) -> None:
     assert list(scans(simulation)["/scan"].ranges) == pytest.approx([4.9])
     simulation.delete_model("ghost")
     assert list(scans(simulation)["/scan"].ranges) == pytest.approx([5.9])
+
+
+def test_a_beacon_measures_to_the_hull(workshop: Workshop) -> None:
+    """Not to the robot's origin: the nose is 0.048 m ahead of it, the tail 0.117 m behind."""
+    angle = {"min": -PI, "max": PI, "increment": 0.001}
+    beacon = workshop.model(workshop.circle(0.1, layers=[]), type="static", plugins=[laser(angle=angle)])
+    simulation = Simulation(workshop.serp())
+    simulation.spawn_model(workshop.file("beacon.yaml", beacon), "beacon", "", Pose(1, 0, 0))
+    for theta, distance in ((0, 0.952), (PI, 0.883), (PI / 2, 1 - 0.085)):
+        simulation.move_model("serp", Pose(0, 0, theta))
+        assert np.nanmin(scans(simulation)["/scan"].ranges) == pytest.approx(distance, abs=1e-4)
+        assert simulation.hull_distance("serp", (1, 0)) == pytest.approx(distance)
 
 
 def test_it_looks_before_the_step_and_stamps_that_time(workshop: Workshop) -> None:

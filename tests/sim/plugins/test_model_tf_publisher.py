@@ -32,10 +32,10 @@ def test_with_a_reference_and_the_world(workshop: Workshop, name: str) -> None:
     found = frames(Simulation(workshop.find(name)))
     reference = "my_robot_antenna"
     assert set(found) == {
-        ("my_robot_world" if ("my_robot_world", reference) in found else "world", reference),
+        ("world", reference),
         *((reference, f"my_robot_{body}") for body in ("base", "left_wheel", "right_wheel")),
     }
-    world = next(pose for (parent, _), pose in found.items() if parent.endswith("world"))
+    world = found["world", reference]
     base = world.compose(found[reference, "my_robot_base"])
     assert world == pytest.approx(AT, abs=1e-5)
     assert base == pytest.approx(AT, abs=1e-5)
