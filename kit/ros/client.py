@@ -73,7 +73,10 @@ class Client(Entity, Generic[Request, Response]):
         future.wake(self._graph.notify)
         context, now = self._handle.context, self._graph.now_ns
         until = None if timeout_sec is None or timeout_sec < 0 else now + int(timeout_sec * S_TO_NS)
-        over = lambda: future.done() or not context.ok()  # noqa: E731 - a condition
+
+        def over() -> bool:
+            return future.done() or not context.ok()
+
         what = f"call() on '{self.service_name}'"
         first = now + _PATIENCE_NS if until is None else min(until, now + _PATIENCE_NS)
         if not self._graph.wait(over, first, what=what) and not self._handle.is_spun:

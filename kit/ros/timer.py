@@ -202,7 +202,10 @@ class Rate(Destroyable):
             self._handle.logger.warning(
                 "rate.sleep() works here, but hangs on a robot unless another thread spins this node"
             )
-        over = lambda: graph.now_ns >= schedule.due_ns or self._destroyed or not context.ok()  # noqa: E731 - a condition
+
+        def over() -> bool:
+            return graph.now_ns >= schedule.due_ns or self._destroyed or not context.ok()
+
         while not graph.wait(over, schedule.due_ns, what="rate.sleep()"):
             pass
         if not context.ok():
