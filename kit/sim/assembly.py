@@ -1,8 +1,9 @@
 """From a model's description to pymunk: which bodies move as one, shapes, masses, joints.
 
-Bodies that a stiff weld (``frequency: 0``) joins become **one** rigid body, at once at its anchors. Box2D's welds
-give way a little, so that in Flatland a robot lags behind its own wheels; and one body is quicker than three.
-They stay apart, pulling at each other as in Flatland, where two of them overlap and would collide.
+Dynamic bodies that a stiff weld (``frequency: 0``) joins become **one** rigid body, at once at its anchors. Box2D's
+welds give way a little, so that in Flatland a robot lags behind its own wheels; and one body is quicker than
+three. They stay apart, pulling at each other as in Flatland, where two of them overlap and would collide, or where
+they are damped differently.
 """
 
 from __future__ import annotations
@@ -170,8 +171,8 @@ def _build(
         top_speed=MAX_TRAVEL / step_size,
         top_turn=MAX_ROTATION / step_size,
         is_static=first.kind == "static",
-        linear_damping=first.linear_damping,
-        angular_damping=first.angular_damping,
+        linear_damping=first.linear_damping if first.kind == "dynamic" else 0.0,
+        angular_damping=first.angular_damping if first.kind == "dynamic" else 0.0,
     )
     bodies = [
         PhysicalBody(model, member, rigid, offset, own)

@@ -122,14 +122,6 @@ class PhysicalBody:
         turn = self.rigid.body.angular_velocity
         return vx - turn * y, vy + turn * x, turn
 
-    @property
-    def twist(self) -> Twist:
-        """The velocity in the body's own frame."""
-        vx, vy, turn = self.velocity
-        theta = self.pose.theta
-        cos, sin = math.cos(theta), math.sin(theta)
-        return cos * vx + sin * vy, cos * vy - sin * vx, turn
-
     def set_velocity(self, vx: float, vy: float, turn: float) -> None:
         """Sets the velocity in the world frame once; from there on nature takes its course."""
         if self.rigid.is_static:  # things in contact would feel it

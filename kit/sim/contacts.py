@@ -59,7 +59,7 @@ class Contacts:
             self._bodies.pop(shape, None)
         self._apart = {pair for pair in self._apart if all(gone.isdisjoint(body.shapes) for body in pair)}
 
-    def include(self, body: PhysicalBody) -> bool:
+    def touch(self, body: PhysicalBody) -> bool:
         """Whether the body touches anything, or one of its sensor footprints overlaps anything."""
         return any(self._bodies.get(shape) is body for pair in self._touching for shape in pair)
 

@@ -165,7 +165,7 @@ class Physics:
 
     def is_touching(self, body: PhysicalBody) -> bool:
         """Whether the body touches anything, or one of its sensor footprints overlaps anything."""
-        return self._touching.include(body)
+        return self._touching.touch(body)
 
     def contacts(self) -> tuple[Contact, ...]:
         """All pairs of footprints, and of footprints and wall segments, that touched in the last step."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +102,7 @@ class Simulation:
         velocities away. What the model touched is forgotten, so no contact is reported from where it was.
         """
         standing = self._standing(name, "move")
-        _check_pose(pose, f'move model "{name}"')
+        _check_finite(pose, f'move model "{name}"')
         if at_rest:
             self.set_velocity(name, (0.0, 0.0, 0.0))
         self._stage.physics.move_model(name, pose)
@@ -112,6 +112,7 @@ class Simulation:
     def set_velocity(self, name: str, velocity: tuple[float, float, float]) -> None:
         """Gives every body of a model a velocity in the world frame: m/s, m/s, rad/s, about the first body."""
         standing = self._standing(name, "move")
+        _check_finite(velocity, f'move model "{name}"')
         vx, vy, turn = velocity
         first = standing.bodies[0].pose
         for body in standing.bodies:
@@ -124,7 +125,7 @@ class Simulation:
             raise SimulationError(
                 f'Flatland World: failed to spawn model, model with name "{name}" already exists'
             )
-        _check_pose(pose, f'spawn model "{name}"')
+        _check_finite(pose, f'spawn model "{name}"')
         try:
             model = load_model(file, self.world, name=name, namespace=namespace, pose=pose)
         except WorldError as error:
@@ -195,6 +196,6 @@ class Simulation:
         return self._stage.models[name]
 
 
-def _check_pose(pose: Pose, doing: str) -> None:
-    if not all(map(math.isfinite, pose)):
-        raise SimulationError(f"Flatland World: failed to {doing}, {pose} is not a place")
+def _check_finite(values: Iterable[float], doing: str) -> None:
+    if not all(map(math.isfinite, values)):
+        raise SimulationError(f"Flatland World: failed to {doing}, {values} has no place in a world")

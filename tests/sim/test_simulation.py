@@ -278,10 +278,12 @@ def test_refusals_change_nothing(workshop: Workshop, tmp_path: Path) -> None:
         ),
         (lambda: simulation.spawn_model(tmp_path / "nowhere.yaml", "x"), "nowhere.yaml"),
         (lambda: simulation.spawn_model(bad, "x"), "bodies"),
-        (lambda: simulation.move_model("serp", Pose(math.nan, 0, 0)), "not a place"),
+        (lambda: simulation.move_model("serp", Pose(math.nan, 0, 0)), "no place"),
+        (lambda: simulation.set_velocity("serp", (0, math.nan, 0)), "no place"),
+        (lambda: simulation.set_velocity("nobody", (0, 0, 0)), "nobody"),
         (
             lambda: simulation.spawn_model(OURS / "serp.model.yaml", "x", "", Pose(0, math.inf, 0)),
-            "not a place",
+            "no place",
         ),
     ]
     for attempt, words in refusals:
