@@ -73,12 +73,12 @@ def random_case(
     eyes = []
     for i in range(lasers):
         sharp = rng.random()
-        dice = {thing.name: rng.random() for thing in things}
+        drawn = {thing.name: rng.random() for thing in things}
         eyes.append(
             Laser(
                 f"l{i}",
-                frozenset(name for name, d in dice.items() if d < sharp),
-                frozenset(name for name, d in dice.items() if sharp <= d < sharp + either),
+                frozenset(name for name, d in drawn.items() if d < sharp),
+                frozenset(name for name, d in drawn.items() if sharp <= d < sharp + either),
             )
         )
     return Case(tuple(things), tuple(collide), frozenset(open_), tuple(eyes))

@@ -73,7 +73,7 @@ def test_what_nothing_rests_on_is_left_out(seed: int) -> None:
     assert breaches(case, assignment) == ()
     for layer in assignment.layers:
         for member in layer.members:
-            less = [NamedLayer(l.name, l.members - {member}) if l == layer else l for l in assignment.layers]
+            less = [NamedLayer(x.name, x.members - {member}) if x == layer else x for x in assignment.layers]
             assert breaches(case, Assignment(tuple(less), assignment.watches))
     for laser, watched in assignment.watches.items():
         for name in watched:

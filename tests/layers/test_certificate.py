@@ -11,7 +11,7 @@ from kit.layers.candidates import find_candidates
 from kit.layers.certificate import Certificate, greedily_apart, holds
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve
-from kit.layers.requirements import Contact, Sight
+from kit.layers.requirements import Contact, Requirement, Sight
 from tests.layers.cases import random_case
 
 SLIDES = EXAMPLES["slides-lasers"]
@@ -61,8 +61,9 @@ def test_nothing_is_counted_twice_and_nothing_below_zero() -> None:
 
 def test_the_bound_rounds_every_part_up() -> None:
     half = Fraction(1, 2)
-    parts = ({Contact("a", "b"): half, Contact("c", "d"): Fraction(1)}, {Sight("l", "a"): half})
-    assert Certificate((Contact("e", "f"),), parts).bound == 1 + 2 + 1
+    one: dict[Requirement, Fraction] = {Contact("a", "b"): half, Contact("c", "d"): Fraction(1)}
+    other: dict[Requirement, Fraction] = {Sight("l", "a"): half}
+    assert Certificate((Contact("e", "f"),), (one, other)).bound == 1 + 2 + 1
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -56,7 +56,7 @@ def test_it_fits_any_size(width: int, height: int) -> None:
 def test_a_struck_edge_is_fainter_and_one_in_the_group_is_thicker_without_any_colour(glyphs: Glyphs) -> None:
     case = graph("a-b")
     ways = [
-        plain(draw_graph(case, glyphs=glyphs, **marks))  # type: ignore[arg-type]  # keywords of one test
+        plain(draw_graph(case, glyphs=glyphs, **marks))
         for marks in ({}, {"struck": {Contact("a", "b")}}, {"group": {"a", "b"}})
     ]
     assert len({"\n".join(way) for way in ways}) == 3
@@ -98,13 +98,10 @@ def test_the_matrix_has_a_mark_for_every_pair_and_laser() -> None:
     case = graph("a-b b-c", either="a-c", lasers={"eye": "a"})
     assert plain(draw_matrix(case, struck={Contact("a", "b")}, group={"b", "c"})) == [
         "       1 2 3",
-        r"1 a    \ ",
-        r"2*b    x \ ",
-        r"3*c    ~ # \ ",
+        "1 a    \\",
+        "2*b    x \\",
+        "3*c    ~ # \\",
         " >eye  # . .",
-    ] or plain(draw_matrix(case, struck={Contact("a", "b")}, group={"b", "c"})) == [
-        line.rstrip()
-        for line in ("       1 2 3", "1 a    \\", "2*b    x \\", "3*c    ~ # \\", " >eye  # . .")
     ]
 
 

@@ -15,7 +15,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.existing import today_case
 from kit.layers.greedy import greedy
 from kit.layers.planning import Plan, solve
-from kit.layers.requirements import Contact
+from kit.layers.requirements import Contact, Requirement
 from kit.layers.slots import read_world, slots_of
 from kit.layers.world_planning import plan_world
 from tests.layers.cases import random_case, random_graph
@@ -55,7 +55,10 @@ def test_a_picture_goes_with_each_step() -> None:
 def test_weights_are_written_as_a_person_would() -> None:
     plan = solve(EXAMPLES["three"])
     half = Fraction(1, 2)
-    weights = {Contact("walls", "robot"): half, Contact("walls", "person"): 3 * half}
+    weights: dict[Requirement, Fraction] = {
+        Contact("walls", "robot"): half,
+        Contact("walls", "person"): 3 * half,
+    }
     shown = Plan(plan.case, plan.assignment, 2, Certificate((), (weights,)), 1, 0.0)
     text = "\n".join(words.proof_in_words(shown))
     assert "1/2  walls and robot collide" in text
