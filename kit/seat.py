@@ -120,7 +120,7 @@ class Seat:
             self._hear(coming.guest)
             self._give_up_coming()
             return
-        self._coming = None
+        self._coming = self._failure = None
         self._leave()
         coming.guest.join()
         self._guest = coming.guest

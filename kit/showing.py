@@ -31,6 +31,8 @@ def clock(seconds: float, digits: int = 1) -> str:
 class View:
     """One instant of a session."""
 
+    place: str
+    """What its map or case is called."""
     scene: Scene
     tick: int
     time_s: float
@@ -88,7 +90,9 @@ class Showing:
         driven = next((body for body in standing.state.bodies if body.model == robot), None)
         if driven is not None:
             self._trail.add(driven.pose.x, driven.pose.y)
+        place = session.place
         return View(
+            place=place.case.name if place.case is not None else place.title,
             scene=self._scene(standing),
             tick=simulation.tick,
             time_s=simulation.time_ns / 1e9,

@@ -15,11 +15,13 @@ PANEL_WIDTH = 22
 _LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
 
 
-def heading(title: str, view: View, pacing: Pacing, width: int) -> Row:
+def heading(view: View, pacing: Pacing, width: int) -> Row:
     """Map and controller on the left; state, speed and time on the right."""
     who = view.controller or "nobody drives"
-    left = row((title, "bold"), "  ", who)
-    return spread(left, (*_state(view, pacing), (f"  {clock(view.time_s, 2 if view.paused else 1)}", "bold")), width)
+    left = row((view.place, "bold"), "  ", who)
+    return spread(
+        left, (*_state(view, pacing), (f"  {clock(view.time_s, 2 if view.paused else 1)}", "bold")), width
+    )
 
 
 def _state(view: View, pacing: Pacing) -> Row:

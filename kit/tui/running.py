@@ -67,6 +67,10 @@ class Running:
         if session is not None and live is not None:
             live.post(lambda runner: wish(session))
 
+    def drive_with(self, controller: ControllerFile) -> None:
+        """Another controller, in the world that is open by then."""
+        self._jobs.put(lambda: self.wish(lambda session: session.drive_with(controller)))
+
     def set_factor(self, factor: float) -> None:
         if self._live is not None:
             self._live.set_factor(factor)

@@ -145,7 +145,7 @@ def decide(
     return TerminalDecision(
         plain=_plain(term, facts, wishes),
         glyphs=_glyphs(term, facts, wishes),
-        colour=_colour(environ, term, wishes, remote.value),
+        colour=_colour(environ, term, wishes),
         remote=remote,
         between=between,
         ask_keyboard=_ask_keyboard(environ, term),
@@ -191,22 +191,16 @@ def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision
     )
 
 
-def _colour(environ: Mapping[str, str], term: str, wishes: TerminalWishes, remote: bool) -> Decision[Colour]:
+def _colour(environ: Mapping[str, str], term: str, wishes: TerminalWishes) -> Decision[Colour]:
     if wishes.color:
         return Decision(_COLOUR_WISHES[wishes.color], f"--color {wishes.color} was given.")
     if environ.get("NO_COLOR"):
         return Decision("none", "NO_COLOR is set.")
     if term.startswith(_COLOURLESS) or term.endswith(("-m", "-mono")):
         return Decision("none", f"A terminal of type {term} has no colours.")
-    if remote:
-        return Decision(
-            "ansi16", "Over SSH: 16 colours take less than half the bytes that true colours take."
-        )
-    if environ.get("COLORTERM") in ("truecolor", "24bit"):
-        return Decision("truecolour", "COLORTERM says that the terminal has true colours.")
-    if "256color" in term:
-        return Decision("256", f"A terminal of type {term} has 256 colours.")
-    return Decision("ansi16", "Nothing says that the terminal has more than 16 colours.")
+    return Decision(
+        "ansi16", "Your terminal's own 16 colours: the fewest bytes, and right on light and dark alike."
+    )
 
 
 def _remote(environ: Mapping[str, str]) -> Decision[bool]:

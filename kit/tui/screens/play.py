@@ -69,7 +69,7 @@ class PlayScreen(WatchScreen):
     def action_hand_back(self) -> None:
         """The controller that drove before the keys took over drives again."""
         controller = self._before_takeover or self._controller
-        self.behind.wish(lambda session: session.drive_with(controller))
+        self.behind.drive_with(controller)
 
     @work
     async def action_maps(self) -> None:
@@ -82,7 +82,6 @@ class PlayScreen(WatchScreen):
         chosen = await self.app.push_screen_wait(Picker("Maps", choices))
         if chosen is not None:
             name, _, case = chosen.partition("/")
-            self.place_name = case if len(cards[name].cases) > 1 else name
             self._find = partial(find_place, name, case)
             self.behind.open(self._find, self._controller)
 
@@ -93,5 +92,4 @@ class PlayScreen(WatchScreen):
         chosen = await self.app.push_screen_wait(Picker(f"Controllers; yours are in {self._folder}", choices))
         if chosen is not None:
             self._controller, self._before_takeover = files[chosen], None
-            controller = self._controller
-            self.behind.wish(lambda session: session.drive_with(controller))
+            self.behind.drive_with(self._controller)

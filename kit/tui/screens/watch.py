@@ -145,7 +145,7 @@ class WatchScreen(DriveScreen):
         if view is None:
             return
         self.world.offer(self._newest_scene)
-        self._rows("heading").show([heading(self.place_name, view, self.behind.pacing, width)])
+        self._rows("heading").show([heading(view, self.behind.pacing, width)])
         self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
         self._rows("said").show(said(view, MESSAGE_ROWS, width))
 
