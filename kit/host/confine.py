@@ -118,6 +118,8 @@ def lock(cage: Cage) -> None:
     os.umask(0o022)
     # The folder is there as long as the run, so its number belongs to no other run.
     user = _FIRST_USER + os.stat(cage.scratch).st_ino % _USERS
+    if cage.level >= Level.ANOTHER_USER:
+        os.chmod(cage.folder, 0o711)  # a way through
     if cage.level >= Level.SEPARATE:
         try:
             namespaces.narrow(cage.root, cage.readable, WRITABLE, cage.scratch, cage.limits.scratch)

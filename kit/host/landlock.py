@@ -56,7 +56,7 @@ def abi() -> int:
 def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
     """From now on this thread, and what it starts, sees and changes only what is at or below these paths.
 
-    Missing paths are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
+    Readable paths that are missing, or out of reach anyway, are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
     """
     version = abi()
     handled = sum(bits for since, bits in ALL_FILE_ACCESS if version >= since)
@@ -71,7 +71,8 @@ def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
     )
     try:
         for path in readable:
-            _grant(descriptor, path, SEE & handled)
+            with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
+                _grant(descriptor, path, SEE & handled)
         for path in writable:
             _grant(descriptor, path, handled)
         _call(_RESTRICT, ctypes.c_int(descriptor), ctypes.c_uint32(0))
@@ -80,21 +81,16 @@ def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
 
 
 def _grant(ruleset: int, path: str, access: int) -> None:
-    with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
-        target = os.open(path, os.O_PATH | os.O_CLOEXEC)
-        try:
-            if not stat.S_ISDIR(os.fstat(target).st_mode):
-                access &= OF_A_FILE
-            rule = _PathBeneath(access, target)
-            _call(
-                _ADD,
-                ctypes.c_int(ruleset),
-                ctypes.c_int(_PATH_BENEATH),
-                ctypes.byref(rule),
-                ctypes.c_uint32(0),
-            )
-        finally:
-            os.close(target)
+    target = os.open(path, os.O_PATH | os.O_CLOEXEC)
+    try:
+        if not stat.S_ISDIR(os.fstat(target).st_mode):
+            access &= OF_A_FILE
+        rule = _PathBeneath(access, target)
+        _call(
+            _ADD, ctypes.c_int(ruleset), ctypes.c_int(_PATH_BENEATH), ctypes.byref(rule), ctypes.c_uint32(0)
+        )
+    finally:
+        os.close(target)
 
 
 def _libc() -> ctypes.CDLL:

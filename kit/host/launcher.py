@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import select
 import socket
+import stat
 import subprocess
 import sys
 import sysconfig
@@ -34,7 +35,7 @@ Role: TypeAlias = Literal["node", "functions"]
 
 LARGEST_SOURCE: Final = 512 * KIB
 """Bytes of a student's file."""
-DUMP_S: Final = 0.3
+DUMP_S: Final = 1.0
 """How long to wait, after a deadline, for the child's Python to say where it was."""
 FAREWELL_S: Final = 3.0
 """How long the process above the child may take to clean up."""
@@ -167,7 +168,6 @@ class Child:
     def condemn(self, failure: Failure) -> GuestError:
         """Ends the child for this reason; what to raise then."""
         self.failure = failure
-        self._output.finish()
         self.close()
         return GuestError(failure)
 
@@ -180,6 +180,7 @@ class Child:
             end_descendants(self._process.pid)
             self._process.kill()
             self._process.wait()
+        self._output.finish()
         for stream in (self._process.stdout, self._process.stderr):
             if stream is not None:
                 stream.close()
@@ -278,14 +279,17 @@ class Child:
     def _time_out(self, which: verdicts.Budget, limit_s: float) -> NoReturn:
         deadline = time.monotonic() + DUMP_S
         while self._where() is None and time.monotonic() < deadline:
-            self._drain_until(time.monotonic() + DUMP_S / 10)
+            self._drain_until(time.monotonic() + DUMP_S / 50)
         raise self.condemn(verdicts.too_slow(which, limit_s, self._where()))
 
 
 def _program(file: Path) -> dict[str, Json]:
     """The student's file as data. It is read once: what runs is what was here now."""
     try:
-        with file.open("rb") as opened:
+        # A named pipe would have us wait for ever.
+        with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as opened:
+            if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
+                raise GuestError(verdicts.unreadable(file, "not a file"))
             source = opened.read(LARGEST_SOURCE + 1)
     except OSError as problem:
         raise GuestError(verdicts.unreadable(file, problem.strerror or "unreadable")) from None

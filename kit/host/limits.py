@@ -16,7 +16,7 @@ class Limits:
 
     start_s: float = 20.0
     """Until the code is loaded and waits for the first time. Importing large packages happens here."""
-    reply_s: float = 2.0
+    reply_s: float = 3.0
     """Until each complete reply."""
     total_s: float | None = None
     """Of all waiting for replies together; None is no end."""

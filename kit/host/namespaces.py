@@ -54,7 +54,7 @@ def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch:
         _show(root, path, _READ_ONLY)
     for path in writable:
         _show(root, path, 0)
-    os.makedirs(root + scratch)
+    os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
     _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes=10k,mode=700")
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)
@@ -75,7 +75,8 @@ def _show(root: str, path: str, flags: int) -> None:
         else:
             os.makedirs(os.path.dirname(target), exist_ok=True)
             os.close(os.open(target, os.O_CREAT, 0o444))
-        _mount(real, target, "", _BIND)
+        # With what is mounted below: a part of a tree may hide what the whole one does not show.
+        _mount(real, target, "", _BIND | _RECURSIVE)
         # A mount that came from outside may only be made stricter: what it forbids has to be forbidden again.
         kept = os.statvfs(target).f_flag & (_READ_ONLY | _NO_SUID | _NO_DEVICES | _NO_EXECUTE)
         _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)

@@ -9,6 +9,7 @@ import dataclasses
 import os
 import struct
 import subprocess
+import tempfile
 import textwrap
 import time
 from array import array
@@ -283,6 +284,18 @@ def test_a_separate_program_is_alone_and_its_disk_is_small(student: Student, lev
         assert functions.call("alone", [{}]) == [0.0]
         (written,) = functions.call("fill", [{}])
         assert 5 <= written <= 8
+
+
+@pytest.mark.parametrize("level", [Level.FILTERED, Level.SEPARATE], ids=["L1", "L2"], indirect=True)
+def test_a_file_that_lies_beside_the_runs_own_folders(
+    tmp_path: Path, level: Level, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    file = tmp_path / "work.py"
+    file.write_text("def f():\n    open('x', 'w').write('y')\n    return 1")
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        assert functions.call("f", [{}]) == [1.0]
+    assert [path.name for path in tmp_path.iterdir()] == ["work.py"]
 
 
 @pytest.mark.parametrize("level", [Level.ANOTHER_USER], ids=["L3"], indirect=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 from array import array
 from collections.abc import Iterator
 from pathlib import Path
@@ -634,6 +635,41 @@ def test_a_thread_that_fails_is_told(bench: Bench, student: Student) -> None:
     assert guest.failure is not None
     assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 12)
     assert "from a thread" in guest.failure.message
+
+
+@pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
+def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: Student, end: str) -> None:
+    file = student(
+        f"""
+        import threading, time, rclpy
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("threaded")
+            threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+            until = time.monotonic() + 0.3
+            while time.monotonic() < until: pass
+            {end}
+        """
+    )
+    guest = bench.start(file)
+    deadline = time.monotonic() + 10
+    while guest.is_running and time.monotonic() < deadline:
+        bench.tick()
+        time.sleep(0.02)
+    assert not guest.is_running
+    assert guest.has_ended == (end == "return")
+    if guest.failure is not None:
+        assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 10)
+
+
+def test_a_program_may_close_what_it_prints_to(bench: Bench, student: Student) -> None:
+    answers = bench.listen(String, "/answers")
+    bench.start(
+        student(ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr = None"))
+    )
+    bench.say("/questions", String(data="still there"))
+    assert texts(answers) == ["STILL THERE"]
 
 
 def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Student) -> None:

@@ -463,7 +463,9 @@ def test_what_runs_is_what_was_there_at_the_start(student: Student) -> None:
 
 def test_a_file_that_cannot_be_read(tmp_path: Path, student: Student) -> None:
     assert "No such file" in fail(tmp_path / "missing.py").message
-    assert "cannot be read" in fail(tmp_path).message
+    assert "directory" in fail(tmp_path).message
+    os.mkfifo(tmp_path / "pipe.py")
+    assert "not a file" in fail(tmp_path / "pipe.py").message
     assert "larger than" in fail(student("#" * LARGEST_SOURCE + "\n")).message
 
 

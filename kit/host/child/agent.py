@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from typing import NoReturn
 
 from kit.host.child import calls, seeds
 from kit.host.child.conversation import Channel, Conversation, watch_stacks
@@ -16,8 +17,8 @@ def preload(role: str) -> None:
         import kit.host.child.nodes  # noqa: F401 - for later
 
 
-def work(role: str, channel: Channel) -> int:
-    """Everything from the start to the end of one program; the process's exit status."""
+def work(role: str, channel: Channel) -> NoReturn:
+    """Everything from the start to the end of one program, and of the process."""
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # a TextIOWrapper: nobody has replaced it yet
     watch_stacks()
@@ -43,4 +44,4 @@ def work(role: str, channel: Channel) -> int:
             calls.serve(program, conversation)
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
         conversation.fail(explain(problem, program))
-    return 0
+    raise AssertionError("a program ends by an answer")

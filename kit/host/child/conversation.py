@@ -7,6 +7,8 @@ import os
 import signal
 import sys
 import threading
+from contextlib import suppress
+from typing import NoReturn
 
 from kit.host.failure import Failure
 from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
@@ -57,12 +59,12 @@ class Conversation:
         self._lock = threading.Lock()
         self._seq = 0
         self._open = False
-        self._failure: Failure | None = None
+        self._last_word: tuple[Json, ...] | None = None
         self.reply_s = 0.0
         """How long an answer may take."""
 
     def allow(self, seconds: float) -> None:
-        """Has Python say where it is when that long has passed without an answer."""
+        """Has Python say where it is when that long has passed without an answer; 0: not any more."""
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
     def next_question(self) -> list[Json]:
@@ -75,32 +77,40 @@ class Conversation:
             os._exit(LOST_PIPE)
         with self._lock:
             self._seq, self._open = seq, True
-        if self._failure is not None:
-            self.fail(self._failure)
+        if self._last_word is not None:
+            self._end(*self._last_word)
         self.allow(self.reply_s)
         return [kind, *content]
 
     def answer(self, kind: str, *content: Json) -> None:
-        """Answers the question."""
+        """Answers the question. After ``ended`` there is no return."""
+        if kind == "ended":
+            self._end(kind, *content)
+        self._say(kind, *content)
+
+    def fail(self, failure: Failure) -> NoReturn:
+        """Answers that the program is over by its own fault."""
+        self._end("failed", failure.kind.value, failure.message, failure.file, failure.line)
+
+    def _end(self, *last_word: Json) -> NoReturn:
+        """Ends the process with this answer: now, or to the next question, for which another thread waits."""
+        if not self._say(*last_word):
+            threading.Event().wait()
+        os._exit(0)
+
+    def _say(self, kind: str, *content: Json) -> bool:
+        """Whether there was a question to answer; else this is kept, unless something is already."""
         self.allow(0)
-        sys.stdout.flush()
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(AttributeError, OSError, ValueError):  # the program may have closed or replaced it
+                stream.flush()
         with self._lock:
-            self._open = False
-            self._send([kind, self._seq, *content])
-
-    def fail(self, failure: Failure) -> None:
-        """Answers that the program is over, now or as soon as there is a question. Ends the process if it can."""
-        with self._lock:
-            self._failure = failure
             if not self._open:
-                return
-            sys.stdout.flush()
-            sys.stderr.flush()
-            self._send(["failed", self._seq, failure.kind.value, failure.message, failure.file, failure.line])
-            os._exit(0)
-
-    def _send(self, frame: Json) -> None:
-        try:
-            self._channel.send(frame)
-        except OSError:
-            os._exit(LOST_PIPE)
+                self._last_word = self._last_word or (kind, *content)
+                return False
+            self._open = False
+            try:
+                self._channel.send([kind, self._seq, *content])
+            except OSError:
+                os._exit(LOST_PIPE)
+        return True

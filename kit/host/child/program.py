@@ -42,9 +42,10 @@ class Program:
 
     def relative(self, file: str | None) -> str | None:
         """A file's path relative to the student's folder; None if it lies elsewhere or in an environment there."""
-        if file is None or not file.startswith(self.folder + os.sep) or "site-packages" in file:
+        if file is None or not file.startswith(self.folder + os.sep):
             return None
-        return file[len(self.folder) + 1 :]
+        relative = file[len(self.folder) + 1 :]
+        return None if "site-packages/" in relative else relative
 
     def text(self, file: str, line: int) -> str:
         """A line of one of the student's files, without its indentation; empty if it cannot be read."""
