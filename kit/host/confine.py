@@ -101,7 +101,9 @@ def shield_this_process() -> None:
 
 
 def separate(level: Level) -> None:
-    """Called in the process that will start the student's."""
+    """Called in the process that will start the student's. CannotConfine if it is clear that the level fails."""
+    if level >= Level.FILTERED:
+        _require_filters()
     if level >= Level.SEPARATE:
         try:
             namespaces.separate()
@@ -135,7 +137,7 @@ def lock(cage: Cage) -> None:
         _filter(cage)
 
 
-def _filter(cage: Cage) -> None:
+def _require_filters() -> None:
     if sys.platform != "linux" or not seccomp.supported():
         raise CannotConfine(
             f"Landlock and seccomp are Linux's, on x86-64 and aarch64, not {os.uname().machine}'s."
@@ -145,6 +147,9 @@ def _filter(cage: Cage) -> None:
             "this kernel has no Landlock. It needs Linux 5.13 or newer, "
             "started with 'landlock' in the list of its parameter lsm= (see /sys/kernel/security/lsm)."
         )
+
+
+def _filter(cage: Cage) -> None:
     try:
         _drop_capabilities()
         landlock.restrict(cage.readable, (cage.scratch, *WRITABLE))

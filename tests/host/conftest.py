@@ -1,4 +1,4 @@
-"""Student files, limits that make accidents end quickly, and what this machine can confine."""
+"""Student files, and limits that make accidents end quickly."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Protocol
 
 import pytest
 
-from kit.host import landlock
 from kit.host.limits import MIB, Limits
 
 
@@ -23,9 +22,6 @@ QUICK = Limits(start_s=20.0, reply_s=1.0, memory=600 * MIB, output=4096, frame=6
 """Short deadlines, but no shorter than a busy machine needs for honest code."""
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's /proc")
-LOCKS = pytest.mark.skipif(
-    sys.platform != "linux" or landlock.abi() < 3, reason="this kernel cannot lock a process in (Landlock)"
-)
 
 
 @pytest.fixture

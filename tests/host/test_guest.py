@@ -800,6 +800,15 @@ def test_logs_and_prints_are_kept_apart_and_in_order(bench: Bench, student: Stud
     assert any(line.stream == "out" and "data='X'" in line.text for line in lines)
 
 
+def test_a_guest_is_light(bench: Bench, student: Student) -> None:
+    heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch", "site")
+    source = ECHO.replace("message.data.upper()", f"str([name for name in {heavy} if name in sys.modules])")
+    answers = bench.listen(String, "/answers")
+    bench.start(student("import sys" + source))
+    bench.say("/questions", String())
+    assert texts(answers) == ["[]"]
+
+
 def test_several_guests_start_side_by_side(student: Student) -> None:
     graph = Graph()
     guests = [
