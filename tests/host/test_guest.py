@@ -672,6 +672,20 @@ def test_a_program_may_close_what_it_prints_to(bench: Bench, student: Student) -
     assert texts(answers) == ["STILL THERE"]
 
 
+def test_a_program_that_closed_what_it_prints_to_still_fails_with_words(
+    bench: Bench, student: Student
+) -> None:
+    source = ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr.close()")
+    guest = bench.start(
+        student(source.replace("self.back.publish(", "self.deeper(") + "    def deeper(self, x): 1 / 0\n")
+    )
+    bench.say("/questions", String(data="x"))
+    assert guest.failure is not None
+    assert guest.failure.kind is FailureKind.EXCEPTION
+    assert "ZeroDivisionError" in guest.failure.message
+    assert any("in on_question: self.deeper(" in line.text for line in guest.take_output().lines)
+
+
 def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Student) -> None:
     file = student(
         """

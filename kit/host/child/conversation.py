@@ -10,10 +10,9 @@ import threading
 from contextlib import suppress
 from typing import NoReturn
 
+from kit.host.child.program import STDERR
 from kit.host.failure import Failure
 from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
-
-STDERR = 2
 
 
 class Channel:

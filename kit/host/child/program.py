@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from types import ModuleType, TracebackType
 
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.wire import MAX_TEXT
 
+STDERR = 2
 LONGEST_MESSAGE = 600
 """Characters of an exception's own text."""
 
@@ -110,6 +112,10 @@ def _text(problem: BaseException) -> str:
 
 
 def _show(frames: list[tuple[str, int, str]], program: Program) -> None:
-    print("How it came to that, the last call last:", file=sys.stderr)  # noqa: T201 - the student's own output
-    for file, line, function in frames[-20:]:
-        print(f"  {file}:{line} in {function}: {program.text(file, line)}", file=sys.stderr)  # noqa: T201
+    lines = ["How it came to that, the last call last:"]
+    lines += [
+        f"  {file}:{line} in {function}: {program.text(file, line)}" for file, line, function in frames[-20:]
+    ]
+    # Past sys.stderr, which the program may have closed or replaced.
+    with suppress(OSError):
+        os.write(STDERR, "".join(f"{line}\n" for line in lines).encode("utf-8", "replace"))
