@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import import_module
-from typing import Final
+from typing import Any, Final
 
 import click
 
@@ -19,22 +20,30 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
     "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``kit --help``."""
 
 
+Verbs = Mapping[str, tuple[str, str]]
+
+
 class LazyGroup(click.Group):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
 
+    def __init__(self, *arguments: Any, verbs: Verbs = VERBS, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._verbs = verbs
+
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(VERBS)
+        return list(self._verbs)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in VERBS:
+        if cmd_name not in self._verbs:
             return None
-        command: click.Command = import_module(VERBS[cmd_name][0]).command
+        command: click.Command = import_module(self._verbs[cmd_name][0]).command
         return command
 
     def resolve_command(
@@ -45,15 +54,16 @@ class LazyGroup(click.Group):
         except click.UsageError:
             from difflib import get_close_matches
 
-            near = get_close_matches(args[0], VERBS, n=1)
-            hint = f" Did you mean `kit {near[0]}`?" if near else ""
+            path = ctx.command_path
+            near = get_close_matches(args[0], self._verbs, n=1)
+            hint = f" Did you mean `{path} {near[0]}`?" if near else ""
             raise click.UsageError(
-                f"There is no `kit {args[0]}`.{hint} `kit --help` lists the verbs.", ctx
+                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the verbs.", ctx
             ) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items()])
+            formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items()])
 
 
 @click.group(

@@ -1,0 +1,47 @@
+"""``kit ros``: ROS 2's commands, for the world that runs in another terminal."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import click
+
+from kit.cli import LazyGroup, Verbs
+
+VERBS: Final[Verbs] = {
+    "node": ("kit.cli.ros.node", "Who is there: list, info."),
+    "topic": (
+        "kit.cli.ros.topic",
+        "What is said: list, info, type, find, echo, hz, bw, delay, pub.",
+    ),
+    "service": ("kit.cli.ros.service", "What can be asked: list, info, type, find, call."),
+    "param": ("kit.cli.ros.param", "Settings of nodes: list, get, set, describe, dump, load, delete."),
+    "interface": (
+        "kit.cli.ros.interface",
+        "What messages are made of: list, show, proto, package, packages.",
+    ),
+    "bag": ("kit.cli.ros.bag", "Recordings that ROS 2's tools open: record, play, info."),
+    "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, beside the running world."),
+    "launch": ("kit.cli.launch", "The same as `kit launch`."),
+    "pkg": ("kit.cli.pkg", "The same as `kit pkg`."),
+}
+
+
+@click.group(
+    name="ros",
+    cls=LazyGroup,
+    verbs=VERBS,
+    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` does. With several, the newest is meant, "
+    "or the one named by --world. Times are those of the simulation. Ctrl-C ends what goes on and on.",
+)
+def command() -> None:
+    """Look into a running world from a second terminal, as `ros2` does on a robot.
+
+    The words after `kit ros` are those after `ros2`, and so is what they print.
+
+    \b
+    kit ros node list
+    kit ros topic echo /static_laser --once
+    kit ros topic pub --once /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.5}}"
+    kit ros service call /pause std_srvs/srv/Empty
+    """

@@ -1,0 +1,205 @@
+"""``kit ros topic echo``, ``hz``, ``bw`` and ``delay``: what comes on a topic, and how."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
+import click
+
+from kit.cli.ros.quality import Wishes, quality_options
+from kit.cli.ros.values import interface_named
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.graph_text import absolute
+from kit.inspection.message_text import LONGEST, NoSuchField, Style, pick, to_csv, to_yaml
+from kit.inspection.meters import NARROW_WINDOW, WIDE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
+from kit.inspection.visit import Visit
+from kit.msg.interfaces import find_message
+from kit.msg.message import Message
+from kit.ros.instants import Time
+from kit.ros.qos_matching import fitting_qos
+
+REPORT_S: Final = 1.0
+"""Seconds between two reports of a meter, in the world's time."""
+
+
+def window(usual: int) -> Callable[..., Any]:
+    """The option that says how many messages a meter looks at."""
+    return click.option(
+        "-w",
+        "--window",
+        type=click.IntRange(1),
+        default=usual,
+        show_default=True,
+        help="How many messages count.",
+    )
+
+
+@click.command()
+@click.argument("topic")
+@click.argument("type_name", required=False, metavar="[TYPE]")
+@click.option("--once", is_flag=True, help="One message, and no more.")
+@click.option("--field", metavar="NAME.NAME", help="Only this part of each message.")
+@click.option("--csv", is_flag=True, help="Values separated by commas, one message a line.")
+@click.option("--no-arr", is_flag=True, help="Arrays only as type and length.")
+@click.option("--no-str", is_flag=True, help="Texts only as type and length.")
+@click.option("--flow-style", is_flag=True, help="Arrays in one line each.")
+@click.option("-f", "--full-length", is_flag=True, help="Nothing cut off.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    type=click.IntRange(0),
+    default=LONGEST,
+    show_default=True,
+    help="Of arrays and texts.",
+)
+@quality_options
+@visiting
+def echo(
+    visit: Visit,
+    topic: str,
+    type_name: str | None,
+    once: bool,
+    field: str | None,
+    csv: bool,
+    no_arr: bool,
+    no_str: bool,
+    flow_style: bool,
+    full_length: bool,
+    truncate_length: int,
+    wishes: Wishes,
+) -> None:
+    """Print what is said on a topic, until Ctrl-C.
+
+    \b
+    kit ros topic echo /static_laser --no-arr
+    kit ros topic echo /odom --field pose.pose.position
+    """
+    style = Style(None if full_length else truncate_length, not no_arr, not no_str, flow_style)
+    cls = _message_class(visit, topic, type_name)
+    count = 0
+
+    def show(message: Message) -> None:
+        nonlocal count
+        count += 1
+        found = message if field is None else pick(message, field)
+        if csv:
+            click.echo(to_csv(found, style) if isinstance(found, Message) else found)
+        elif isinstance(found, Message):
+            click.echo(to_yaml(found, style) + "---")
+        else:
+            click.echo(f"{found}\n---")
+
+    _listen(visit, cls, topic, show, wishes)
+    try:
+        visit.spin(visit.node, lambda: once and count)
+    except NoSuchField as problem:
+        refuse(str(problem))
+
+
+@click.command()
+@click.argument("topic")
+@window(WIDE_WINDOW)
+@click.option("--wall-time", is_flag=True, help="By this machine's clock instead of the world's.")
+@quality_options
+@visiting
+def hz(visit: Visit, topic: str, window: int, wall_time: bool, wishes: Wishes) -> None:
+    """How often something is said on a topic, once a second, until Ctrl-C.
+
+    In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
+    """
+    meter = RateMeter(window)
+    heard = 0
+
+    def note(_: Message) -> None:
+        nonlocal heard
+        heard += 1
+        meter.heard(time.monotonic_ns() if wall_time else visit.graph.now_ns)
+
+    def report() -> None:
+        nonlocal heard
+        text = meter.text()
+        if heard and text is not None:
+            click.echo(text)
+        heard = 0
+
+    _listen(visit, _message_class(visit, topic, wait=True), topic, note, wishes)
+    visit.node.create_timer(REPORT_S, report)
+    visit.spin(visit.node)
+
+
+@click.command()
+@click.argument("topic")
+@window(NARROW_WINDOW)
+@quality_options
+@visiting
+def bw(visit: Visit, topic: str, window: int, wishes: Wishes) -> None:
+    """How many bytes a second a topic carries, once a second, until Ctrl-C."""
+    from kit.ros.serialization import Serializer  # only now: it takes rosbags
+
+    meter, serializer = BandwidthMeter(window), Serializer()
+
+    def note(message: Message) -> None:
+        meter.heard(visit.graph.now_ns, len(serializer.serialize(message)))
+
+    def report() -> None:
+        text = meter.text(visit.graph.now_ns)
+        if text is not None:
+            click.echo(text)
+
+    _listen(visit, _message_class(visit, topic, wait=True), topic, note, wishes)
+    click.echo(f"Subscribed to [{topic}]")
+    visit.node.create_timer(REPORT_S, report)
+    visit.spin(visit.node)
+
+
+@click.command()
+@click.argument("topic")
+@window(WIDE_WINDOW)
+@quality_options
+@visiting
+def delay(visit: Visit, topic: str, window: int, wishes: Wishes) -> None:
+    """How old a topic's messages are by the time in their header, once a second, until Ctrl-C."""
+    cls = _message_class(visit, topic, wait=True)
+    if "header" not in cls.get_fields_and_field_types():
+        refuse("msg does not have header")
+    meter = DelayMeter(window)
+
+    def note(message: Any) -> None:
+        meter.heard(visit.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
+
+    def report() -> None:
+        text = meter.text()
+        if text is not None:
+            click.echo(text)
+
+    _listen(visit, cls, topic, note, wishes)
+    visit.node.create_timer(REPORT_S, report)
+    visit.spin(visit.node)
+
+
+def _message_class(
+    visit: Visit, topic: str, type_name: str | None = None, *, wait: bool = False
+) -> type[Message]:
+    """The class of a topic's messages, or the end of the verb; ``wait``: as soon as anybody uses the topic."""
+    if type_name is not None:
+        return interface_named(find_message, type_name)
+    known = visit.graph.directory.topics
+    name = absolute(topic)
+    if name not in known:
+        click.echo(f"WARNING: topic [{topic}] does not appear to be published yet", err=True)
+        if not wait:
+            refuse("Could not determine the type for the passed topic")
+        visit.graph.wait(lambda: name in known)
+    types = known[name].type_names
+    if len(types) > 1:
+        refuse(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]")
+    return find_message(types[0])
+
+
+def _listen(
+    visit: Visit, cls: type[Message], topic: str, callback: Callable[[Any], None], wishes: Wishes
+) -> None:
+    name = absolute(topic)
+    visit.node.create_subscription(cls, name, callback, wishes.on(fitting_qos(visit.graph, name)))

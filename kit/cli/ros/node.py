@@ -1,0 +1,57 @@
+"""``kit ros node``: who is there."""
+
+from __future__ import annotations
+
+import click
+
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.graph_text import absolute, node_info, node_names
+from kit.inspection.visit import Visit
+
+
+@click.group()
+def command() -> None:
+    """The nodes of the running world: programs, or parts of one, that talk with each other."""
+
+
+@command.command("list")
+@click.option("-a", "--all", "hidden", is_flag=True, help="Hidden ones too, such as this command's own.")
+@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many.")
+@visiting
+def list_nodes(visit: Visit, hidden: bool, count: bool) -> None:
+    """The full names of all nodes."""
+    names = node_names(visit.graph, hidden=hidden)
+    if len(set(names)) < len(names):
+        click.echo(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+            "which can have unintended side effects.",
+            err=True,
+        )
+    if count:
+        click.echo(len(names))
+    else:
+        for name in names:
+            click.echo(name)
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@click.option("--include-hidden", "hidden", is_flag=True, help="Hidden topics and services too.")
+@visiting
+def info(visit: Visit, name: str, hidden: bool) -> None:
+    """What a node subscribes to, publishes, serves and asks.
+
+    \b
+    kit ros node info /flatland_server
+    """
+    handles = [handle for handle in visit.graph.directory.nodes if handle.full_name == absolute(name)]
+    if not handles:
+        refuse(f"Unable to find node '{name}'")
+    if len(handles) > 1:
+        click.echo(
+            f'There are {len(handles)} nodes in the graph with the exact name "{name}". '
+            "You are seeing information about only one of them.",
+            err=True,
+        )
+    for line in node_info(handles[0], hidden=hidden):
+        click.echo(line)

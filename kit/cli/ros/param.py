@@ -1,0 +1,213 @@
+"""``kit ros param``: the settings of nodes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import yaml
+
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.graph_text import absolute, node_names
+from kit.inspection.parameter_text import description, nested, type_text, value_text
+from kit.inspection.visit import Visit
+from kit.msg.rcl_interfaces import (
+    DescribeParameters,
+    GetParameters,
+    ListParameters,
+    Parameter,
+    ParameterValue,
+    SetParameters,
+    SetParametersResult,
+)
+from kit.ros.exceptions import InvalidRosArguments
+from kit.ros.naming import validate_full_topic_name
+from kit.ros.parameter import Parameter as TypedParameter
+from kit.ros.parameter import parameter_value_to_python
+from kit.ros.parameter_files import get_parameter_value, read_parameter_file
+
+hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden nodes too.")
+
+
+@click.group()
+def command() -> None:
+    """The parameters of nodes: settings that can be read and changed while they run."""
+
+
+@command.command("list")
+@click.argument("name", required=False, metavar="[NODE]")
+@hidden_nodes
+@click.option("--param-type", is_flag=True, help="With their types.")
+@click.option("--param-prefixes", multiple=True, help="Only those below this name.")
+@click.option("--filter", "pattern", help="Only those that this regular expression finds.")
+@visiting
+def list_parameters(
+    visit: Visit,
+    name: str | None,
+    hidden: bool,
+    param_type: bool,
+    param_prefixes: Sequence[str],
+    pattern: str | None,
+) -> None:
+    """The names of all parameters, or of one node's."""
+    nodes = [_existing(visit, name, hidden=hidden)] if name else node_names(visit.graph, hidden=hidden)
+    for node in dict.fromkeys(nodes):
+        if f"{node}/list_parameters" not in visit.graph.directory.services:
+            continue
+        if not name:
+            click.echo(f"{node}:")
+        names = [
+            each for each in _names(visit, node, param_prefixes) if not pattern or re.search(pattern, each)
+        ]
+        types = {}
+        if param_type:
+            types = {each.name: type_text(each.type) for each in _describe(visit, node, names)}
+        for each in names:
+            click.echo(f"  {each} (type: {types[each]})" if param_type else f"  {each}")
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@click.argument("parameter")
+@click.option("--hide-type", is_flag=True, help="Only the value.")
+@hidden_nodes
+@visiting
+def get(visit: Visit, name: str, parameter: str, hide_type: bool, hidden: bool) -> None:
+    """A parameter's value.
+
+    \b
+    kit ros param get /random_walk speed
+    """
+    node = _existing(visit, name, hidden=hidden)
+    request = GetParameters.Request(names=[parameter])
+    values = visit.call(GetParameters, f"{node}/get_parameters", request).values
+    if not values:
+        refuse("Parameter not set")
+    click.echo(value_text(values[0], hide_type=hide_type))
+
+
+@command.command("set")
+@click.argument("name", metavar="NODE")
+@click.argument("pairs", nargs=-1, required=True, metavar="PARAMETER VALUE [PARAMETER VALUE ...]")
+@hidden_nodes
+@visiting
+def set_parameters(visit: Visit, name: str, pairs: Sequence[str], hidden: bool) -> None:
+    """Change a parameter, or several.
+
+    \b
+    kit ros param set /random_walk speed 0.3
+    """
+    if len(pairs) % 2:
+        refuse(
+            "Parameters must be provided as name/value pairs: name value [name value ...]. "
+            f"Got {len(pairs)} argument(s)."
+        )
+    node = _existing(visit, name, hidden=hidden)
+    wanted = [
+        Parameter(name=each, value=get_parameter_value(value))
+        for each, value in zip(pairs[::2], pairs[1::2], strict=True)
+    ]
+    results = _set(visit, node, wanted)
+    for parameter, result in zip(wanted, results, strict=True):
+        prefix = f"{parameter.name}: " if len(wanted) > 1 else ""
+        _say(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
+    _end(results)
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@click.argument("parameters", nargs=-1, required=True)
+@hidden_nodes
+@visiting
+def describe(visit: Visit, name: str, parameters: Sequence[str], hidden: bool) -> None:
+    """What a parameter is for, and what it may be."""
+    for descriptor in _describe(visit, _existing(visit, name, hidden=hidden), parameters):
+        for line in description(descriptor):
+            click.echo(line)
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@hidden_nodes
+@visiting
+def dump(visit: Visit, name: str, hidden: bool) -> None:
+    """All parameters of a node, as a file that `load` and `--params-file` take."""
+    node = _existing(visit, name, hidden=hidden)
+    names = _names(visit, node)
+    values = visit.call(GetParameters, f"{node}/get_parameters", GetParameters.Request(names=names)).values
+    tree = nested(zip(names, map(parameter_value_to_python, values), strict=True))
+    click.echo(yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False))
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@click.argument("file", type=click.Path(path_type=Path))
+@hidden_nodes
+@visiting
+def load(visit: Visit, name: str, file: Path, hidden: bool) -> None:
+    """Set a node's parameters from a file."""
+    node = _existing(visit, name, hidden=hidden)
+    try:
+        given = [entry for entry in read_parameter_file(str(file)) if entry.node in (node, "/**")]
+    except InvalidRosArguments as problem:
+        refuse(str(problem).removeprefix("--params-file "))
+    if not given:
+        refuse(f"Param file does not contain parameters for {node}, only for other nodes: {file}")
+    wanted = [TypedParameter.to_parameter_msg(each) for entry in given for each in entry.parameters]
+    results = _set(visit, node, wanted)
+    for parameter, result in zip(wanted, results, strict=True):
+        text = f"Set parameter {parameter.name}"
+        _say(result, f"{text} successful", f"{text} failed")
+    _end(results)
+
+
+@command.command()
+@click.argument("name", metavar="NODE")
+@click.argument("parameter")
+@hidden_nodes
+@visiting
+def delete(visit: Visit, name: str, parameter: str, hidden: bool) -> None:
+    """Take a parameter away."""
+    node = _existing(visit, name, hidden=hidden)
+    results = _set(visit, node, [Parameter(name=parameter, value=ParameterValue())])
+    _say(results[0], "Deleted parameter successfully", "Deleting parameter failed")
+    _end(results)
+
+
+def _existing(visit: Visit, name: str, *, hidden: bool) -> str:
+    """The full name of a node that is there, or the end of the verb."""
+    node = absolute(name)
+    if node not in node_names(visit.graph, hidden=hidden):
+        refuse("Node not found")
+    if f"{node}/get_parameters" not in visit.graph.directory.services:
+        refuse(f"The node {node} offers no parameters")
+    validate_full_topic_name(node)
+    return node
+
+
+def _names(visit: Visit, node: str, prefixes: Sequence[str] = ()) -> list[str]:
+    request = ListParameters.Request(prefixes=list(prefixes))
+    return sorted(visit.call(ListParameters, f"{node}/list_parameters", request).result.names)
+
+
+def _describe(visit: Visit, node: str, names: Sequence[str]) -> list[Any]:
+    request = DescribeParameters.Request(names=list(names))
+    return list(visit.call(DescribeParameters, f"{node}/describe_parameters", request).descriptors)
+
+
+def _set(visit: Visit, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
+    request = SetParameters.Request(parameters=list(wanted))
+    return list(visit.call(SetParameters, f"{node}/set_parameters", request).results)
+
+
+def _say(result: SetParametersResult, done: str, failed: str) -> None:
+    reason = f": {result.reason}" if result.reason else ""
+    click.echo(f"{done if result.successful else failed}{reason}", err=not result.successful)
+
+
+def _end(results: Sequence[SetParametersResult]) -> None:
+    if not all(result.successful for result in results):
+        raise SystemExit(1)

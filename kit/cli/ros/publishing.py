@@ -1,0 +1,96 @@
+"""``kit ros topic pub``: saying something on a topic."""
+
+from __future__ import annotations
+
+import click
+
+from kit.cli.ros.quality import Wishes, quality_options
+from kit.cli.ros.values import filled, interface_named, read_values
+from kit.cli.ros.visiting import refuse, visiting
+from kit.host.codec import NotFiniteError
+from kit.inspection.graph_text import absolute
+from kit.inspection.visit import Visit
+from kit.msg.interfaces import find_message
+from kit.ros.exceptions import NameValidationException
+from kit.ros.qos import QoSProfile
+
+
+@click.command()
+@click.argument("topic")
+@click.argument("type_name", metavar="TYPE")
+@click.argument("values", default="{}", metavar="[YAML]")
+@click.option(
+    "-r",
+    "--rate",
+    type=click.FloatRange(0, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="How often a second, in the world's time.",
+)
+@click.option("-1", "--once", is_flag=True, help="Once.")
+@click.option("-t", "--times", type=click.IntRange(0), default=0, help="So many times.")
+@click.option(
+    "-p", "--print", "every", type=click.IntRange(0), default=1, help="Print only every so manieth message."
+)
+@click.option(
+    "-w",
+    "--wait-matching-subscriptions",
+    "wanted",
+    type=click.IntRange(0),
+    help="Begin when so many listen; 1 with --once and --times.",
+)
+@click.option("-n", "--node-name", help="What this command's node is called.")
+@quality_options
+@visiting
+def pub(
+    visit: Visit,
+    topic: str,
+    type_name: str,
+    values: str,
+    rate: float,
+    once: bool,
+    times: int,
+    every: int,
+    wanted: int | None,
+    node_name: str | None,
+    wishes: Wishes,
+) -> None:
+    """Say something on a topic: again and again until Ctrl-C, or once.
+
+    \b
+    kit ros topic pub --once /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.5}}"
+    kit ros topic pub -r 10 /chatter std_msgs/msg/String "data: hello"
+    """
+    if once and times:
+        refuse("--once and --times say two different things; give one of them")
+    most = 1 if once else times
+    cls = interface_named(find_message, type_name)
+    content = read_values(values)
+    filled(cls, content, 0)
+    try:
+        node = visit.make_node(node_name) if node_name else visit.node
+        publisher = node.create_publisher(cls, absolute(topic), wishes.on(QoSProfile(depth=10)))
+    except NameValidationException as problem:
+        refuse(str(problem))
+    least = wanted if wanted is not None else bool(most)
+    if publisher.get_subscription_count() < least:
+        click.echo(f"Waiting for at least {least:d} matching subscription(s)...")
+        visit.graph.wait(lambda: publisher.get_subscription_count() >= least)
+    click.echo("publisher: beginning loop")
+    count = 0
+
+    def publish() -> None:
+        nonlocal count
+        count += 1
+        message = filled(cls, content, visit.graph.now_ns)
+        if every and count % every == 0:
+            click.echo(f"publishing #{count}: {message!r}\n")
+        publisher.publish(message)
+
+    try:
+        publish()
+        if most != 1:
+            node.create_timer(1 / rate, publish)
+            visit.spin(node, lambda: most and count >= most)
+    except (NotFiniteError, ValueError) as problem:
+        refuse(str(problem))

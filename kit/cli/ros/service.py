@@ -1,0 +1,102 @@
+"""``kit ros service``: what can be asked."""
+
+from __future__ import annotations
+
+import click
+
+from kit.cli.ros.values import filled, interface_named, read_values
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.graph_text import service_info, services
+from kit.inspection.visit import Visit
+from kit.msg.interfaces import find_service
+
+
+@click.group()
+def command() -> None:
+    """The services of the running world: questions that somebody answers, once each."""
+
+
+@command.command("list")
+@click.option("-t", "--show-types", is_flag=True, help="With their types.")
+@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-a", "--all", "--include-hidden-services", "hidden", is_flag=True, help="Hidden ones too.")
+@visiting
+def list_services(visit: Visit, show_types: bool, count: bool, hidden: bool) -> None:
+    """The names of all services."""
+    found = services(visit.graph, hidden=hidden)
+    if count:
+        click.echo(len(found))
+        return
+    for name, types in found:
+        click.echo(f"{name} [{', '.join(types)}]" if show_types else name)
+
+
+@command.command()
+@click.argument("name", metavar="SERVICE")
+@visiting
+def info(visit: Visit, name: str) -> None:
+    """A service's type, and how many serve and ask it."""
+    types = dict(services(visit.graph, hidden=True)).get(name)
+    if types is None:
+        refuse(f"Unknown service '{name}'")
+    for line in service_info(visit.graph, name, types):
+        click.echo(line)
+
+
+@command.command("type")
+@click.argument("name", metavar="SERVICE")
+@visiting
+def type_of(visit: Visit, name: str) -> None:
+    """A service's type."""
+    types = dict(services(visit.graph, hidden=True)).get(name)
+    if types is None:
+        raise SystemExit(1)
+    for each in types:
+        click.echo(each)
+
+
+@command.command()
+@click.argument("type_name", metavar="TYPE")
+@click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
+@visiting
+def find(visit: Visit, type_name: str, count: bool) -> None:
+    """The services of a type."""
+    names = [name for name, types in services(visit.graph, hidden=True) if type_name in types]
+    if count:
+        click.echo(len(names))
+        return
+    for name in names:
+        click.echo(name)
+
+
+@command.command()
+@click.argument("name", metavar="SERVICE")
+@click.argument("type_name", metavar="TYPE")
+@click.argument("values", default="{}", metavar="[YAML]")
+@click.option(
+    "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Again and again, so many times a second."
+)
+@visiting
+def call(visit: Visit, name: str, type_name: str, values: str, rate: float | None) -> None:
+    """Ask a service, and print its response.
+
+    \b
+    kit ros service call /pause std_srvs/srv/Empty
+    kit ros service call /move_model flatland_msgs/srv/MoveModel "{name: serp, pose: {x: 0.5}}"
+    """
+    cls = interface_named(find_service, type_name)
+    content = read_values(values)
+    graph = visit.graph
+    client = visit.node.create_client(cls, name)
+    if not client.service_is_ready():
+        click.echo("waiting for service to become available...")
+        client.wait_for_service()
+    while True:
+        request = filled(cls.Request, content, graph.now_ns)
+        click.echo(f"requester: making request: {request!r}\n")
+        asked_ns = graph.now_ns
+        response = visit.call(cls, name, request)
+        click.echo(f"response:\n{response!r}\n")
+        if rate is None:
+            return
+        graph.wait(lambda: False, asked_ns + int(1e9 / rate))

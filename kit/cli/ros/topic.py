@@ -1,0 +1,82 @@
+"""``kit ros topic``: what is said, and by whom."""
+
+from __future__ import annotations
+
+import click
+
+from kit.cli.ros import listening, publishing
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.graph_text import topic_info, topic_summary, topics
+from kit.inspection.visit import Visit
+
+
+@click.group()
+def command() -> None:
+    """The topics of the running world: what is said there, to whoever listens."""
+
+
+@command.command("list")
+@click.option("-t", "--show-types", is_flag=True, help="With their types.")
+@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("-a", "--all", "--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
+@click.option("-v", "--verbose", is_flag=True, help="With how many publish and subscribe.")
+@visiting
+def list_topics(visit: Visit, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
+    """The names of all topics."""
+    found = topics(visit.graph, hidden=hidden)
+    if count:
+        click.echo(len(found))
+    elif verbose:
+        for line in topic_summary(visit.graph, found):
+            click.echo(line)
+    else:
+        for name, types in found:
+            click.echo(f"{name} [{', '.join(types)}]" if show_types else name)
+
+
+@command.command()
+@click.argument("name", metavar="TOPIC")
+@click.option("-v", "--verbose", is_flag=True, help="With every end: its node, its quality of service.")
+@visiting
+def info(visit: Visit, name: str, verbose: bool) -> None:
+    """A topic's type, and how many publish and subscribe.
+
+    \b
+    kit ros topic info /static_laser -v
+    """
+    types = dict(topics(visit.graph, hidden=True)).get(name)
+    if types is None:
+        refuse(f"Unknown topic '{name}'")
+    for line in topic_info(visit.graph, name, types, verbose=verbose):
+        click.echo(line)
+
+
+@command.command("type")
+@click.argument("name", metavar="TOPIC")
+@visiting
+def type_of(visit: Visit, name: str) -> None:
+    """A topic's type."""
+    types = dict(topics(visit.graph, hidden=True)).get(name)
+    if types is None:
+        raise SystemExit(1)
+    for each in types:
+        click.echo(each)
+
+
+@command.command()
+@click.argument("type_name", metavar="TYPE")
+@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
+@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
+@visiting
+def find(visit: Visit, type_name: str, count: bool, hidden: bool) -> None:
+    """The topics of a type."""
+    names = [name for name, types in topics(visit.graph, hidden=hidden) if type_name in types]
+    if count:
+        click.echo(len(names))
+        return
+    for name in names:
+        click.echo(name)
+
+
+for verb in (listening.echo, listening.hz, listening.bw, listening.delay, publishing.pub):
+    command.add_command(verb)

@@ -1,0 +1,123 @@
+"""Messages as ``topic echo`` shows them: YAML, comma-separated values, or one field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import yaml
+
+from kit.msg.fields import Fixed, Kind, Many
+from kit.msg.message import Message
+
+LONGEST: Final = 128
+"""Items and characters of one value that are shown by default."""
+
+WIDEST: Final = 2**31 - 1
+"""A line of YAML is never broken."""
+
+_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+class NoSuchField(LookupError):
+    """The message has no such field; the text says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How much of a message is shown."""
+
+    longest: int | None = LONGEST
+    """Longer arrays and texts are cut; None: nothing is."""
+    arrays: bool = True
+    """Whether arrays are written out, or only their type and length."""
+    texts: bool = True
+    flow: bool = False
+    """Arrays and nested messages in one line each."""
+
+
+def to_yaml(message: Message, style: Style = Style()) -> str:
+    """The message's fields, one a line; ends with a newline."""
+    return str(
+        yaml.dump(
+            _plain(message, style),
+            Dumper=_Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            width=WIDEST,
+            default_flow_style=style.flow,
+        )
+    )
+
+
+def to_csv(message: Message, style: Style = Style()) -> str:
+    """All values in the order of the definition, without names."""
+    return ",".join(_cells(message, style))
+
+
+def pick(message: Message, path: str) -> Any:
+    """The value at a path of names with dots. Raises NoSuchField."""
+    found: Any = message
+    for name in path.split("."):
+        if not isinstance(found, Message) or name not in type(found).get_fields_and_field_types():
+            has = (
+                ", ".join(type(found).get_fields_and_field_types()) if isinstance(found, Message) else "none"
+            )
+            raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; the fields there are: {has}")
+        found = getattr(found, name)
+    return found
+
+
+def _plain(message: Message, style: Style) -> dict[str, Any]:
+    return {
+        field.name: _value(getattr(message, field.name), field.kind, style)
+        for field in type(message).__ros_fields__
+    }
+
+
+def _value(value: Any, kind: Kind, style: Style) -> Any:
+    if isinstance(value, Message):
+        return _plain(value, style)
+    if isinstance(value, (str, bytes)):
+        return _text(value, style)
+    if isinstance(kind, Fixed):
+        if not style.arrays:
+            return f"<array type: {kind.idl}>"
+        return _cut([_value(entry, kind.item, style) for entry in value.tolist()], style)
+    if isinstance(kind, Many):
+        if not style.arrays:
+            return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
+        return _cut([_value(entry, kind.item, style) for entry in value], style)
+    return value
+
+
+def _text(value: str | bytes, style: Style) -> str:
+    text = value if isinstance(value, str) else value.decode("latin-1")
+    if not style.texts:
+        return f"<string length: <{len(text)}>>"
+    return text if style.longest is None or len(text) <= style.longest else text[: style.longest] + "..."
+
+
+def _cut(values: list[Any], style: Style) -> list[Any]:
+    return (
+        values if style.longest is None or len(values) <= style.longest else [*values[: style.longest], "..."]
+    )
+
+
+def _cells(message: Message, style: Style) -> Iterator[str]:
+    for field in type(message).__ros_fields__:
+        yield from _cell(getattr(message, field.name), field.kind, style)
+
+
+def _cell(value: Any, kind: Kind, style: Style) -> Iterator[str]:
+    if isinstance(value, Message):
+        yield from _cells(value, style)
+    elif isinstance(kind, (Many, Fixed)):
+        if not style.arrays:
+            yield str(_value(value, kind, style))
+            return
+        for entry in _cut(list(value), style):
+            yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, style)), "")
+    else:
+        yield str(_value(value, kind, style))

@@ -1,0 +1,133 @@
+"""Where the running worlds of a user are found: one socket each, in a folder of the workspace.
+
+The folder is the owner's alone, and so is each socket. A workspace may lie on a disk that several machines share,
+so each machine has a folder of its own. What a killed world left behind is cleared away by whoever finds it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+LONGEST_PATH: Final = 100
+"""Bytes of a socket's path that every system takes."""
+
+SUFFIX: Final = ".sock"
+
+
+class NoWorld(LookupError):
+    """No world is running that could be meant; the message says what there is, or how to start one."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunningWorld:
+    """A world that another terminal can look into."""
+
+    path: Path
+    since: float
+    """When it was started [seconds since the epoch]."""
+
+    @property
+    def name(self) -> str:
+        """Its map or launch file and its process: ``maze-4711``."""
+        return self.path.stem
+
+
+def sockets_folder(workspace: Path) -> Path:
+    """This machine's folder of sockets in a workspace."""
+    host = re.sub(r"[^A-Za-z0-9.-]", "_", socket.gethostname()) or "here"
+    return workspace / ".running" / host
+
+
+def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
+    """A new socket for a world called ``name``, and where it lies. Raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    folder.chmod(0o700)
+    stem = f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        path = _bind(listener, folder, stem)
+        path.chmod(0o600)
+        listener.listen(16)
+    except BaseException:
+        listener.close()
+        raise
+    return listener, path
+
+
+def _bind(listener: socket.socket, folder: Path, stem: str) -> Path:
+    for number in range(1, 1000):
+        path = folder / f"{stem}{'' if number == 1 else f'.{number}'}{SUFFIX}"
+        try:
+            with _short(path) as name:
+                listener.bind(name)
+        except OSError:
+            if not path.exists():
+                raise
+        else:
+            return path
+    raise FileExistsError(f"{folder}: too many worlds of one name")
+
+
+def connect(path: Path) -> socket.socket:
+    """A connection to the world behind a socket. Raises OSError when nobody is there."""
+    connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        with _short(path) as name:
+            connection.connect(name)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def running_worlds(folder: Path) -> list[RunningWorld]:
+    """The worlds that run now, the newest first. Clears away sockets behind which nobody is."""
+    worlds = []
+    for path in folder.glob(f"*{SUFFIX}"):
+        try:
+            connect(path).close()
+        except ConnectionRefusedError:
+            with suppress(FileNotFoundError):
+                path.unlink()
+        except OSError:  # it has gone meanwhile, or is not ours
+            continue
+        else:
+            with suppress(FileNotFoundError):
+                worlds.append(RunningWorld(path, path.stat().st_mtime))
+    return sorted(worlds, key=lambda world: (-world.since, world.name))
+
+
+def find_world(folder: Path, name: str | None = None) -> RunningWorld:
+    """The newest world, or the newest one whose name is or begins with ``name``. Raises NoWorld."""
+    worlds = running_worlds(folder)
+    if not worlds:
+        raise NoWorld(
+            "No world is running in this workspace. Start one in another terminal: kit play maze, "
+            "kit launch FOLDER, or kit run maze --serve."
+        )
+    for world in worlds:
+        if name is None or world.name == name or world.name.rpartition("-")[0] == name:
+            return world
+    raise NoWorld(
+        f"No running world is called {name}; there are: {', '.join(world.name for world in worlds)}."
+    )
+
+
+@contextmanager
+def _short(path: Path) -> Iterator[str]:
+    """A name for the path that the system takes, however deep the folder lies (Linux)."""
+    if len(os.fsencode(path)) <= LONGEST_PATH:
+        yield str(path)
+        return
+    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        yield f"/proc/self/fd/{folder}/{path.name}"
+    finally:
+        os.close(folder)
