@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kit.kernels import Floats, Segments
+from kit.arrays import Floats, Segments
 
 
 def in_blocks(ends: Floats, size: int = 32) -> Segments:

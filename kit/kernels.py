@@ -9,18 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
+
+from kit.arrays import Beams as Beams
+from kit.arrays import Flags, Floats, Integers, Singles
+from kit.arrays import Fleet as Fleet
+from kit.arrays import Segments as Segments
+from kit.arrays import Shapes as Shapes
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Single: TypeAlias = np.float32
 Bits: TypeAlias = np.uint64
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Integers = NDArray[np.int64]
 
 
 def jit(function: Function) -> Function:
@@ -189,17 +191,6 @@ def segment_meets_polygon(ax: float, ay: float, bx: float, by: float, corners: F
     return enters <= leaves
 
 
-@jit
-def segment_polygon(ax: float, ay: float, bx: float, by: float, corners: Floats) -> float:
-    """Distance between the segment a-b and a convex polygon; 0 where they meet."""
-    if segment_meets_polygon(ax, ay, bx, by, corners):
-        return 0.0
-    nearest = min(point_polygon(ax, ay, corners), point_polygon(bx, by, corners))
-    for i in range(corners.shape[0]):
-        nearest = min(nearest, point_segment(corners[i, 0], corners[i, 1], ax, ay, bx, by))
-    return nearest
-
-
 # --- noise: a value for every (key, counter) --------------------------------------------------------------
 
 
@@ -241,37 +232,6 @@ def normal(key: int, counter: int) -> float:
 # --- what a lidar sees ------------------------------------------------------------------------------------
 
 
-class Segments(NamedTuple):
-    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.blocks.in_blocks``."""
-
-    ends: Floats
-    """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
-    starts: Integers
-    """(blocks + 1): block k is ``ends[starts[k]:starts[k + 1]]``."""
-    discs: Floats
-    """(blocks, 3) ``x y radius``, each containing its block."""
-
-
-class Shapes(NamedTuple):
-    """Circles and convex polygons, in world coordinates or in those of their bodies, and their layer bits."""
-
-    circles: Floats
-    """(circles, 3) ``x y radius``."""
-    circle_bits: Integers
-    corners: Floats
-    """(corners, 2), polygon after polygon, counter-clockwise."""
-    starts: Integers
-    """(polygons + 1): polygon k is ``corners[starts[k]:starts[k + 1]]``."""
-    polygon_bits: Integers
-
-
-class Beams(NamedTuple):
-    """The directions of a lidar's rays in its own frame, ``(rays,)`` each."""
-
-    cos: Floats
-    sin: Floats
-
-
 @jit
 def rays_meeting(
     cos: Singles, sin: Singles, x: Single, y: Single, radius: Single, far: Singles
@@ -308,7 +268,9 @@ def meet_walls(x: float, y: float, cos: Singles, sin: Singles, walls: Segments, 
     """Shortens every range to the nearest wall."""
     for k in range(walls.discs.shape[0]):
         cx, cy = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-        first, end = rays_meeting(cos, sin, cx, cy, Single(walls.discs[k, 2]), ranges)
+        first, end = 0, ranges.shape[0]
+        if walls.discs.shape[0] > 1:
+            first, end = rays_meeting(cos, sin, cx, cy, Single(walls.discs[k, 2]), ranges)
         if first >= end:
             continue
         near_cos, near_sin, near = cos[first:end], sin[first:end], ranges[first:end]
@@ -386,20 +348,6 @@ def add_noise(ranges: Singles, deviation: float, key: int, first: int) -> None:
 
 
 @jit
-def sector_minima(ranges: Singles, far: float, minima: Floats) -> None:
-    """Fills ``minima`` with the shortest range of each sector, ``far`` where a sector sees nothing.
-
-    Sectors have ``rays // sectors`` rays each, the last also those left over.
-    """
-    width = ranges.shape[0] // minima.shape[0]
-    minima[:] = far
-    for i in range(ranges.shape[0]):
-        sector = min(i // width, minima.shape[0] - 1)
-        if ranges[i] < minima[sector]:
-            minima[sector] = ranges[i]
-
-
-@jit
 def place_shapes(
     poses: Floats, circle_body: Integers, corner_body: Integers, local: Shapes, world: Shapes
 ) -> None:
@@ -413,11 +361,224 @@ def place_shapes(
         world.circles[k, 0] = x + cos * local.circles[k, 0] - sin * local.circles[k, 1]
         world.circles[k, 1] = y + sin * local.circles[k, 0] + cos * local.circles[k, 1]
         world.circles[k, 2] = local.circles[k, 2]
+    body, cos, sin = -1, 1.0, 0.0
     for k in range(local.corners.shape[0]):
         x, y, theta = poses[corner_body[k]]
-        cos, sin = math.cos(theta), math.sin(theta)
+        if corner_body[k] != body:
+            body, cos, sin = corner_body[k], math.cos(theta), math.sin(theta)
         world.corners[k, 0] = x + cos * local.corners[k, 0] - sin * local.corners[k, 1]
         world.corners[k, 1] = y + sin * local.corners[k, 0] + cos * local.corners[k, 1]
+
+
+# --- many worlds at once -----------------------------------------------------------------------------------
+# Arrays of all worlds, then loops over them that call what stands above. Every world by itself: nothing a
+# world does depends on which others there are. Shapes: n worlds, r robots each, alike but for their poses.
+
+
+@jit
+def walls_of(fleet: Fleet, number: int) -> Segments:
+    """The walls of one map."""
+    first, end = fleet.blocks[number], fleet.blocks[number + 1]
+    return Segments(fleet.walls.ends, fleet.walls.starts[first : end + 1], fleet.walls.discs[first:end])
+
+
+@jit
+def placed_hulls(fleet: Fleet) -> Shapes:
+    """Room for the hulls of one world, where its robots are."""
+    own = fleet.hulls
+    return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, own.polygon_bits)
+
+
+@jit
+def clearance(x: float, y: float, walls: Segments) -> float:
+    """Distance from a point to the nearest wall; inf without any."""
+    nearest = math.inf
+    for k in range(walls.discs.shape[0]):
+        if math.hypot(walls.discs[k, 0] - x, walls.discs[k, 1] - y) - walls.discs[k, 2] < nearest:
+            for j in range(walls.starts[k], walls.starts[k + 1]):
+                a, b = walls.ends[j, :2], walls.ends[j, 2:]
+                nearest = min(nearest, point_segment(x, y, a[0], a[1], b[0], b[1]))
+    return nearest
+
+
+@jit
+def polygons_meet(one: Floats, other: Floats) -> bool:
+    """Whether two convex polygons have a point in common: an edge of one and the other, or one lies inside."""
+    for i in range(one.shape[0]):
+        if segment_meets_polygon(one[i - 1, 0], one[i - 1, 1], one[i, 0], one[i, 1], other):
+            return True
+    return point_in_polygon(other[0, 0], other[0, 1], one)
+
+
+@jit
+def hulls_meet(hulls: Shapes) -> bool:
+    """Whether polygons of different robots meet."""
+    for i in range(hulls.polygon_bits.shape[0]):
+        for j in range(i):
+            if hulls.polygon_bits[i] != hulls.polygon_bits[j] and polygons_meet(
+                hulls.corners[hulls.starts[i] : hulls.starts[i + 1]],
+                hulls.corners[hulls.starts[j] : hulls.starts[j + 1]],
+            ):
+                return True
+    return False
+
+
+@jit
+def hull_meets_wall(x: float, y: float, radius: float, hulls: Shapes, bit: int, walls: Segments) -> bool:
+    """Whether a wall meets the polygons on the layer ``bit``, all within ``radius`` of the point."""
+    for j in range(walls.starts[0], walls.starts[-1]):
+        ax, ay, bx, by = walls.ends[j, 0], walls.ends[j, 1], walls.ends[j, 2], walls.ends[j, 3]
+        if point_segment(x, y, ax, ay, bx, by) > radius:
+            continue
+        for k in range(hulls.polygon_bits.shape[0]):
+            corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
+            if hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners):
+                return True
+    return False
+
+
+@jit
+def stop_robots(
+    fleet: Fleet, walls: Segments, before: Floats, hulls: Shapes, poses: Floats, free: Floats, hit: Flags
+) -> None:
+    """Puts the robots of one world that meet something back to where they were ``before``; they are hit."""
+    near = poses.shape[0] > 1
+    for k in range(poses.shape[0]):
+        if free[k] <= fleet.radius:
+            free[k] = clearance(poses[k, 0], poses[k, 1], walls)
+            near |= free[k] <= fleet.radius
+    if not near:
+        return
+    place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
+    together = hulls_meet(hulls)
+    for k in range(poses.shape[0]):
+        x, y, close = poses[k, 0], poses[k, 1], free[k] <= fleet.radius
+        if together or (close and hull_meets_wall(x, y, fleet.radius, hulls, 1 << k, walls)):
+            poses[k], free[k], hit[k] = before[k], 0.0, True
+
+
+@jit
+def drive_worlds(
+    fleet: Fleet, maps: Integers, twists: Floats, dt: float, poses: Floats, free: Floats, hit: Flags
+) -> None:
+    """Every robot moves for ``dt``. Where it would meet something it stays, and is hit: (n, r), set, never cleared.
+
+    ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``free`` (n, r): no wall
+    is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
+    """
+    hulls, before, robots = placed_hulls(fleet), np.empty_like(poses[0]), poses.shape[1]
+    for i in range(poses.shape[0]):
+        near = False
+        for k in range(robots):
+            x, y, theta, forward = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2], twists[i, k, 0]
+            before[k, 0], before[k, 1], before[k, 2] = x, y, theta
+            x, y, theta = twist_step(x, y, theta, forward, 0.0, twists[i, k, 1], dt)
+            poses[i, k, 0], poses[i, k, 1], poses[i, k, 2] = x, y, theta
+            free[i, k] -= abs(forward) * dt
+            near |= free[i, k] <= fleet.radius
+            near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
+        if near:
+            stop_robots(fleet, walls_of(fleet, maps[i]), before, hulls, poses[i], free[i], hit[i])
+
+
+@jit
+def arrivals(
+    fleet: Fleet, poses: Floats, targets: Floats, radius: float, by_hull: bool, inside: Flags
+) -> None:
+    """Fills ``inside`` (n, r): who is within ``radius`` of ``targets`` (n, 2), by the hull or by its origin."""
+    for i in range(poses.shape[0]):
+        for k in range(poses.shape[1]):
+            x, y = targets[i, 0] - poses[i, k, 0], targets[i, 1] - poses[i, k, 1]
+            away = math.hypot(x, y)
+            if by_hull and radius < away <= radius + fleet.radius:
+                cos, sin = math.cos(poses[i, k, 2]), math.sin(poses[i, k, 2])
+                for j in range(fleet.hulls.polygon_bits.shape[0]):
+                    if fleet.hulls.polygon_bits[j] == 1 << k:
+                        corners = fleet.hulls.corners[fleet.hulls.starts[j] : fleet.hulls.starts[j + 1]]
+                        away = min(away, point_polygon(cos * x + sin * y, cos * y - sin * x, corners))
+            inside[i, k] = away <= radius
+
+
+@jit
+def look_worlds(
+    fleet: Fleet,
+    which: Integers,
+    maps: Integers,
+    poses: Floats,
+    keys: Integers,
+    drawn: Integers,
+    ranges: Singles,
+) -> None:
+    """Scans of the worlds ``which``, as ``scan`` and ``add_noise`` make them; the reach where nothing is seen.
+
+    The noise of world i is number ``drawn[i]`` and following of ``keys[i]``. ``ranges`` (n, r, rays).
+    """
+    robots, rays = poses.shape[1], fleet.beams.cos.shape[0]
+    hulls, others = placed_hulls(fleet), robots > 1
+    padded = (rays + 31) // 32 * 32  # whole vectors are faster; a ray without a direction meets nothing
+    cos, near = np.zeros(padded, dtype=np.float32), np.zeros(padded, dtype=np.float32)
+    sin = np.zeros(padded, dtype=np.float32)
+    for i in which:
+        if others:
+            place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
+        for k in range(robots):
+            x, y, theta = poses[i, k]
+            turn_beams(theta, fleet.beams, cos, sin)
+            near[:] = fleet.reach
+            meet_walls(x, y, cos, sin, walls_of(fleet, maps[i]), near)
+            meet_shapes(x, y, cos, sin, hulls, ~(1 << k) if others else 0, near)
+            ranges[i, k] = near[:rays]
+            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)
+
+
+@jit
+def sense_worlds(
+    which: Integers, far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles
+) -> None:
+    """Limits ``ranges`` (n, r, rays) to 0..``far``, and fills ``sensed`` (n, r, numbers) with some rays and minima.
+
+    ``single`` (r, s): rays given as they are, first; ``sectors`` (rays): the sector each ray belongs to, from 0.
+    """
+    s = single.shape[1]
+    for i in which:
+        for k in range(ranges.shape[1]):
+            seen, numbers = ranges[i, k], sensed[i, k]
+            for j in range(seen.shape[0]):
+                seen[j] = min(max(seen[j], Single(0)), Single(far))
+            numbers[:] = far
+            for j in range(seen.shape[0]):
+                numbers[s + sectors[j]] = min(numbers[s + sectors[j]], seen[j])
+            for j in range(s):
+                numbers[j] = seen[single[k, j]]
+
+
+@jit
+def look_up(
+    tables: Singles, corners: Floats, cell: float, cases: Integers, poses: Floats, found: Floats
+) -> None:
+    """Fills ``found`` (n, r) from a table each case has, between the four nearest cells.
+
+    ``tables`` (cases, rows, columns): values at the middles of square cells; ``corners`` (cases, 2): where the first
+    middle is.
+    """
+    for i in range(poses.shape[0]):
+        table = tables[cases[i]]
+        for k in range(poses.shape[1]):
+            u = min(max((poses[i, k, 0] - corners[cases[i], 0]) / cell, 0.0), table.shape[1] - 1.001)
+            v = min(max((poses[i, k, 1] - corners[cases[i], 1]) / cell, 0.0), table.shape[0] - 1.001)
+            column, row = int(u), int(v)
+            u, v = u - column, v - row
+            below = (1.0 - u) * table[row, column] + u * table[row, column + 1]
+            above = (1.0 - u) * table[row + 1, column] + u * table[row + 1, column + 1]
+            found[i, k] = (1.0 - v) * below + v * above
+
+
+@jit
+def uniforms(keys: Integers, first: Integers, drawn: Floats) -> None:
+    """Fills ``drawn`` (n, m): row i with number ``first[i]`` and following of ``keys[i]``."""
+    for i in range(drawn.shape[0]):
+        for j in range(drawn.shape[1]):
+            drawn[i, j] = uniform(keys[i], first[i] + j)
 
 
 def warm() -> None:
@@ -428,7 +589,6 @@ def warm() -> None:
     scan((0.0, 0.0, 0.0), Beams(np.ones(2), np.zeros(2)), 2.0, walls, shapes, 1, ranges)
     add_noise(ranges, 0.0, 1, 0)
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
-    sector_minima(ranges, 2.0, np.zeros(1))
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
     tricycle_twist(1.0, 0.0, 1.0)

@@ -11,13 +11,16 @@ from numpy.typing import NDArray
 RAYS = 91
 """The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
 AHEAD = 45
+SIDE_RAYS = ((AHEAD - 21, AHEAD - 25), (AHEAD + 21, AHEAD + 25))
+"""With which rays, a little ahead of abeam and a little behind, the left and the right robot look at each other
+(dissertation, figure 4.8)."""
 FAR_TARGET = 4.0
 """A target's distance is given up to here [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """One robot's numbers, in this order: single rays, sector minima, side rays, target, arrived. For two robots
+    """One robot's numbers, in this order: single rays, side rays, sector minima, target, arrived. For two robots
     the left one's numbers come first, then the right one's."""
 
     rays: tuple[int, ...]
@@ -40,6 +43,11 @@ class Observation:
         """Numbers per robot."""
         sectors = max(self.sectors) + 1
         return len(self.rays) + sectors + 2 * self.side_rays + 2 * self.target + self.arrived
+
+    def tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(robots, single) the rays that each robot's numbers start with, and (91) the sector of every ray."""
+        single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
+        return np.array(single, dtype=np.int64).reshape(robots, -1), np.array(self.sectors, dtype=np.int64)
 
     def space(self, robots: int) -> spaces.Box:
         """Box (robots * size,) float32."""

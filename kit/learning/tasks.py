@@ -11,7 +11,14 @@ from typing import Literal
 
 from kit.learning.actions import FOUR, SEVEN, THREE, Actions
 from kit.learning.observations import NINE, NINETEEN, SEVENTEEN, Observation
-from kit.learning.rewards import Reward
+from kit.learning.rewards import (
+    ALGORITHM_1,
+    ALGORITHM_2,
+    ALGORITHM_2_STOPPING,
+    ALGORITHM_3,
+    SIDE_BY_SIDE,
+    Reward,
+)
 from kit.world.catalogue import Case, MapCard, find_map
 from kit.world.problems import quoted, suggestion
 
@@ -59,6 +66,8 @@ class Task:
     measured_to: Literal["hull", "axle"] = "hull"
     """How near the target a robot is: by the nearest point of its hull, as the seed's beacon measures it, or by
     the middle of its axle, which is harder."""
+    lidar_noise: float | None = None
+    """m, standard deviation on every range; None: as the robots' files say."""
     path_end: float = 0.0
     """m: ``Transition.to_go`` does not fall below this."""
     timeout_terminal: bool = False
@@ -106,8 +115,6 @@ HALLS = tuple(
 )
 PAIRS = ("pair_straight", "pair_turn_90", "pair_curve_90", "pair_turn_180", "pair_curve_180")
 
-NO_REWARD = Reward("none", ())
-
 TURN = Task(
     "turn",
     "Round one corner and back again",
@@ -115,7 +122,7 @@ TURN = Task(
     robots=1,
     actions=THREE,
     observation=NINE,
-    reward=NO_REWARD,
+    reward=replace(ALGORITHM_3, scale=0.01),
     step_time=0.1,
     checks=1,
     target_radius=0.2,
@@ -124,6 +131,7 @@ TURN = Task(
 TURN_SEED = replace(
     TURN,
     name="turn-seed",
+    reward=ALGORITHM_3,
     observation=replace(NINE, clip=10.0, scale=1.0),
     start=Start(),
     timeout_terminal=True,
@@ -135,9 +143,9 @@ HALLWAY = Task(
     robots=1,
     actions=SEVEN,
     observation=SEVENTEEN,
-    reward=NO_REWARD,
+    reward=replace(ALGORITHM_1, scale=0.01),
 )
-HALLWAY_SEED = replace(HALLWAY, name="hallway-seed", timeout_terminal=True)
+HALLWAY_SEED = replace(HALLWAY, name="hallway-seed", reward=ALGORITHM_1, timeout_terminal=True)
 WHEELCHAIRS = Task(
     "wheelchairs",
     "Two wheelchairs side by side, driven by one agent",
@@ -145,7 +153,7 @@ WHEELCHAIRS = Task(
     robots=2,
     actions=replace(FOUR, one_number=False),
     observation=NINETEEN,
-    reward=NO_REWARD,
+    reward=SIDE_BY_SIDE,
     max_steps=300,
     start=Start(gap=0.4, noise=0.05, turned=0.1),
     target_radius=0.4,
@@ -154,13 +162,19 @@ WHEELCHAIRS = Task(
 WHEELCHAIRS_SEED = replace(
     WHEELCHAIRS,
     name="wheelchairs-seed",
+    reward=ALGORITHM_2_STOPPING,
     actions=FOUR,
     start=Start(gap=0.4),
     path_end=0.0,
     timeout_terminal=True,
 )
 WHEELCHAIRS_SEED_49 = replace(
-    WHEELCHAIRS_SEED, name="wheelchairs-seed-49", actions=SEVEN, start=Start(), target_radius=0.25
+    WHEELCHAIRS_SEED,
+    name="wheelchairs-seed-49",
+    reward=ALGORITHM_2,
+    actions=SEVEN,
+    start=Start(),
+    target_radius=0.25,
 )
 
 TASKS = (TURN, TURN_SEED, HALLWAY, HALLWAY_SEED, WHEELCHAIRS, WHEELCHAIRS_SEED, WHEELCHAIRS_SEED_49)

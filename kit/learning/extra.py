@@ -1,0 +1,37 @@
+"""What training needs beyond the kit itself, and what to say where it is missing."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from platform import machine, python_version, system
+
+NEEDED = ("torch", "stable_baselines3", "sb3_contrib")
+INSTALL = "pip install 'robot-learning-kit[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
+"""The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
+RECORDED = ("robot-learning-kit", "torch", "stable-baselines3", "sb3-contrib", "gymnasium", "numpy", "numba")
+
+
+class LearnerMissing(Exception):
+    """The extra ``learn`` is not installed; the message says how to install it."""
+
+
+def require_learner() -> None:
+    """LearnerMissing if training cannot start. Imports nothing."""
+    missing = [name for name in NEEDED if find_spec(name) is None]
+    if missing:
+        raise LearnerMissing(
+            f"Training needs {', '.join(missing)}, which the kit does without otherwise. Install with\n  {INSTALL}\n"
+            "Looking at runs, testing and playing trained policies works without."
+        )
+
+
+def versions() -> dict[str, str]:
+    """What a run depends on: packages, Python, machine."""
+    found = {"python": python_version(), "machine": f"{system()} {machine()}"}
+    for name in RECORDED:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found

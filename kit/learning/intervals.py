@@ -1,0 +1,56 @@
+"""How sure a share of successes is: Wilson's score interval.
+
+E. B. Wilson, "Probable inference, the law of succession, and statistical inference", Journal of the American
+Statistical Association 22 (1927). Unlike the textbook's plus or minus it is right near 0 and 1 too, where learners
+end up.
+"""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+from typing import NamedTuple
+
+
+class Interval(NamedTuple):
+    """Where the true share lies."""
+
+    low: float
+    high: float
+
+
+def wilson(successes: int, trials: int, confidence: float = 0.95) -> Interval:
+    """The interval that holds the true share with this confidence; (0, 1) before any trial.
+
+    ValueError if the numbers cannot be counts of one another, or the confidence is not between 0 and 1.
+    """
+    if not 0 <= successes <= trials:
+        raise ValueError(f"{successes} of {trials} is no share")
+    return _wilson(successes, trials, NormalDist().inv_cdf(0.5 + _checked(confidence) / 2))
+
+
+def at_least(successes: int, trials: int, confidence: float = 0.95) -> float:
+    """What the true share is not below, with this confidence (one-sided)."""
+    if not 0 <= successes <= trials:
+        raise ValueError(f"{successes} of {trials} is no share")
+    return _wilson(successes, trials, NormalDist().inv_cdf(_checked(confidence))).low
+
+
+def _checked(confidence: float) -> float:
+    if not 0 < confidence < 1:
+        raise ValueError(f"a confidence lies between 0 and 1, not at {confidence:g}")
+    return confidence
+
+
+def _wilson(successes: int, trials: int, z: float) -> Interval:
+    """``z``: how many standard deviations to either side."""
+    if trials == 0:
+        return Interval(0.0, 1.0)
+    share, z2 = successes / trials, z * z
+    middle = (share + z2 / (2 * trials)) / (1 + z2 / trials)
+    half = z / (1 + z2 / trials) * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials * trials))
+    # The ends are exact where nothing or everything succeeded; rounding must not move them.
+    return Interval(
+        0.0 if successes == 0 else max(0.0, middle - half),
+        1.0 if successes == trials else min(1.0, middle + half),
+    )
