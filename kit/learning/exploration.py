@@ -34,7 +34,8 @@ class BoltzmannDQN(DQN):
     ) -> tuple[Any, Any]:
         """Actions for observations (n, size); the best ones, or drawn."""
         if deterministic:
-            return super().predict(observation, state, episode_start, deterministic=True)
+            best: tuple[Any, Any] = super().predict(observation, state, episode_start, deterministic=True)
+            return best
         batch = np.atleast_2d(observation)
         with torch.no_grad():
             values = self.q_net(torch.as_tensor(batch, device=self.device))

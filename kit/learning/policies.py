@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
@@ -62,7 +63,8 @@ class Lstm:
 
 def _sigmoid(x: Singles) -> Singles:
     """Written with tanh, which does not overflow."""
-    return (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
+    y: Singles = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
+    return y
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -234,7 +236,10 @@ def to_bytes(policy: Policy) -> bytes:
     }
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
-    np.savez(buffer, about=text, **_arrays(policy.brain))
+    with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
+        for name, array in {"about": text, **_arrays(policy.brain)}.items():
+            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
+                np.lib.format.write_array(member, array, allow_pickle=False)
     return buffer.getvalue()
 
 

@@ -238,6 +238,9 @@ KIT_ARS = Preset(
 )
 KIT_TABLE = Preset(Tabular(), UntilSure(every=50_000), steps=1_000_000, worlds=16)
 
+_PLAIN: Mapping[str, Settings] = MappingProxyType(
+    {"rollouts": Rollouts(), "replay": Replay(), "search": Search(), "table": Tabular()}
+)
 _SEED: Mapping[str, Preset] = MappingProxyType({"ppo": SEED_PPO, "boltzmann-dqn": SEED_DQN})
 _KIT: Mapping[tuple[str, str], Preset] = MappingProxyType(
     {
@@ -268,6 +271,6 @@ def find_preset(name: Literal["kit", "seed"], algorithm: Algorithm, task: str) -
         "ppo" if algorithm.name == "maskable-ppo" else algorithm.name
     )  # the same but for what it may not do
     if name == "seed":
-        plain = {"rollouts": Rollouts(), "replay": Replay(), "search": Search(), "table": Tabular()}
-        return _SEED.get(likeness, replace(SEED_ANY, settings=plain[algorithm.family]))
+        plain = _PLAIN[algorithm.family]
+        return _SEED.get(likeness, replace(SEED_ANY, settings=plain))
     return _KIT.get((likeness, task.partition("-")[0]), _KIT_ANYWHERE[likeness])
