@@ -1,0 +1,178 @@
+"""The kit over a real SSH connection to this machine, through a slow link. Skips only where there is no sshd."""
+
+from __future__ import annotations
+
+import contextlib
+import getpass
+import os
+import re
+import shlex
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import kit as kit_package
+from tests.tui.test_play_pty import User
+from tests.tui.test_world_view_pty import run_on
+
+RELAY = Path(__file__).with_name("relay.py")
+SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
+SSH = shutil.which("ssh")
+CLOCK = re.compile(r"(\d+):(\d\d)\.(\d)")
+
+pytestmark = pytest.mark.skipif(not SSHD or not SSH, reason="no sshd and ssh on this machine")
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, Path]]:
+    """A private sshd on a port of its own: the port and the key that opens it."""
+    folder = tmp_path_factory.mktemp("sshd")
+    for name in ("host", "user"):
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / name], check=True)
+    shutil.copy(folder / "user.pub", folder / "authorized_keys")
+    with socket.create_server(("127.0.0.1", 0)) as found:
+        port = found.getsockname()[1]
+    (folder / "config").write_text(
+        f"Port {port}\nListenAddress 127.0.0.1\nHostKey {folder}/host\nPidFile none\nUsePAM no\nStrictModes no\n"
+        f"AuthorizedKeysFile {folder}/authorized_keys\nPasswordAuthentication no\nPermitRootLogin yes\n"
+    )
+    if os.geteuid() == 0:
+        Path("/run/sshd").mkdir(exist_ok=True)
+    assert SSHD
+    process = subprocess.Popen([SSHD, "-D", "-e", "-f", folder / "config"], stderr=subprocess.PIPE, text=True)
+    for _ in range(100):
+        try:
+            socket.create_connection(("127.0.0.1", port), timeout=1).close()
+            break
+        except OSError:
+            if process.poll() is not None:
+                assert process.stderr
+                pytest.skip(f"sshd does not start here: {process.stderr.read()[-300:]}")
+            time.sleep(0.05)
+    yield port, folder / "user"
+    process.terminate()
+    process.wait()
+    if process.stderr:
+        process.stderr.close()
+
+
+Connect = Callable[..., User]
+
+
+@pytest.fixture
+def connect(server: tuple[int, Path], tmp_path: Path) -> Iterator[Connect]:
+    """Opens ``kit`` on the other side of a link of so many bytes a second and so much delay."""
+    port, key = server
+    made: list[User] = []
+
+    def run(rate: float, delay: float, *arguments: str) -> User:
+        relay = shlex.join([sys.executable, str(RELAY), str(port), str(rate), str(delay)])
+        options = {
+            "ProxyCommand": relay,
+            "StrictHostKeyChecking": "no",
+            "UserKnownHostsFile": "/dev/null",
+            "LogLevel": "ERROR",
+        }
+        root = Path(kit_package.__file__).parent.parent
+        remote = shlex.join(
+            [
+                "env",
+                f"KIT_WORKSPACE={tmp_path}",
+                f"PYTHONPATH={root}",
+                sys.executable,
+                "-m",
+                "kit",
+                *arguments,
+            ]
+        )
+        flags = [part for name, value in options.items() for part in ("-o", f"{name}={value}")]
+        client = ["-tt", "-i", str(key), *flags, f"{getpass.getuser()}@127.0.0.1", remote]
+        user = User(str(Path(__file__).with_name("client.py")), str(SSH), *client)
+        made.append(user)
+        user.until(lambda: CLOCK.search(user.text), "the kit's clock", limit=40)
+        return user
+
+    yield run
+    for user in made:
+        user.close()
+
+
+def shown_clock(user: User) -> float | None:
+    found = CLOCK.search(user.text)
+    return None if found is None else int(found[1]) * 60 + int(found[2]) + int(found[3]) / 10
+
+
+def ages(user: User, seconds: float) -> list[float]:
+    """Wall time less the simulated time on the screen, each time the latter changes: it grows as the link lags."""
+    found: list[float] = []
+    last = shown_clock(user)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        user.pump(0.005)
+        clock = shown_clock(user)
+        if clock is not None and clock != last:
+            last = clock
+            found.append(time.monotonic() - clock)
+    return found
+
+
+def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
+    user = connect(30_000, 0.020, "play", "--seed", "2")
+    run_on(user, 2.0)
+    measured = ages(user, 6.0)
+    assert len(measured) > 25  # it moves: most tenths of a second are seen
+    # The freshest frame has only the link's own delay; how much older the others are is what piles up.
+    assert statistics.median(measured) - min(measured) < 0.2
+    reactions = []
+    for _ in range(4):
+        for key, sign in ((b"p", "paused"), (b"p", "speed x1")):
+            start = time.monotonic()
+            user.send(key)
+            user.until(lambda sign=sign: sign in user.text, sign)  # type: ignore[misc]  # mypy on lambdas
+            reactions.append(time.monotonic() - start)
+            run_on(user, 0.3)
+    assert statistics.median(reactions) < 0.04 + 0.2 + 0.05  # there and back, the allowed lag, one frame
+    start = time.monotonic()
+    user.send(b"\x03")
+    user.until(lambda: b"\x1b[?1049l" in user.output, "the screen to be given back")
+    left = time.monotonic() - start
+    assert user.wait() == 0
+    user.assert_sane()
+    assert left < 0.5
+
+
+def test_exact_keys_pass_through_ssh(connect: Connect) -> None:
+    user = connect(1e6, 0.005, "play", "simple", "--controller", "teleop")
+    user.until(lambda: "exact" in user.text, "the terminal's answer")
+    user.send(b"\x1b[1;1:1A")
+    user.until(lambda: "forward   0.50" in user.text, "full speed")
+    user.send(b"\x1b[1;1:3A")
+    user.until(lambda: "forward   0.00" in user.text, "the stop")
+
+
+def test_a_dropped_link_leaves_nothing_behind(connect: Connect, tmp_path: Path) -> None:
+    user = connect(1e6, 0.005, "play")
+
+    def running() -> list[str]:
+        """Processes on the other side: they have our workspace in their environment, or work in it."""
+        found = []
+        for process in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if str(tmp_path).encode() in (process / "environ").read_bytes():
+                    found.append(process.name)
+        return found
+
+    assert running()
+    user.process.kill()
+    for _ in range(100):
+        if not running():
+            break
+        time.sleep(0.1)
+    assert running() == []
