@@ -6,6 +6,7 @@ definition: two entities meet when they share a layer, and a laser sees an entit
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -101,8 +102,9 @@ def lean(case: Case, layers: Sequence[frozenset[str]]) -> tuple[list[frozenset[s
     """
     watches = {laser.name: _fewest_watched(case, laser.name, layers) for laser in case.lasers}
     members = [set(layer) for layer in layers]
+    needs = Counter(name for contact in case.collide for name in (contact.a, contact.b))
     for number, layer in enumerate(layers):
-        for name in sorted(layer, key=lambda n: (_needs(case, n), n)):
+        for name in sorted(layer, key=lambda n: (needs[n], n)):
             if _superfluous(case, name, number, members, watches):
                 members[number].discard(name)
     return [frozenset(layer) for layer in members], watches
@@ -141,10 +143,6 @@ def _fewest_watched(case: Case, laser: str, layers: Sequence[frozenset[str]]) ->
         if usable[number] <= frozenset().union(*(usable[i] for i in chosen if i != number)):
             chosen.remove(number)
     return sorted(chosen)
-
-
-def _needs(case: Case, name: str) -> int:
-    return sum(name in (contact.a, contact.b) for contact in case.collide)
 
 
 def _superfluous(

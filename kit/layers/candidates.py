@@ -29,9 +29,9 @@ References
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.layers.requirements import Case, Contact, Requirement, Sight, named_by
 
@@ -107,37 +107,55 @@ def find_candidates(case: Case, *, limit: int = 100_000, deadline: float = float
     visible = visible_sets(case)
     complete = len(visible) <= MAX_VISIBLE_SETS
     # Invariant: ``found`` holds every maximal clique of the graphs searched so far that serves something.
-    for layer in _cliques(graph, visible):
+    for layer in _cliques(graph, visible, deadline):
+        if layer is None or len(found) >= limit:
+            complete = False
+            break
         if layer not in found and (covers := rows.served_by(layer)):
             found[layer] = covers
-            if len(found) % _LOOK_AT_CLOCK_EVERY == 0 and (
-                len(found) >= limit or time.monotonic() > deadline
-            ):
-                complete = False
-                break
     if not complete:
-        for requirement in case.requirements:
-            layer = grown(graph, case, requirement)
-            found.setdefault(layer, rows.served_by(layer))
+        served = set().union(*found.values())
+        for layer in _grown_for(graph, case, rows, served):
+            found[layer] = rows.served_by(layer)
     return Candidates(tuple(found), tuple(found.values()), complete)
 
 
-def _cliques(graph: networkx.Graph[str], visible: Iterable[Members]) -> Iterator[Members]:
+def _cliques(
+    graph: networkx.Graph[str], visible: Iterable[Members], deadline: float
+) -> Iterator[Members | None]:
+    """The maximal cliques inside each of the sets, and a None at the end if the time was up before."""
     import networkx
 
     for seen in visible:
-        for clique in networkx.find_cliques(graph.subgraph(seen).copy()):
+        if time.monotonic() > deadline:
+            yield None
+            return
+        for count, clique in enumerate(networkx.find_cliques(graph.subgraph(seen).copy())):
+            if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+                yield None
+                return
             yield frozenset(clique)
 
 
-def grown(graph: networkx.Graph[str], case: Case, requirement: Requirement) -> Members:
-    """One maximal layer that serves the requirement: its entities, and greedily whoever fits, the best-connected first."""
+def _grown_for(graph: networkx.Graph[str], case: Case, rows: Rows, served: set[int]) -> Iterator[Members]:
+    """Layers for the requirements not ``served`` yet, one grown after the other until all are."""
+    neighbours = {name: set(graph.adj[name]) for name in graph}
+    joining = sorted(neighbours, key=lambda name: (-len(neighbours[name]), name))
+    for row, requirement in enumerate(case.requirements):
+        if row not in served:
+            layer = _grown(neighbours, joining, case, requirement)
+            served |= rows.served_by(layer)
+            yield layer
+
+
+def _grown(
+    neighbours: Mapping[str, set[str]], joining: Sequence[str], case: Case, requirement: Requirement
+) -> Members:
+    """One maximal layer that serves a requirement: its entities, then whoever fits, in the order of ``joining``."""
     layer = set(named_by(requirement))
-    allowed: set[Any] = set(graph)
-    if isinstance(requirement, Sight):
-        allowed -= case.blind(case.laser[requirement.laser])
-    for name in sorted(allowed, key=lambda n: (-graph.degree(n), n)):
-        if name not in layer and layer <= graph.adj[name].keys():
+    blind = case.blind(case.laser[requirement.laser]) if isinstance(requirement, Sight) else frozenset()
+    for name in joining:
+        if name not in layer and name not in blind and layer <= neighbours[name]:
             layer.add(name)
     return frozenset(layer)
 

@@ -9,6 +9,7 @@ them; only where neither reaches the optimum is the solver's exhaustive search a
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -38,7 +39,9 @@ class Certificate:
         return len(self.apart) + sum(math.ceil(sum(part.values())) for part in self.parts)
 
 
-def certificate_of(case: Case, candidates: Candidates, cover: Cover) -> Certificate:
+def certificate_of(
+    case: Case, candidates: Candidates, cover: Cover, *, deadline: float = math.inf
+) -> Certificate:
     """The reasons a cover came with, as requirements; only those that hold when they are checked afresh.
 
     ``candidates`` must be complete for the weights to count; without them a packing that ``greedily_apart``
@@ -53,7 +56,7 @@ def certificate_of(case: Case, candidates: Candidates, cover: Cover) -> Certific
         )
         if holds(case, candidates, found):
             return found
-    return greedily_apart(case)
+    return greedily_apart(case, deadline=deadline)
 
 
 def holds(case: Case, candidates: Candidates, certificate: Certificate) -> bool:
@@ -75,10 +78,12 @@ def holds(case: Case, candidates: Candidates, certificate: Certificate) -> bool:
     return True
 
 
-def greedily_apart(case: Case) -> Certificate:
+def greedily_apart(case: Case, *, deadline: float = math.inf) -> Certificate:
     """Requirements of which no two fit one layer, found one after the other; often not the most there are."""
     chosen: list[Requirement] = []
     for requirement in case.requirements:
+        if time.monotonic() > deadline:
+            break
         if all(fit_together(case, requirement, other) is not None for other in chosen):
             chosen.append(requirement)
     return Certificate(tuple(chosen))

@@ -22,16 +22,18 @@ from __future__ import annotations
 
 import math
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from heapq import heapify, heappop, heappush
 
 from kit.layers import solver
 
 Column = frozenset[int]
 
 _LARGEST_DENOMINATOR = 1000
-_SMALL = 1e-6
+_LOOK_AT_CLOCK_EVERY = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +95,7 @@ def _reduce(part: _Part, deadline: float) -> tuple[list[int], list[int]]:
     witnesses: list[int] = []
     changed = True
     while changed and time.monotonic() < deadline:
-        changed = _drop_dominated_rows(part) | _drop_dominated_columns(part)
+        changed = _drop_dominated_rows(part, deadline) | _drop_dominated_columns(part, deadline)
         for row in sorted(part.covered_by):
             by = part.covered_by.get(row)
             if by is not None and len(by) == 1:
@@ -107,9 +109,11 @@ def _reduce(part: _Part, deadline: float) -> tuple[list[int], list[int]]:
     return essential, witnesses
 
 
-def _drop_dominated_rows(part: _Part) -> bool:
+def _drop_dominated_rows(part: _Part, deadline: float) -> bool:
     dropped = False
-    for row in sorted(part.covered_by):
+    for count, row in enumerate(sorted(part.covered_by)):
+        if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+            break
         if (by := part.covered_by.get(row)) is None:
             continue
         # A row that all of ``by`` cover lies in each of them: it is enough to look into the smallest.
@@ -121,9 +125,11 @@ def _drop_dominated_rows(part: _Part) -> bool:
     return dropped
 
 
-def _drop_dominated_columns(part: _Part) -> bool:
+def _drop_dominated_columns(part: _Part, deadline: float) -> bool:
     dropped = False
-    for column in sorted(part.covers):
+    for count, column in enumerate(sorted(part.covers)):
+        if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+            break
         rows = part.covers[column]
         if not rows:
             part.drop_column(column)
@@ -205,14 +211,22 @@ def _greedy_cover(part: _Part) -> tuple[int, ...]:
     """The column that covers most of what is left, until nothing is; then whatever turned out superfluous is dropped."""
     left = set(part.covered_by)
     chosen: list[int] = []
+    # What a column adds can only shrink, so the first whose stored gain is still right adds the most.
+    heap = [(-len(rows), column) for column, rows in part.covers.items()]
+    heapify(heap)
     while left:
-        best = max(part.covers, key=lambda c: (len(part.covers[c] & left), -c))
-        chosen.append(best)
-        left -= part.covers[best]
+        stored, column = heappop(heap)
+        gain = len(part.covers[column] & left)
+        if -stored == gain:
+            chosen.append(column)
+            left -= part.covers[column]
+        elif gain:
+            heappush(heap, (-gain, column))
+    times = Counter(row for column in chosen for row in part.covers[column])
     for column in list(chosen):
-        rest = set().union(*(part.covers[c] for c in chosen if c != column))
-        if rest >= part.covers[column]:
+        if all(times[row] > 1 for row in part.covers[column]):
             chosen.remove(column)
+            times.subtract(part.covers[column])
     return tuple(sorted(chosen))
 
 

@@ -3,35 +3,21 @@
 "The same behaviour, with the fewest layers." Everything here is decided slot by slot (``slots``), because a slot
 is what can be written. Where a slot stands for several model instances, it has to do right by all of them: two
 slots must share a layer when any of their spots collide today, and must not when any of them could and do not.
-
-Slots of the same instances are put together where one asks nothing that another does not ask as well: giving the
-first the list of the second breaks nothing and costs nothing, so the optimum stays what it is, and the groups are
-those a person would draw: a robot, or the parts of it that differ.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
-from itertools import combinations, product
-from typing import TypeVar
 
 from kit.layers.assignment import Assignment, Breach, NamedLayer
+from kit.layers.grouping import PairWish, Table, ViewWish
 from kit.layers.reading import Requirements
-from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sight, Sighting
+from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sight
 from kit.layers.slots import LaserSlot, Slot, Slots, Spot
 from kit.world.problems import Problem, WorldError
 from kit.world.records import ALL_LAYERS, Place
-from kit.world.records import Sight as View
-
-T = TypeVar("T", Relation, Sighting)
-
-PairWish = Callable[[Spot, Spot], Relation]
-"""What is asked of two spots that can meet."""
-
-ViewWish = Callable[[LaserSlot, tuple[str, View], Spot], Sighting]
-"""What is asked of a laser of one model and a spot that it can see."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +54,7 @@ def case_of(
     ``grouped``: slots with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
     WorldError where a list would have to do two things at once.
     """
-    table = _Table(slots, pair, view)
+    table = Table(slots, pair, view)
     asked = deepcopy(table.relation)
     groups = table.merged() if grouped else [[i] for i in range(len(table.rows))]
     names = _names(slots, groups)
@@ -101,111 +87,7 @@ def as_requirements(world_case: WorldCase) -> Requirements:
     )
 
 
-class _Table:
-    """The relations of all slots, before any are put together. ``rows``: the maps, then the bodies."""
-
-    def __init__(self, slots: Slots, pair: PairWish, view: ViewWish) -> None:
-        self._slots, self._pair, self._view = slots, pair, view
-        self.rows: tuple[Slot, ...] = (*slots.maps, *slots.bodies)
-        count = len(self.rows)
-        self.relation: list[list[Relation]] = [["either"] * count for _ in range(count)]
-        for i in range(count):
-            for j in range(i + 1):
-                self.relation[i][j] = self.relation[j][i] = self._between(i, j)
-        self.sighting: list[list[Sighting]] = [
-            [self._seen(laser, slot) for slot in self.rows] for laser in slots.lasers
-        ]
-
-    def _between(self, i: int, j: int) -> Relation:
-        a, b = self.rows[i], self.rows[j]
-        if not a.models and not b.models:  # maps: each needs a name, and a name belongs to one of them
-            return "collide" if i == j else "apart"
-        pairs = combinations(a.spots, 2) if i == j else product(a.spots, b.spots)
-        wishes = (
-            (self._pair(p, q), f"{p.address} and {q.address}") for p, q in pairs if self._slots.can_meet(p, q)
-        )
-        return _agreed(wishes, "collide", "apart", a)
-
-    def _seen(self, laser: LaserSlot, slot: Slot) -> Sighting:
-        wishes = (
-            (self._view(laser, use, spot), f"{use[0]}/{laser.plugin} and {spot.address}")
-            for use, spot in product(laser.uses, slot.spots)
-            if self._slots.can_see(use, spot)
-        )
-        return _agreed(wishes, "sees", "blind", slot)
-
-    def merged(self) -> list[list[int]]:
-        """The slots in groups of equal needs, first the neediest of each group."""
-        groups = {i: [i] for i in range(len(self.rows))}
-        absorbed = True
-        while absorbed:
-            absorbed = False
-            for weak in sorted(groups, reverse=True):
-                strong = next((i for i in groups if self._can_absorb(i, weak, groups)), None)
-                if strong is not None:
-                    self._join(strong, weak)
-                    groups[strong] += groups.pop(weak)
-                    absorbed = True
-        return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
-
-    def _join(self, strong: int, weak: int) -> None:
-        """Makes the needs of ``strong`` those of both."""
-        for relation in ("apart", "collide"):
-            if relation in (self.relation[strong][weak], self.relation[weak][weak]):
-                self.relation[strong][strong] = relation
-        for w, relation in enumerate(self.relation[weak]):
-            if relation == "apart" and w != strong:
-                self.relation[strong][w] = self.relation[w][strong] = "apart"
-        for seen in self.sighting:
-            if seen[weak] == "blind":
-                seen[strong] = "blind"
-
-    def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
-        """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
-        if strong == weak or self.rows[strong].models != self.rows[weak].models or not self.rows[weak].models:
-            return False
-        if self._slots.kept_bits(self.rows[strong]) != self._slots.kept_bits(self.rows[weak]):
-            return False
-        if self._asks_nothing(strong) and self._asks_nothing(weak):
-            return True  # both have an empty list, and keep it
-        own, shared = self.relation[weak][weak], self.relation[strong][weak]
-        if shared == "apart" or (
-            own not in ("either", self.relation[strong][strong]) and shared != "collide"
-        ):
-            return False
-        mine, its = self.relation[weak], self.relation[strong]
-        return all(mine[w] in ("either", its[w]) for w in groups if w not in (strong, weak)) and all(
-            seen[weak] in ("either", seen[strong]) for seen in self.sighting
-        )
-
-    def _asks_nothing(self, i: int) -> bool:
-        if any(spot.category for spot in self.rows[i].spots):
-            return False
-        return "collide" not in self.relation[i] and all(seen[i] != "sees" for seen in self.sighting)
-
-
-def _agreed(wishes: Iterator[tuple[T, str]], yes: T, no: T, slot: Slot) -> T:
-    """What all wishes come to: yes or no, if any says so. Raises WorldError if some say the one and some the other."""
-    said: dict[T, str] = {}
-    for wish, who in wishes:
-        said.setdefault(wish, who)
-        if yes in said and no in said:
-            words = {"collide": "collide", "sees": "meet the laser"}[yes]
-            raise WorldError(
-                [
-                    Problem(
-                        slot.place,
-                        f"contradiction: {said[yes]} must {words}, {said[no]} must not, and one list of layers "
-                        f"serves both. Give one of the models a file of its own",
-                    )
-                ]
-            )
-    if yes in said:
-        return yes
-    return no if no in said else "either"
-
-
-def _case(slots: Slots, table: _Table, groups: list[tuple[str, list[int]]], title: str) -> Case:
+def _case(slots: Slots, table: Table, groups: list[tuple[str, list[int]]], title: str) -> Case:
     entities = tuple(
         Entity(
             name,
@@ -243,7 +125,7 @@ def _case(slots: Slots, table: _Table, groups: list[tuple[str, list[int]]], titl
 def _wrong(
     slots: Slots,
     asked: list[list[Relation]],
-    table: _Table,
+    table: Table,
     groups: list[tuple[str, list[int]]],
     lasers: list[str],
 ) -> tuple[Breach, ...]:
