@@ -155,8 +155,8 @@ def plan(
       kit layers plan my.world.yaml --apply
       kit layers plan depot --json
     """
-    from kit.layers.requirements import MAX_LAYERS
     from kit.layers.tasks import solve_task
+    from kit.world.records import MAX_LAYERS
 
     with _mistakes():
         task = reading.open(target)
@@ -341,7 +341,7 @@ def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> N
 
 def _patch(task: Task, world_plan: WorldPlan | None, also_shared: bool) -> Patch:
     from kit.layers.patch import patch_of
-    from kit.layers.requirements import MAX_LAYERS
+    from kit.world.records import MAX_LAYERS
 
     if world_plan is None or task.source is None:
         raise click.UsageError(

@@ -25,7 +25,7 @@ def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit:
     from kit.layers.drawing import draw_assignment
     from kit.layers.dropping import give_up, tolerate
     from kit.layers.greedy import greedy
-    from kit.layers.requirements import MAX_LAYERS
+    from kit.world.records import MAX_LAYERS
 
     if world_plan is None:
         echo(words.wrapped(case.title))

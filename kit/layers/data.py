@@ -9,8 +9,9 @@ from kit.layers.certificate import Certificate
 from kit.layers.greedy import GreedyRun
 from kit.layers.patch import Patch
 from kit.layers.planning import Plan
-from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight
+from kit.layers.requirements import Case, Requirement, Sight
 from kit.layers.world_planning import WorldPlan
+from kit.world.records import MAX_LAYERS
 
 
 def assignment_data(case: Case, assignment: Assignment) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from itertools import combinations, product
 from kit.layers import solver
 from kit.layers.candidates import find_candidates
 from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
-from kit.layers.requirements import MAX_LAYERS, Case, Contact, Requirement, Sight
+from kit.layers.requirements import Case, Contact, Requirement, Sight
+from kit.world.records import MAX_LAYERS
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ from kit.layers.dropping import Sacrifice
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
 from kit.layers.patch import Patch
 from kit.layers.planning import Plan
-from kit.layers.requirements import MAX_LAYERS, Case, Requirement, Sight, fit_together
+from kit.layers.requirements import Case, Requirement, Sight, fit_together
 from kit.layers.world_planning import WorldPlan
+from kit.world.records import MAX_LAYERS
 
 WIDTH = 80
 
@@ -215,7 +216,8 @@ def comparison_in_words(run: GreedyRun, plan: Plan) -> list[str]:
     """The slides' method beside the plan."""
     more = run.size - plan.size
     if run.missed:
-        verdict = f"it also leaves {len(run.missed)} things unseen"
+        count = len(run.missed)
+        verdict = f"it also leaves {count} {'thing' if count == 1 else 'things'} unseen"
     elif more == 0:
         verdict = "as few as can be" if plan.optimal else "as few as the plan"
     elif more < 0:

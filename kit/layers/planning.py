@@ -47,17 +47,17 @@ def solve(case: Case, *, time_limit: float = DEFAULT_TIME_LIMIT) -> Plan:
     """The plan with the fewest layers, proved; or within ``time_limit`` [s] the best found, with bound and gap.
 
     At most 40 percent of the time goes to listing candidate layers. The plan is the same every time unless the limit
-    cuts the search short.
+    cuts the search short. A large case may take a tenth longer than the limit, to have some bound to show.
     """
     start = time.monotonic()
     candidates = find_candidates(case, deadline=start + 0.4 * time_limit)
     cover = minimum_cover(candidates.covers, len(case.requirements), deadline=start + 0.9 * time_limit)
     layers, watches = lean(case, [candidates.layers[i] for i in cover.chosen])
     assignment = named(case, layers, watches)
-    certificate = certificate_of(case, candidates, cover, deadline=start + time_limit)
-    assert not breaches(case, assignment), (
-        "a cover by candidate layers serves every requirement and nothing else"
-    )
+    last = max(start + time_limit, time.monotonic() + time_limit / 10)
+    certificate = certificate_of(case, candidates, cover, deadline=last)
+    if found := breaches(case, assignment):
+        raise RuntimeError(f"the planner's own mistake, please report it: {found[0]}")
     return Plan(
         case,
         assignment,

@@ -20,9 +20,6 @@ from functools import cached_property
 from itertools import combinations
 from typing import Literal, TypeAlias
 
-MAX_LAYERS = 16
-"""Layer names in one Flatland world: it has 16 collision bits."""
-
 Relation = Literal["collide", "either", "apart"]
 Sighting = Literal["sees", "either", "blind"]
 

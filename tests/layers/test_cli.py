@@ -29,7 +29,7 @@ def kit(*arguments: object) -> Result:
         ("slides", 0, "6 layers, and no plan has fewer"),
         ("slides-lasers", 0, "No two of these 10 fit one layer"),
         ("greedy-trap", 0, "4 layers; 1 more than needed"),
-        ("unseen", 0, "1 things unseen"),
+        ("unseen", 0, "leaves 1 thing unseen"),
         ("too-many", 1, "Flatland has 16 layers and this plan needs 20"),
         ("maze", 0, "as few as can be"),
     ],

@@ -138,12 +138,16 @@ def test_a_planted_plan_is_never_beaten_by_a_worse_one() -> None:
         assert plan.size <= 8 + 3 * 3
 
 
-def test_a_plan_cut_short_is_honest() -> None:
+@pytest.mark.parametrize(
+    "case",
+    [random_graph(random.Random(1), 45, 0.5), random_case(random.Random(1), 60, 20, 0.3)],
+    ids=["too many cliques", "too many lasers"],
+)
+def test_a_plan_cut_short_is_honest(case: Case) -> None:
     """Too little time: a plan that does what is asked, with a bound that is one, and no claim that it is the best."""
-    case = random_graph(random.Random(1), 45, 0.5)
     start = time.monotonic()
     plan = solve(case, time_limit=0.3)
-    assert time.monotonic() - start < 5
+    assert time.monotonic() - start < 10  # on a machine that does much else besides
     assert breaches(case, plan.assignment) == ()
     assert 0 < plan.bound <= plan.size
     assert plan.certificate.bound <= plan.bound
