@@ -111,6 +111,9 @@ class BatchEnv:
     ``reward``: instead of the task's own. Raises Unsupported for a map that it cannot represent.
     """
 
+    render_mode: None = None
+    """A batch draws nothing; ``kit.learning.env`` draws one world."""
+
     def __init__(
         self, task: Task, n: int, seed: int = 0, *, reward: RewardFunction | None = None, first: int = 0
     ) -> None:
@@ -126,6 +129,7 @@ class BatchEnv:
         self._everyone: Numbers = np.arange(n, dtype=np.int64)
         self._keys = self._sown(seed)
         self._state = State.of(n, task.robots)
+        self._state.episode -= 1  # the first reset leads to number 0
 
     @property
     def state(self) -> State:

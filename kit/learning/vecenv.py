@@ -2,21 +2,95 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+
 from kit.learning.batch import BatchEnv
 from kit.learning.rewards import RewardFunction
+from kit.learning.tally import Episode, Outcome, Tally
 from kit.learning.tasks import Task
 
 
-class BatchVecEnv:
-    """A stable_baselines3 VecEnv over a BatchEnv (``.batch``). Worlds reset themselves in the step in which they
-    end. ``info`` of an ended episode: ``terminal_observation``, ``TimeLimit.truncated``, ``episode`` (r, l, t as
-    Monitor gives them), ``case`` (its name), ``outcome`` ("reached", "collided", "timed out"), ``terms`` (sum by
-    named term), ``adjacency`` (share of steps side by side; two robots only)."""
+class BatchVecEnv(VecEnv):
+    """A BatchEnv (``.batch``) for the algorithms of stable-baselines3, which needs no Monitor around it.
+
+    A world resets itself in the step in which its episode ends, as all vector environments of that library do. The
+    ``info`` of that step then holds ``terminal_observation`` (what was seen before the reset), ``TimeLimit.truncated``,
+    ``episode`` (``r`` the sum of rewards, ``l`` steps, ``t`` seconds since the start, as Monitor gives them), ``case``,
+    ``outcome``, ``terms`` (the reward by named term) and, for two robots, ``adjacency``.
+    """
 
     def __init__(self, batch: BatchEnv) -> None:
-        raise NotImplementedError
+        self.batch = batch
+        self._tally = Tally(batch)
+        self._actions: NDArray[np.integer] = np.zeros(0, dtype=np.int64)
+        self._started = time.perf_counter()
+        super().__init__(batch.n, batch.observation_space, batch.action_space)
+
+    def reset(self) -> VecEnvObs:
+        """Begins new episodes; from the start of the seed, if ``seed`` was called."""
+        seed = self._seeds[0]
+        self._reset_seeds()
+        self._reset_options()
+        self._tally = Tally(self.batch)
+        return self.batch.reset(None if seed is None else int(seed))
+
+    def step_async(self, actions: NDArray[np.integer]) -> None:
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        step = self.batch.step(self._actions)
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for episode in self._tally.add(step):
+            info = infos[episode.world]
+            info |= self._told(episode)
+            info["terminal_observation"] = step.final_observations[episode.world]
+            info["TimeLimit.truncated"] = bool(step.truncated[episode.world])
+        return step.observations, step.rewards, step.ended, infos
+
+    def _told(self, episode: Episode) -> dict[str, Any]:
+        seconds = time.perf_counter() - self._started
+        told: dict[str, Any] = {
+            "episode": {"r": episode.reward, "l": episode.steps, "t": seconds},
+            "case": episode.case,
+            "outcome": episode.outcome.value,
+            "is_success": episode.outcome is Outcome.REACHED,
+            "terms": episode.terms,
+        }
+        return told | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
+
+    def close(self) -> None:
+        """There is nothing to close."""
+
+    # All worlds share their attributes: there is one object behind them.
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        return [getattr(self.batch, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        raise AttributeError(f"the worlds of a batch are one: {attr_name} cannot be set for some of them")
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
+    ) -> list[Any]:
+        raise AttributeError(
+            f"the worlds of a batch are one: {method_name} cannot be called for some of them"
+        )
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: VecEnvIndices = None) -> list[bool]:
+        return [False] * len(list(self._get_indices(indices)))
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """A picture of every world."""
+        return [None] * self.num_envs
 
 
 def make_vec(task: Task, n: int, seed: int = 0, reward: RewardFunction | None = None) -> BatchVecEnv:
-    """``n`` worlds of the task as a VecEnv. No Monitor is needed around it."""
+    """``n`` worlds of the task for stable-baselines3; ``reward``: instead of the task's own."""
     return BatchVecEnv(BatchEnv(task, n, seed, reward=reward))
