@@ -5,16 +5,20 @@ from __future__ import annotations
 import hashlib
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from kit.controllers import ControllerFile
 from kit.geometry import Pose
 from kit.host.failure import Failure
+from kit.live import MAXIMUM, Pace
 from kit.places import Place
 from kit.recording import Recorder, save
+from kit.ros.graph import Graph
+from kit.runner import Guest
 from kit.session import Session
 from kit.sim.simulation import Simulation
 from kit.trip import Score
@@ -109,23 +113,37 @@ class Summary:
         return "\n".join(f"{name:<12} {text}" for name, text in rows)
 
 
+class Companion(Guest, Protocol):
+    """Somebody who takes part in a run from its first tick to its last: a door, a bag."""
+
+    def close(self) -> None: ...
+
+
 def run_headless(
     place: Place,
     controller: ControllerFile,
     *,
     steps: int,
     seed: int = 0,
+    factor: float = MAXIMUM,
     until_reached: bool = False,
     record: Path | None = None,
+    company: Sequence[Callable[[Graph], Companion]] = (),
     on_progress: Callable[[int], None] | None = None,
 ) -> Summary:
-    """Runs ``steps`` ticks, fewer if the controller fails or the target is reached and that was asked for.
+    """Runs ``steps`` ticks, fewer if the controller fails, if the target is reached and that was asked for, or
+    on Ctrl-C. ``factor``: simulated seconds per second; a run that is paced waits while it is paused.
 
-    ``on_progress`` is told the ticks done, a few times a second. Raises OSError if ``record`` cannot be written.
+    ``on_progress`` is told the ticks done, a few times a second. Raises OSError if ``record`` cannot be written,
+    and what opening ``company`` raises.
     """
     fingerprint = Fingerprint()
-    with Session(place, seed=seed) as session:
+    with Session(place, seed=seed) as session, ExitStack() as stack:
         runner = session.runner
+        for invite in company:
+            companion = invite(session.graph)
+            stack.callback(companion.close)
+            runner.guests.append(companion)
         runner.observers.append(fingerprint)
         recorder = (
             Recorder(place.name, place.case.name if place.case else None, runner.simulation)
@@ -138,13 +156,16 @@ def run_headless(
         session.wait_until_driven()
         start = time.perf_counter()
         done = 0
-        while done < steps and session.failure is None:
-            runner.tick()
-            done += 1
-            if until_reached and session.trip.score.reached_s is not None:
-                break
-            if on_progress is not None and done % CHECK_EVERY == 0:
-                on_progress(done)
+        is_paced, pace = factor != MAXIMUM, Pace(runner.simulation.step_size, factor)
+        with suppress(KeyboardInterrupt):
+            while done < steps and session.failure is None:
+                pace.wait()
+                runner.tick()
+                done += not (is_paced and runner.paused)
+                if until_reached and session.trip.score.reached_s is not None:
+                    break
+                if on_progress is not None and done % CHECK_EVERY == 0:
+                    on_progress(done)
         wall = time.perf_counter() - start
         if recorder is not None and record is not None:
             save(recorder.recording(), record)

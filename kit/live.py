@@ -177,6 +177,23 @@ class Schedule:
         self._next += self._step / self._factor
 
 
+class Pace:
+    """The same for whoever ticks in a loop of its own: ``wait`` before each tick."""
+
+    def __init__(self, step: float, factor: float = REAL_TIME) -> None:
+        self._schedule = Schedule(step, time.monotonic())
+        self._schedule.set_factor(factor)
+
+    def set_factor(self, factor: float) -> None:
+        self._schedule.set_factor(factor)
+
+    def wait(self) -> None:
+        """Until the next tick is due."""
+        while not self._schedule.due(now := time.monotonic()):
+            time.sleep(self._schedule.wait_for_next(now))
+        self._schedule.ticked()
+
+
 class Meter:
     """The speed really reached: simulated over wall seconds, over the last one to two seconds."""
 

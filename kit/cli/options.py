@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 import click
 
@@ -21,6 +21,9 @@ from kit.tui.terminal import (
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 BAD_INPUT = 2
+
+Storage = Literal["mcap", "sqlite3"]
+"""Kinds of bags."""
 
 
 def fail(message: str) -> NoReturn:
@@ -67,3 +70,20 @@ root: Decorator = click.option(
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     help="The folder that a world file may read; by default its own.",
 )
+storage: Decorator = click.option(
+    "-s",
+    "--storage",
+    type=click.Choice(["mcap", "sqlite3"]),
+    default="mcap",
+    show_default=True,
+    help="Of bags: mcap for ROS 2 Iron and later; sqlite3 for Humble.",
+)
+
+
+def explain_storage(kind: Storage) -> None:
+    """Says which ROS 2 reads such a bag, and which does not."""
+    if kind == "mcap":
+        click.echo(
+            "The bag is in MCAP: ROS 2 Humble needs its MCAP plugin to read it; `-s sqlite3` writes what it reads as it is.",
+            err=True,
+        )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import click
 
 from kit.cli import options
+from kit.cli.options import Storage
 
 
 @click.command()
@@ -25,6 +27,22 @@ from kit.cli import options
     type=click.Path(dir_okay=False, path_type=Path),
     help="Keep the run in this file, for `kit replay`.",
 )
+@click.option(
+    "--serve",
+    is_flag=True,
+    help="Let other terminals look in meanwhile (`kit ros`); in real time, if no --speed is given.",
+)
+@click.option(
+    "--speed",
+    type=click.FloatRange(0, min_open=True),
+    help="Simulated seconds per second; by default as fast as it goes.",
+)
+@click.option(
+    "--bag",
+    type=click.Path(path_type=Path),
+    help="Keep what is said on all topics in this new folder, as ROS 2's `bag record` does.",
+)
+@options.storage
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 @options.workspace
 def command(
@@ -36,6 +54,10 @@ def command(
     steps: int,
     until_reached: bool,
     record: Path | None,
+    serve: bool,
+    speed: float | None,
+    bag: Path | None,
+    storage: Storage,
     as_json: bool,
     workspace: Path | None,
 ) -> None:
@@ -49,20 +71,35 @@ def command(
     Exit code: 0 the run went through; 1 the controller failed; 2 something named does not exist or is wrong.
     """
     from kit.controllers import find
-    from kit.headless import run_headless
+    from kit.headless import Companion, run_headless
+    from kit.live import MAXIMUM, REAL_TIME
     from kit.places import find_place
+    from kit.ros.graph import Graph
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
+    desk = open_workspace(workspace, make=False)
+    company: list[Callable[[Graph], Companion]] = []
+    if serve:
+        from kit.inspection.door import Door
+        from kit.inspection.sockets import sockets_folder
+
+        company.append(lambda graph: Door(graph, sockets_folder(desk.folder), Path(place).stem))
+    if bag is not None:
+        from kit.ros.bags import BagRecorder
+
+        options.explain_storage(storage)
+        company.append(lambda graph: BagRecorder(graph, bag, storage=storage))
     try:
-        folder = open_workspace(workspace, make=False).controllers
         summary = run_headless(
             find_place(place, case, root),
-            find(controller, folder),
+            find(controller, desk.controllers),
             steps=steps,
             seed=seed,
+            factor=speed or (REAL_TIME if serve else MAXIMUM),
             until_reached=until_reached,
             record=record,
+            company=company,
         )
     except (LookupError, WorldError, WorkspaceError, OSError) as error:
         options.fail(str(error))

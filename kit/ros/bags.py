@@ -62,7 +62,7 @@ _KINDS: Final = MappingProxyType(
 )
 
 
-class BagError(Exception):
+class BagError(OSError):
     """A bag that cannot be read or written; the message says which and why."""
 
 
