@@ -172,7 +172,7 @@ def plan(
         patch = _patch(task, world_plan, also_shared) if show_patch or do_apply else None
         assignment = found.assignment if world_plan is None else world_plan.assignment
         if as_json:
-            click.echo(json.dumps(shown.plan_data(found, world_plan, patch), indent=2))
+            click.echo(json.dumps(shown.plan_data(found, world_plan, patch, reading.time_limit), indent=2))
         elif graph:
             shown.show_graph(task.case, assignment, graph)
         else:

@@ -13,6 +13,7 @@ import click
 if TYPE_CHECKING:
     from kit.layers.assignment import Assignment
     from kit.layers.drawing import Glyphs
+    from kit.layers.dropping import Sacrifice
     from kit.layers.greedy import GreedyRun
     from kit.layers.patch import Patch
     from kit.layers.planning import Plan
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
 
 
 def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit: float) -> None:
+    """The plan as tables, its proof, the slides' method beside it, and the ways out where it is too large."""
     from kit.layers import explain as words
     from kit.layers.drawing import draw_assignment
-    from kit.layers.dropping import give_up, tolerate
     from kit.layers.greedy import greedy
     from kit.world.records import MAX_LAYERS
 
@@ -37,20 +38,38 @@ def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit:
     echo(["", *draw_assignment(case, assignment), ""])
     echo(words.proof_in_words(found))
     echo(words.comparison_in_words(greedy(found.case), found))
+    if found.size + kept > MAX_LAYERS:
+        echo(["", *words.too_many_in_words(found, *_ways_out(found, kept, time_limit))])
+
+
+def _ways_out(found: Plan, kept: int, time_limit: float) -> tuple[Sacrifice | None, Sacrifice | None]:
+    """What to give up, or to tolerate, so that with the kept layers there are no more than sixteen."""
+    from kit.layers.dropping import give_up, tolerate
+    from kit.world.records import MAX_LAYERS
+
     limit = MAX_LAYERS - kept
-    if found.size > limit:
-        given_up = give_up(found.case, limit=limit, time_limit=time_limit)
-        tolerated = tolerate(found, limit=limit, time_limit=time_limit)
-        echo(["", *words.too_many_in_words(found, given_up, tolerated)])
+    return (
+        give_up(found.case, limit=limit, time_limit=time_limit),
+        tolerate(found, limit=limit, time_limit=time_limit),
+    )
 
 
-def plan_data(found: Plan, world_plan: WorldPlan | None, patch: Patch | None) -> dict[str, Any]:
-    from kit.layers.data import patch_data, plan_data, world_data
+def plan_data(
+    found: Plan, world_plan: WorldPlan | None, patch: Patch | None, time_limit: float
+) -> dict[str, Any]:
+    """Everything ``show_plan`` says, and the patch."""
+    from kit.layers.data import patch_data, plan_data, sacrifice_data, world_data
     from kit.layers.greedy import greedy
+    from kit.world.records import MAX_LAYERS
 
     facts = plan_data(found, greedy(found.case))
+    kept = 0 if world_plan is None else len(world_plan.world_case.slots.kept)
     if world_plan is not None:
         facts |= world_data(world_plan)
+    if found.size + kept > MAX_LAYERS:
+        given_up, tolerated = _ways_out(found, kept, time_limit)
+        facts["give_up"] = None if given_up is None else sacrifice_data(given_up)
+        facts["tolerate"] = None if tolerated is None else sacrifice_data(tolerated)
     if patch is not None:
         facts["patch"] = patch_data(patch)
     return facts

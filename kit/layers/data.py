@@ -6,6 +6,7 @@ from typing import Any
 
 from kit.layers.assignment import Assignment, Breach
 from kit.layers.certificate import Certificate
+from kit.layers.dropping import Sacrifice
 from kit.layers.greedy import GreedyRun
 from kit.layers.patch import Patch
 from kit.layers.planning import Plan
@@ -97,6 +98,15 @@ def requirement_data(requirement: Requirement) -> dict[str, Any]:
     if isinstance(requirement, Sight):
         return {"laser": requirement.laser, "sees": requirement.entity}
     return {"collide": [requirement.a, requirement.b]}
+
+
+def sacrifice_data(sacrifice: Sacrifice) -> dict[str, Any]:
+    """What to give up, or to tolerate; how few it must be at least (0: not proved); the layers that then do."""
+    return {
+        "what": [requirement_data(requirement) for requirement in sacrifice.what],
+        "at_least": sacrifice.at_least,
+        "size": sacrifice.plan.size,
+    }
 
 
 def breach_data(breach: Breach) -> dict[str, Any]:

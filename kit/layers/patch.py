@@ -106,7 +106,8 @@ def apply(patch: Patch, wrong: Callable[[], Sequence[str]]) -> None:
     """Writes every file of the patch, each atomically, then asks ``wrong`` what is not as it should be.
 
     If anything is, or a file cannot be written or has changed meanwhile, every file gets its old content back and
-    PatchError says why. A patch that leaves a file alone is not applied.
+    PatchError says why. A patch that leaves a file alone is not applied. (A kill between two files leaves each
+    of them whole, the earlier new and the later old: the preview says which.)
     """
     if patch.left_alone:
         raise PatchError(f"{patch.left_alone[0].path} has to be changed by hand, so no file was written")

@@ -54,6 +54,18 @@ def test_plan_as_data() -> None:
     }
 
 
+def test_too_many_layers_as_data_name_both_ways_out() -> None:
+    result = kit("plan", "too-many", "--json")
+    facts = json.loads(result.stdout)
+    assert (result.exit_code, facts["size"], facts["fits_flatland"]) == (1, 20, False)
+    assert (len(facts["give_up"]["what"]), facts["give_up"]["at_least"], facts["give_up"]["size"]) == (
+        4,
+        4,
+        16,
+    )
+    assert (len(facts["tolerate"]["what"]), facts["tolerate"]["at_least"]) == (1, 0)
+
+
 def test_the_slides_switch() -> None:
     facts = json.loads(kit("plan", "slides-lasers", "--json", "--one-model-never-collides").stdout)
     assert facts["size"] == 9

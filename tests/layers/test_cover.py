@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import combinations
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit.layers.cover import Cover, minimum_cover
@@ -43,6 +43,7 @@ def check(cover: Cover, columns: list[frozenset[int]], rows: int) -> None:
         assert sum(weight for part in touched for row, weight in part.items() if row in column) <= 1
 
 
+@settings(deadline=None)  # the first example loads HiGHS
 @given(matrices())
 def test_no_choice_of_columns_is_smaller(matrix: tuple[list[frozenset[int]], int]) -> None:
     columns, rows = matrix
