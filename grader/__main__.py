@@ -8,7 +8,9 @@ from typing import Final
 
 import click
 
-VERBS: Final[dict[str, tuple[str, str]]] = {}
+VERBS: Final[dict[str, tuple[str, str]]] = {
+    "check": ("grader.verbs.check", "Judge one submission: a verdict per criterion, and what to do next."),
+}
 """Every verb: the module that holds its ``command``, and its line in ``grader --help``."""
 
 

@@ -1,0 +1,115 @@
+"""Archives from strangers: how many files, how large, how deep, and what they may be called is checked first.
+
+Nothing is ever extracted onto the disk from here: an archive becomes names and bytes.
+"""
+
+from __future__ import annotations
+
+import io
+import lzma
+import re
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Iterator
+from typing import IO, Final
+
+MOST_FILES: Final = 200
+MOST_BYTES: Final = 8 * 1024 * 1024
+"""Of all files together, unpacked."""
+DEEPEST: Final = 6
+"""Folders in folders."""
+HIGHEST_RATIO: Final = 200
+"""Unpacked to packed bytes: text packs to a tenth, a bomb to a thousandth."""
+
+_PLAIN: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. +\-()]{0,99}")
+_ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
+_IGNORED: Final = ("__MACOSX", "__pycache__", ".DS_Store", ".git")
+
+
+class Refused(Exception):
+    """What was handed in cannot be taken; the message is for the student."""
+
+
+def is_archive(name: str) -> bool:
+    return name.lower().endswith(_ENDINGS)
+
+
+def unpacked(content: bytes, name: str) -> dict[str, bytes]:
+    """The plain files of an archive. Raises Refused."""
+    try:
+        pairs = _zip(content) if name.lower().endswith(".zip") else _tar(content)
+        files: dict[str, bytes] = {}
+        lower: set[str] = set()
+        for path, data in pairs:
+            if any(part in _IGNORED for part in path.split("/")):
+                continue
+            check_name(path)
+            if path.lower() in lower:
+                raise Refused(f"The archive holds {path!r} twice.")
+            lower.add(path.lower())
+            files[path] = data
+    except (
+        zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError, ValueError, OSError,
+        NotImplementedError, RuntimeError,
+    ):  # fmt: skip
+        raise Refused("The archive is damaged, locked or of a kind that is not read here.") from None
+    return files
+
+
+def check_name(path: str) -> None:
+    """Refuses names that lead elsewhere, or that look like something else than they are."""
+    parts = path.split("/")
+    if len(parts) > DEEPEST:
+        raise Refused(f"The folders are more than {DEEPEST} deep.")
+    for part in parts:
+        if not _PLAIN.fullmatch(part) or part.endswith((".", " ")):
+            shown = ascii(path[:80])
+            raise Refused(f"{shown} is no name for a file here: letters, digits, and _ . - + ( ).")
+
+
+class _Budget:
+    def __init__(self, packed: int) -> None:
+        self._bytes = min(MOST_BYTES, max(65536, packed * HIGHEST_RATIO))
+        self._files = MOST_FILES
+
+    def read(self, stream: IO[bytes]) -> bytes:
+        """One file; what an archive says of its size is not believed."""
+        data = stream.read(self._bytes + 1)
+        self._bytes -= len(data)
+        if self._bytes < 0:
+            raise Refused(f"The archive unpacks to more than {MOST_BYTES >> 20} MiB, or is a bomb.")
+        return data
+
+    def count(self) -> None:
+        self._files -= 1
+        if self._files < 0:
+            raise Refused(f"The archive holds more than {MOST_FILES} entries.")
+
+
+def _zip(content: bytes) -> Iterator[tuple[str, bytes]]:
+    budget = _Budget(len(content))
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        for entry in archive.infolist():
+            budget.count()
+            if entry.is_dir():
+                continue
+            mode = entry.external_attr >> 16
+            if mode & 0o170000 not in (0, 0o100000):
+                raise Refused(f"{entry.filename[:80]!a} is a link or a device; hand in files only.")
+            with archive.open(entry) as stream:
+                yield entry.filename, budget.read(stream)
+
+
+def _tar(content: bytes) -> Iterator[tuple[str, bytes]]:
+    budget = _Budget(len(content))
+    with tarfile.open(fileobj=io.BytesIO(content), mode="r|*") as archive:
+        for entry in archive:
+            budget.count()
+            if entry.isdir():
+                continue
+            if not entry.isreg():
+                raise Refused(f"{entry.name[:80]!a} is a link or a device; hand in files only.")
+            stream = archive.extractfile(entry)
+            assert stream is not None  # a regular file
+            yield entry.name.removeprefix("./"), budget.read(stream)

@@ -1,0 +1,50 @@
+"""What a check is: a measure, the anchors it is marked between, and a sentence for those who miss."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from grader.scoring import Anchors
+
+Evidence = TypeVar("Evidence")
+
+
+@dataclass(frozen=True, slots=True)
+class NoParams:
+    """A check that needs no more than what was recorded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One way to look at a recording."""
+
+    name: str
+    measure: Callable[[Any, Any], float]
+    """(evidence, params) -> a number; NaN earns nothing."""
+    anchors: Anchors
+    """Unless the assignment gives others."""
+    unit: str
+    params: type[Any]
+    """A frozen dataclass whose defaults say what may be given: numbers, texts, lists of texts."""
+    feedback: str
+    """``{actual}``, ``{full}``, ``{where}``, ``{passed}``, ``{count}`` are filled in."""
+
+    def said(self, measure: float) -> str:
+        """A measure with its unit."""
+        number = f"{measure:.2f}".rstrip("0").rstrip(".") if abs(measure) < 1e6 else f"{measure:g}"
+        return f"{number} {self.unit}".strip()
+
+
+def check(
+    *, none: float, full: float, unit: str = "", params: type[Any] = NoParams
+) -> Callable[[Callable[[Any, Any], float]], Check]:
+    """Makes a check of a function; its docstring is the feedback."""
+
+    def make(function: Callable[[Any, Any], float]) -> Check:
+        text = inspect.getdoc(function) or ""
+        return Check(function.__name__, function, Anchors(none, full), unit, params, " ".join(text.split()))
+
+    return make

@@ -1,0 +1,155 @@
+"""Checks of controllers: functions of one recorded drive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from grader.checks.contract import Check, NoParams, check
+from grader.drive import Drive
+
+SAME_WAY: Final = 1e-3
+"""Commands that differ by less [m/s, rad/s] are the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    topic: str = "/cmd_vel"
+    rate: float = 10.0
+    """Messages per second that are wanted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Topics:
+    topics: tuple[str, ...] = ("/cmd_vel geometry_msgs/msg/Twist",)
+    """Each a name, perhaps with the type of its messages after a space."""
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    low: float = 0.3
+    high: float = 0.5
+    """m"""
+
+
+@check(none=0, full=1)
+def runs(drive: Drive, params: NoParams) -> float:
+    """Your program stopped before the episode was over ({where}). {passed} of {count} episodes ran through."""
+    return 1.0 if drive.failure is None else 0.0
+
+
+@check(none=0, full=1)
+def reached(drive: Drive, params: NoParams) -> float:
+    """The robot reached its target in {passed} of {count} episodes. Look at {where}."""
+    return 1.0 if drive.score.reached_s is not None else 0.0
+
+
+@check(none=60, full=30, unit="s")
+def in_time(drive: Drive, params: NoParams) -> float:
+    """The slowest episode ({where}) took {actual} to the target; {full} earn all points. An episode that never gets
+    there counts as endless."""
+    return math.inf if drive.score.reached_s is None else drive.score.reached_s
+
+
+@check(none=0, full=0.9)
+def approach(drive: Drive, params: NoParams) -> float:
+    """In the worst episode ({where}) the robot closed {actual} of the distance to its target; {full} earns all
+    points."""
+    case = drive.place.case
+    if case is None or not len(drive.track):
+        return math.nan
+    away = np.hypot(drive.track[:, 0] - case.target[0], drive.track[:, 1] - case.target[1])
+    if drive.score.reached_s is not None or away[0] <= case.target_radius:
+        return 1.0
+    return float((away[0] - away.min()) / (away[0] - case.target_radius))
+
+
+@check(none=3, full=0, unit="bumps")
+def bumps(drive: Drive, params: NoParams) -> float:
+    """The robot touched something: {actual} in the worst episode ({where}); {full} are allowed for all points."""
+    return float(drive.score.bumps)
+
+
+@check(none=0.02, full=0.1, unit="m")
+def clearance(drive: Drive, params: NoParams) -> float:
+    """The robot came within {actual} of a wall ({where}); at least {full} are wanted all the way."""
+    return float(drive.clearances.min())
+
+
+@check(none=0.3, full=0.9, params=Band)
+def keeps_distance(drive: Drive, params: Band) -> float:
+    """Of its time, the robot kept the asked distance to the wall for a share of {actual} in the worst episode
+    ({where}); {full} earns all points."""
+    near = drive.clearances
+    return float(np.mean((near >= params.low) & (near <= params.high)))
+
+
+@check(none=4, full=1, unit="rad/s of change per second")
+def smooth(drive: Drive, params: NoParams) -> float:
+    """The robot jerks: its turning command changed by {actual} ({where}); {full} or less is smooth."""
+    commands = drive.commands
+    if len(commands) < 2 or drive.seconds == 0.0:
+        return math.nan
+    return float(np.abs(np.diff(commands[:, 2])).sum() / drive.seconds)
+
+
+@check(none=0.5, full=3, unit="m")
+def moves(drive: Drive, params: NoParams) -> float:
+    """The robot drove only {actual} ({where}); {full} are wanted."""
+    return drive.score.distance_m
+
+
+@check(none=2.0, full=1.2)
+def short_way(drive: Drive, params: NoParams) -> float:
+    """The way was {actual} times as long as the straight line to the target ({where}); {full} or less earns all
+    points."""
+    case = drive.place.case
+    if case is None or drive.score.reached_s is None or not len(drive.track):
+        return math.inf
+    straight = math.hypot(drive.track[0, 0] - case.target[0], drive.track[0, 1] - case.target[1])
+    return drive.score.distance_m / max(straight - case.target_radius, 1e-9)
+
+
+@check(none=0.5, full=0.1, params=Topic)
+def rate(drive: Drive, params: Topic) -> float:
+    """The program's messages do not come at the asked rate: it is off by a share of {actual} ({where}); {full} is
+    allowed. A timer sets the rate, not a sleep."""
+    talk = drive.talk.get(params.topic)
+    if talk is None or drive.seconds == 0.0 or params.rate <= 0.0:
+        return math.inf
+    return abs(talk.count / drive.seconds - params.rate) / params.rate
+
+
+@check(none=0, full=1, params=Topics)
+def topics(drive: Drive, params: Topics) -> float:
+    """Of the asked topics the program published a share of {actual} ({where}). Compare the names and the types with
+    what the task says: `kit topic list` shows what there is."""
+    wanted = [each.split() for each in params.topics]
+    heard = [
+        name in drive.talk and all(kind == drive.talk[name].kind for kind in kinds) for name, *kinds in wanted
+    ]
+    return sum(heard) / len(heard) if heard else math.nan
+
+
+@check(none=1, full=0, unit="changes")
+def obeys(drive: Drive, params: NoParams) -> float:
+    """The program tried to change the world instead of driving in it: {actual} ({where}). Only what the task allows
+    works here."""
+    return float(len(drive.refused))
+
+
+CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
+    {
+        each.name: each
+        for each in (
+            *(runs, reached, in_time, approach, bumps, clearance),
+            *(keeps_distance, smooth, moves, short_way, rate, topics, obeys),
+        )
+    }
+)
+"""Every check of a drive, by name."""

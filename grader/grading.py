@@ -1,0 +1,280 @@
+"""Grading one submission: evidence is gathered when a criterion first asks for it, then the criterion is judged."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from types import MappingProxyType
+from typing import Final, Protocol
+
+from grader.assignment import Assignment, Criterion, Kind, Seeds
+from grader.reading import checks_for
+from grader.result import Episode, Result, Status, Test, Timing
+from grader.submission import Submission
+from kit.host.confine import Level
+from kit.host.failure import Failure, FailureKind
+
+STATUS_OF: Final[Mapping[FailureKind, Status]] = MappingProxyType(
+    {
+        FailureKind.TIMEOUT: Status.TIMEOUT,
+        FailureKind.MEMORY: Status.RESOURCE_LIMIT,
+        FailureKind.KILLED: Status.RESOURCE_LIMIT,
+        FailureKind.PROTOCOL: Status.PROTOCOL_ERROR,
+        FailureKind.CONFINEMENT: Status.GRADER_ERROR,
+    }
+)
+"""What a failure of the program means for a test; any other kind is the student's error."""
+
+COARSE: Final[Mapping[Status, str]] = MappingProxyType(
+    {
+        Status.TIMEOUT: "Your program took too long",
+        Status.RESOURCE_LIMIT: "Your program used too much memory",
+        Status.PROTOCOL_ERROR: "Your program disturbed its conversation with the kit",
+        Status.STUDENT_ERROR: "Your program stopped with an error",
+    }
+)
+"""All that is said of a failure where seeds are secret: an error's own text could carry away what was seen."""
+
+
+class Evidence(Protocol):
+    """Something a criterion is measured on: a drive, or a reward under examination."""
+
+    @property
+    def label(self) -> str: ...
+    @property
+    def secret(self) -> bool: ...
+    @property
+    def failure(self) -> Failure | None: ...
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def printed(self) -> tuple[str, ...]: ...
+    def picture(self) -> str: ...
+
+
+class Gatherer(Protocol):
+    """Runs a submission and returns what was seen."""
+
+    level: Level
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]: ...
+
+    def all(self) -> Sequence[Evidence]:
+        """What has been gathered so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """One piece of evidence and what it earned."""
+
+    evidence: Evidence
+    measure: float | None
+    share: float
+
+
+class Grading:
+    """Judges criteria one by one, in any order; the plugin and the command line share this."""
+
+    def __init__(
+        self, assignment: Assignment, submission: Submission, gatherer: Gatherer, *, secret: bool
+    ) -> None:
+        self.assignment = assignment
+        self.submission = submission
+        self._gatherer = gatherer
+        self._secret = secret
+        self._checks = checks_for(assignment.kind)
+        self._looks: dict[str, tuple[_Look, ...]] = {}
+        self._tests: dict[str, Test] = {}
+        self._began = time.perf_counter()
+        self._started = datetime.now(UTC).isoformat(timespec="seconds")
+
+    def judge(self, criterion: Criterion) -> Test:
+        """The criterion's test. Never raises: what breaks here is the grader's, and said to be."""
+        if criterion.id not in self._tests:
+            try:
+                test = self._judge(criterion)
+            except Exception:  # noqa: BLE001  # whatever it is, it is ours and must not cost the student a point
+                test = self._broken(criterion, traceback.format_exc())
+            self._tests[criterion.id] = test
+        return self._tests[criterion.id]
+
+    def result(self) -> Result:
+        """All criteria judged."""
+        tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
+        return Result(
+            assignment=self.assignment.id,
+            assignment_version=self.assignment.version,
+            submission=self.submission.digest,
+            grader_version=grader_version(),
+            seeds="public+secret" if self._secret else "public",
+            level=int(self._gatherer.level),
+            platform=_platform(),
+            tests=tests,
+            notices=tuple(self._notices(tests)),
+            steps=sum(each.steps for each in self._gatherer.all()),
+            timing=Timing(self._started, round(time.perf_counter() - self._began, 3)),
+        )
+
+    def worst(self) -> Evidence | None:
+        """The public episode that earned least of all; None if all earned everything."""
+        shares: dict[int, tuple[float, Evidence]] = {}
+        for looks in self._looks.values():
+            for look in looks:
+                if not look.evidence.secret:
+                    before = shares.get(id(look.evidence), (0.0, look.evidence))[0]
+                    shares[id(look.evidence)] = before + 1.0 - look.share, look.evidence
+        lost, evidence = max(shares.values(), key=lambda each: each[0], default=(0.0, None))
+        return evidence if lost > 0 else None
+
+    def _judge(self, criterion: Criterion) -> Test:
+        looks = self._look(criterion)
+        blank = Test(
+            criterion.id, criterion.title, Status.SKIPPED, 0.0, criterion.points, criterion.visibility
+        )
+        if not looks:
+            return replace(blank, rationale="Judged with secret seeds when you hand in.")
+        broken = next((look for look in looks if _status(look.evidence.failure) is Status.GRADER_ERROR), None)
+        if broken is not None:
+            return self._broken(criterion, str(broken.evidence.failure))
+        if criterion.after is not None and not any(
+            look.share == 1.0 for look in self._look(self._by_id(criterion.after))
+        ):
+            title = self._by_id(criterion.after).title
+            return replace(blank, rationale=f"Not judged: first comes “{title}”.", depends_on=criterion.after)
+        share = _share(criterion, [look.share for look in looks])
+        worst = min(looks, key=lambda look: look.share)
+        full = share == 1.0
+        status = Status.PASS if full else (Status.PARTIAL if share > 0 else Status.FAIL)
+        if worst.evidence.failure is not None and share == 0.0:
+            status = _status(worst.evidence.failure)
+        check = self._checks[criterion.check]
+        return replace(
+            blank,
+            status=status,
+            points=round(criterion.points * share, 6),
+            rationale="" if full else self._rationale(criterion, looks, worst),
+            hints=() if full else criterion.hints,
+            expected=check.said(criterion.anchors.full),
+            actual="" if worst.measure is None else check.said(worst.measure),
+            metrics={"share": round(share, 6)},
+            episodes=tuple(
+                Episode(
+                    look.evidence.label,
+                    look.evidence.outcome,
+                    look.evidence.steps,
+                    None if look.measure is None else _finite(look.measure),
+                )
+                for look in looks
+            ),
+            log="" if worst.evidence.secret else "\n".join(worst.evidence.printed),
+            replay="" if full or worst.evidence.secret else worst.evidence.picture(),
+        )
+
+    def _look(self, criterion: Criterion) -> tuple[_Look, ...]:
+        """Each piece of evidence for a criterion, measured and marked."""
+        if criterion.id in self._looks:
+            return self._looks[criterion.id]
+        check = self._checks[criterion.check]
+        ready = self._ready(criterion)
+        looks = []
+        for evidence in self._gatherer.evidence(criterion):
+            if evidence.failure is not None or not ready(evidence):
+                looks.append(_Look(evidence, None, 0.0))
+                continue
+            measure = float(check.measure(evidence, criterion.params))
+            looks.append(_Look(evidence, measure, criterion.anchors.share(measure)))
+        self._looks[criterion.id] = tuple(looks)
+        return self._looks[criterion.id]
+
+    def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
+        """Whether a piece of evidence earned everything in the criterion that comes first."""
+        if criterion.after is None:
+            return lambda evidence: True
+        before = self._look(self._by_id(criterion.after))
+        fine = {id(look.evidence) for look in before if look.share == 1.0}
+        known = {id(look.evidence) for look in before}
+        return lambda evidence: id(evidence) in fine or id(evidence) not in known
+
+    def _rationale(self, criterion: Criterion, looks: Sequence[_Look], worst: _Look) -> str:
+        evidence = worst.evidence
+        if evidence.failure is not None:
+            if evidence.secret:
+                return f"{COARSE[_status(evidence.failure)]} ({evidence.label})."
+            return f"{evidence.failure} ({evidence.label})"
+        check = self._checks[criterion.check]
+        if worst.measure is None:
+            title = self._by_id(criterion.after or criterion.id).title
+            return f"{evidence.label} does not count here: “{title}” comes first."
+        return criterion.feedback.format(
+            actual=check.said(worst.measure),
+            full=check.said(criterion.anchors.full),
+            where=evidence.label,
+            passed=sum(look.share == 1.0 for look in looks),
+            count=len(looks),
+        )
+
+    def _broken(self, criterion: Criterion, log: str) -> Test:
+        return Test(
+            criterion.id,
+            criterion.title,
+            Status.GRADER_ERROR,
+            0.0,
+            criterion.points,
+            criterion.visibility,
+            rationale="The grader broke here; that is not your fault and costs no points. Your teacher is told.",
+            log=log,
+        )
+
+    def _notices(self, tests: Sequence[Test]) -> Sequence[str]:
+        later = [test for test in tests if test.status is Status.SKIPPED and test.depends_on is None]
+        seeds = any(criterion.seeds is not Seeds.PUBLIC for criterion in self.assignment.criteria)
+        notices = []
+        if later:
+            notices.append(f"{len(later)} more tests run when you hand in.")
+        if not self._secret and self.assignment.kind is Kind.CONTROLLER and seeds:
+            notices.append("These are the practice seeds; the grade uses others.")
+        if not self._secret and self._gatherer.level < self.assignment.level:
+            notices.append(
+                f"Confinement level {int(self._gatherer.level)} was reached; the grade is given at "
+                f"{int(self.assignment.level)} or higher."
+            )
+        return notices
+
+    def _by_id(self, identity: str) -> Criterion:
+        return next(each for each in self.assignment.criteria if each.id == identity)
+
+
+def _share(criterion: Criterion, shares: Sequence[float]) -> float:
+    """What part of a criterion's points its episodes earn together."""
+    if criterion.need is None:
+        return math.fsum(shares) / len(shares)
+    passed = sum(share == 1.0 for share in shares) / len(shares)
+    return 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
+
+
+def _status(failure: Failure | None) -> Status:
+    return Status.FAIL if failure is None else STATUS_OF.get(failure.kind, Status.STUDENT_ERROR)
+
+
+def _finite(measure: float | None) -> float | None:
+    """For JSON, which has no word for infinity."""
+    return round(measure, 6) if measure is not None and math.isfinite(measure) else None
+
+
+def grader_version() -> str:
+    try:
+        return version("robot-learning-kit")
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def _platform() -> str:
+    return f"{sys.platform}, Python {sys.version_info.major}.{sys.version_info.minor}"

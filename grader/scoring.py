@@ -1,0 +1,53 @@
+"""Partial credit: a straight line between two anchors; and the odds that a good work fails by bad luck."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Anchors:
+    """The measure at which nothing is earned, and the one at which everything is. Either may be the larger."""
+
+    none: float
+    full: float
+
+    def share(self, measure: float) -> float:
+        """What part of the points a measure earns, 0 to 1. NaN earns nothing.
+
+        Written so that nothing but a comparison that holds gives credit.
+        """
+        if self.full >= self.none:
+            if measure >= self.full:
+                return 1.0
+            return (measure - self.none) / (self.full - self.none) if measure > self.none else 0.0
+        if measure <= self.full:
+            return 1.0
+        return (self.none - measure) / (self.none - self.full) if measure < self.none else 0.0
+
+
+def least_passes(count: int, need: float) -> int:
+    """How many of ``count`` episodes must pass for a share ``need`` of them."""
+    return min(count, max(0, math.ceil(need * count - 1e-9)))
+
+
+def unfair_fail(success: float, count: int, passes: int) -> float:
+    """The odds that a work which succeeds with probability ``success`` passes fewer than ``passes`` of ``count``.
+
+    The exact binomial sum.
+    """
+    return math.fsum(
+        math.comb(count, k) * success**k * (1.0 - success) ** (count - k)
+        for k in range(min(passes, count + 1))
+    )
+
+
+def wilson(passes: int, count: int, z: float = 1.959963984540054) -> tuple[float, float]:
+    """Wilson's interval for a success probability of which ``passes`` of ``count`` were seen (95 %)."""
+    if count == 0:
+        return 0.0, 1.0
+    p, zz = passes / count, z * z
+    middle = (p + zz / (2 * count)) / (1 + zz / count)
+    half = z * math.sqrt(p * (1 - p) / count + zz / (4 * count * count)) / (1 + zz / count)
+    return max(0.0, middle - half), min(1.0, middle + half)

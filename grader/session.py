@@ -1,0 +1,68 @@
+"""One submission, one assignment, one result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from grader.assignment import Assignment, Kind
+from grader.grading import Gatherer, Grading
+from grader.result import Result
+from grader.shield import hide
+from grader.submission import Submission
+from kit.host.confine import Level
+
+
+class LevelTooLow(Exception):
+    """Secrets would be used at a lower confinement than the assignment allows; the message says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """How to grade."""
+
+    level: Level | None = None
+    """How far to lock programs in; None: as the assignment says."""
+    secret: bool = False
+    """Whether the secret seeds are used: for the grade."""
+    may_fall: bool = True
+    """Whether practice goes on at a lower level where the machine has none higher."""
+
+
+@contextmanager
+def opened(assignment: Assignment, submission: Submission, terms: Terms) -> Iterator[Grading]:
+    """A grading, ready to judge. Raises LevelTooLow."""
+    level = assignment.level if terms.level is None else terms.level
+    if terms.secret and level < assignment.level:
+        raise LevelTooLow(
+            f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
+            f"not at {int(level)}. `kit doctor` says what this machine can do."
+        )
+    hide()
+    with submission.laid_out() as file:
+        gatherer: Gatherer
+        if assignment.kind is Kind.CONTROLLER:
+            from grader.controllers import ControllerRuns
+
+            gatherer = ControllerRuns(
+                assignment,
+                file,
+                level=level,
+                secret=terms.secret,
+                may_fall=terms.may_fall and terms.level is None,
+            )
+            yield Grading(assignment, submission, gatherer, secret=terms.secret)
+        else:
+            from grader.examination import Examination
+
+            with Examination(
+                assignment, file, level=level, may_fall=terms.may_fall and terms.level is None
+            ) as gatherer:
+                yield Grading(assignment, submission, gatherer, secret=terms.secret)
+
+
+def grade(assignment: Assignment, submission: Submission, terms: Terms) -> Result:
+    """The result of one submission. Raises LevelTooLow."""
+    with opened(assignment, submission, terms) as grading:
+        return grading.result()

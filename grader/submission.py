@@ -1,0 +1,134 @@
+"""What was handed in, as bytes: one snapshot with a digest, which nobody changes between two tests.
+
+Nothing is imported, and nothing but plain files is taken: no links, no devices, no pipes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import stat
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from grader.archives import MOST_BYTES, MOST_FILES, Refused, check_name, is_archive, unpacked
+
+WORTHLESS: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
+"""What people hand in without meaning to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Submission:
+    """Files by name, relative, with ``/``; and which of them is what was asked for."""
+
+    name: str
+    """Whose, or which."""
+    main: str
+    files: Mapping[str, bytes]
+
+    @property
+    def digest(self) -> str:
+        """Equal for equal content."""
+        made = hashlib.sha256(self.main.encode())
+        for name, content in sorted(self.files.items()):
+            made.update(repr((name, len(content))).encode())
+            made.update(content)
+        return made.hexdigest()[:32]
+
+    @contextmanager
+    def laid_out(self) -> Iterator[Path]:
+        """The files in a folder of their own, not to be written to; where the main one lies."""
+        with tempfile.TemporaryDirectory(prefix="grader-") as folder:
+            for name, content in self.files.items():
+                path = Path(folder, name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(content)
+                path.chmod(0o444)
+            # A program that runs as another user has to come this far.
+            Path(folder).chmod(0o755)
+            yield Path(folder, self.main)
+
+
+def take(path: Path, wanted: str) -> Submission:
+    """The submission at ``path``: the file itself, or a folder or an archive that holds the file ``wanted``.
+
+    Raises Refused, whose message a student understands.
+    """
+    if path.is_symlink():
+        raise Refused(f"{path.name} is a link; hand in the file itself.")
+    if path.is_dir():
+        return _of(path.name, dict(_folder(path)), wanted)
+    content = _plain(path)
+    if is_archive(path.name):
+        return _of(_stem(path), unpacked(content, path.name), wanted)
+    return Submission(path.stem, wanted, {wanted: content})
+
+
+def _of(name: str, files: Mapping[str, bytes], wanted: str) -> Submission:
+    """Looks for the wanted file: at the top, or in the only folder in which it is."""
+    places = sorted(
+        (each for each in files if each == wanted or each.endswith(f"/{wanted}")),
+        key=lambda each: each.count("/"),
+    )
+    if not places:
+        listed = ", ".join(sorted(files)[:5]) or "nothing"
+        raise Refused(f"{wanted} is missing. What was handed in: {listed}.")
+    if len(places) > 1 and places[0].count("/") == places[1].count("/"):
+        raise Refused(f"{wanted} is there more than once: {', '.join(places[:3])}.")
+    top = places[0].removesuffix(wanted)
+    return Submission(
+        name,
+        wanted,
+        {each.removeprefix(top): content for each, content in files.items() if each.startswith(top)},
+    )
+
+
+def _folder(folder: Path) -> Iterator[tuple[str, bytes]]:
+    """The plain files below a folder."""
+    total = count = 0
+    for place, folders, names in os.walk(folder, followlinks=False):
+        folders[:] = sorted(each for each in folders if each not in WORTHLESS)
+        for link in folders:
+            if Path(place, link).is_symlink():
+                raise Refused(f"{link} is a link; hand in files only.")
+        for name in sorted(names):
+            path = Path(place, name)
+            relative = path.relative_to(folder).as_posix()
+            if name in WORTHLESS:
+                continue
+            check_name(relative)
+            content = _plain(path)
+            total, count = total + len(content), count + 1
+            if total > MOST_BYTES or count > MOST_FILES:
+                raise Refused(
+                    f"More than {MOST_FILES} files or {MOST_BYTES >> 20} MiB; hand in your program alone."
+                )
+            yield relative, content
+
+
+def _plain(path: Path) -> bytes:
+    """A plain file's content; without following a link, waiting for a pipe, or reading without end."""
+    try:
+        handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as error:
+        reason = "it is a link" if path.is_symlink() else error.strerror
+        raise Refused(f"{path.name} cannot be read: {reason}.") from None
+    with os.fdopen(handle, "rb") as file:
+        status = os.fstat(handle)
+        if not stat.S_ISREG(status.st_mode):
+            raise Refused(f"{path.name} is not a plain file.")
+        content = file.read(MOST_BYTES + 1)
+    if len(content) > MOST_BYTES:
+        raise Refused(f"{path.name} is larger than {MOST_BYTES >> 20} MiB.")
+    return content
+
+
+def _stem(path: Path) -> str:
+    name = path.name
+    for ending in (".tar.gz", ".tgz", ".tar", ".zip"):
+        name = name.removesuffix(ending)
+    return name
