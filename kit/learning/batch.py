@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit import kernels
+from kit.learning.arena import Ground
 from kit.learning.courses import Courses
 from kit.learning.observations import FAR_TARGET
 from kit.learning.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.tasks import Task
 from kit.learning.transition import Array, Transition, bearing, distance
-from kit.world.catalogue import Case
+from kit.world.catalogue import Case, MapCard
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -108,14 +109,22 @@ class BatchEnv:
     to the bit alone or among many.
 
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round.
-    ``reward``: instead of the task's own. Raises Unsupported for a map that it cannot represent.
+    ``reward``: instead of the task's own. ``restart``: whether a world whose episode has ended begins its next one
+    in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
     """
 
     render_mode: None = None
     """A batch draws nothing; ``kit.learning.env`` draws one world."""
 
     def __init__(
-        self, task: Task, n: int, seed: int = 0, *, reward: RewardFunction | None = None, first: int = 0
+        self,
+        task: Task,
+        n: int,
+        seed: int = 0,
+        *,
+        reward: RewardFunction | None = None,
+        first: int = 0,
+        restart: bool = True,
     ) -> None:
         self.task = task
         self.n = n
@@ -126,6 +135,7 @@ class BatchEnv:
         self._courses = Courses(task)
         self._single, self._sectors = task.observation.tables(task.robots)
         self._first = first
+        self._restart = restart
         self._everyone: Numbers = np.arange(n, dtype=np.int64)
         self._keys = self._sown(seed)
         self._state = State.of(n, task.robots)
@@ -135,6 +145,10 @@ class BatchEnv:
     def state(self) -> State:
         """Where every world is now; not to be written to."""
         return self._state
+
+    def place(self, case: int) -> tuple[MapCard, Ground]:
+        """The map of a case, by its number."""
+        return self._courses.places[case]
 
     # Beginning
 
@@ -191,7 +205,7 @@ class BatchEnv:
         if self.task.timeout_terminal:
             terminated, truncated = terminated | truncated, np.zeros_like(truncated)
         over = np.flatnonzero(transition.ended)
-        observations = self._restarted(over, final) if len(over) else final
+        observations = self._restarted(over, final) if len(over) and self._restart else final
         return Step(observations, rewards, terminated, truncated, final, transition, terms)
 
     def _advance(self, choices: Numbers) -> Transition:

@@ -47,6 +47,8 @@ class Courses:
         self.fleet = fleet_of(grounds, task.lidar_noise)
         self.map_of: Numbers = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
+        self.places = [(cards[number], grounds[number]) for number in self.map_of]
+        """(cases): each case's map."""
         cases = [case for _, case in courses]
         self._starts = np.array([_starts(case, task) for case in cases])
         self._targets = np.array([case.target for case in cases])
