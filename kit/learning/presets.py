@@ -101,6 +101,8 @@ class Preset:
     """Sizes of the hidden layers."""
     activation: Activation | None = None
     """None: as the library has it, tanh for rollouts and relu for replay."""
+    memory: int | None = None
+    """Size of a recurrent layer in front of the others, for algorithms that have one."""
 
     def keywords(self) -> dict[str, Any]:
         """What the learner's class is called with, schedules as plain first values where it takes no others."""
@@ -199,6 +201,7 @@ KIT_TRPO = Preset(
 KIT_RECURRENT = Preset(
     Rollouts(n_steps=128, batch_size=1024, n_epochs=4, ent_coef=Falling(0.03, 0.0)),
     UntilSure(every=50_000),
+    memory=64,  # four times as fast as the library's 256
     steps=1_000_000,  # a step costs ten times that of PPO
     worlds=64,
     learning_rate=Falling(1e-3, 1e-4),

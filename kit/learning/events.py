@@ -1,0 +1,168 @@
+"""What a training run tells: one event, one line of a file that only grows.
+
+A reader may look at any time, also while a line is half written; a writer may be killed at any time.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from types import MappingProxyType, TracebackType
+from typing import Literal, Self, TypeAlias
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """The learner starts, or goes on after it was interrupted."""
+
+    time: float
+    """s since 1970."""
+    steps: int
+    """0, or what the checkpoint had that it goes on from."""
+    versions: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """What happened in training since the last one."""
+
+    steps: int
+    """All in all."""
+    seconds: float
+    """Of training, all in all; without pauses, with tests."""
+    rate: float
+    """Steps a second since the last one, tests left out."""
+    episodes: dict[str, list[int]]
+    """By case: how many ended in each ``Outcome``, in its order."""
+    reward: float | None
+    """Mean sum over an episode; None where none has ended, as below."""
+    length: float | None
+    """Mean steps of an episode."""
+    terms: dict[str, float]
+    """Mean sum over an episode by named term of the reward."""
+    adjacency: float | None = None
+    """Mean share of steps side by side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tested:
+    """A test of the strategy, on fresh episodes."""
+
+    steps: int
+    seconds: float
+    cases: dict[str, list[int]]
+    """By case: how many ended in each ``Outcome``, in its order."""
+    kept: bool
+    """The best policy so far."""
+    reward: float | None = None
+    """Mean sum over an episode."""
+    reason: str = ""
+    """What followed, if anything did."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """Something a reader of the run should know."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The learner has ended of its own accord."""
+
+    how: Literal["finished", "stopped", "failed"]
+    steps: int
+    seconds: float
+    reason: str
+
+
+Event: TypeAlias = Started | Progress | Tested | Noted | Ended
+
+KINDS: Mapping[str, type[Event]] = MappingProxyType(
+    {
+        "started": Started,
+        "progress": Progress,
+        "tested": Tested,
+        "noted": Noted,
+        "ended": Ended,
+    }
+)
+_NAMES = {kind: name for name, kind in KINDS.items()}
+
+
+def to_line(event: Event) -> bytes:
+    """One line of JSON."""
+    return json.dumps({"event": _NAMES[type(event)], **asdict(event)}).encode() + b"\n"
+
+
+def from_line(line: bytes) -> Event | None:
+    """The event; None if it is damaged, or of a kind that a later kit writes."""
+    try:
+        data = json.loads(line)
+        kind = KINDS[data.pop("event")]
+        return kind(**{name: data[name] for name in data if name in {each.name for each in fields(kind)}})
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+class EventWriter:
+    """Appends events to a file. A half line that a killed writer left is cut off first."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file.open("ab")
+        whole = _whole_lines(file)
+        if whole < self._file.tell():
+            os.truncate(file, whole)
+
+    def write(self, event: Event) -> None:
+        """OSError if the disk is full; nothing of the event stands in the file then."""
+        start = os.fstat(self._file.fileno()).st_size
+        try:
+            self._file.write(to_line(event))
+            self._file.flush()
+        except OSError:
+            os.truncate(self._file.fileno(), start)
+            raise
+
+    def close(self) -> None:
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def _whole_lines(file: Path) -> int:
+    """Up to which byte the file consists of whole lines."""
+    return file.read_bytes().rfind(b"\n") + 1
+
+
+class EventReader:
+    """Reads a run's events as they come, each once."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._place = 0
+
+    def new(self) -> Iterator[Event]:
+        """Those written since the last time; none while there is no file."""
+        try:
+            with self._file.open("rb") as file:
+                file.seek(self._place)
+                data = file.read()
+        except FileNotFoundError:
+            return
+        whole = data.rfind(b"\n") + 1
+        self._place += whole
+        for line in data[:whole].splitlines():
+            event = from_line(line)
+            if event is not None:
+                yield event
