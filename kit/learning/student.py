@@ -20,17 +20,10 @@ from typing import Any, Self
 import numpy as np
 
 from kit.host.batch import StudentFunctions
-from kit.learning.transition import Array, Transition
+from kit.learning.transition import FACTS, Array, Transition
 from kit.world.problems import quoted, suggestion
 
 FUNCTION = "reward"
-FACTS = tuple(
-    sorted(
-        {*Transition.__dataclass_fields__}
-        | {name for name, value in vars(Transition).items() if isinstance(value, property)}
-    )
-)
-"""What a reward can ask for."""
 
 
 class RewardFileError(Exception):

@@ -152,6 +152,15 @@ class Transition:
         return Transition(**{name: v if name == "max_steps" else v[index] for name, v in values.items()})
 
 
+FACTS = tuple(
+    sorted(
+        {field.name for field in fields(Transition)}
+        | {name for name, value in vars(Transition).items() if isinstance(value, property | cached_property)}
+    )
+)
+"""Everything that a transition tells, by name."""
+
+
 def distance(pose: Array, target: Array) -> Array:
     """(..., R) from poses (..., R, 3) to targets (..., 2) [m]."""
     return np.hypot(target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1])
