@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from kit.controllers import ControllerFile
 from kit.geometry import Pose
 from kit.host.failure import Failure
-from kit.live import MAXIMUM, Pace
+from kit.pacing import MAXIMUM, Pace
 from kit.places import Place
 from kit.recording import Recorder, save
 from kit.ros.graph import Graph

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,12 @@ from kit.host.failure import Failure
 from kit.picture.scene import Body, Disc, FloatArray, Scene
 from kit.picture.trail import Trail
 from kit.ros.log import LogRecord
-from kit.session import Session
 from kit.sim.state import SimulationState
-from kit.sim.surroundings import Outline, ScanView
 from kit.trip import Score
+
+if TYPE_CHECKING:
+    from kit.session import Session
+    from kit.sim.surroundings import Outline, ScanView
 
 SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
 """Of a robot: name and direction [rad] of the middle of each quarter."""

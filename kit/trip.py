@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kit.geometry import Pose
-from kit.sim.simulation import Simulation
 from kit.world.catalogue import Case
+
+if TYPE_CHECKING:
+    from kit.sim.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,6 +83,7 @@ def test_imports_go_down() -> None:
         ("kit.picture.text", ()),
         ("kit.runner", ("numba", "pymunk", "PIL")),
         ("kit.layers", ()),
+        ("kit.tui.screens.play", ("textual",)),
     ],
 )
 def test_a_fresh_process_loads_no_more_than_it_needs(module: str, allowed: tuple[str, ...]) -> None:

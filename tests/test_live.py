@@ -8,7 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
-from kit.live import CATCH_UP, MAXIMUM, LiveRun, Meter, Schedule
+from kit.live import LiveRun
+from kit.pacing import CATCH_UP, MAXIMUM, Meter, Schedule
 from kit.places import place_on_map
 from kit.ros.graph import Graph
 from kit.runner import Runner

@@ -72,7 +72,7 @@ def command(
     """
     from kit.controllers import find
     from kit.headless import Companion, run_headless
-    from kit.live import MAXIMUM, REAL_TIME
+    from kit.pacing import MAXIMUM, REAL_TIME
     from kit.places import find_place
     from kit.ros.graph import Graph
     from kit.workspace import WorkspaceError, open_workspace

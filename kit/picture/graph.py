@@ -82,7 +82,7 @@ class Columns:
 
 RATE_ROOM: Final = 8
 ARROW_ROOM: Final = 2
-LEAST_LANES: Final = (4, 7)
+LEAST_LANES: Final = (5, 8)
 """Characters kept for lanes, left and right, so that the columns stay where they are when one joins."""
 LEAST_NAME: Final = 8
 
@@ -191,7 +191,9 @@ class Plan:
         """The lines of what is chosen: a node's on both its sides."""
         if spot is None:
             return ()
-        return {link for link in self.ways if spot.name == (link.item if spot.column == "item" else link.node)}
+        return {
+            link for link in self.ways if spot.name == (link.item if spot.column == "item" else link.node)
+        }
 
     def spots(self) -> Mapping[Spot, int]:
         """Everything that can be chosen, with its row."""
@@ -227,7 +229,9 @@ def _bent(start: int, end: int, lane: int | None, first: int, last: int) -> _Way
         down = last > first
         onward, back = (SOUTH, NORTH) if down else (NORTH, SOUTH)
         cells.append((Cell(lane, first), WEST | onward))
-        cells += [(Cell(lane, row), UPRIGHT) for row in range(first + (1 if down else -1), last, 1 if down else -1)]
+        cells += [
+            (Cell(lane, row), UPRIGHT) for row in range(first + (1 if down else -1), last, 1 if down else -1)
+        ]
         cells.append((Cell(lane, last), back | EAST))
     cells += [(Cell(column, last), LEVEL) for column in range(lane + 1, end)]
     return _Way(tuple(cells), Cell(lane, first))
@@ -331,9 +335,7 @@ class _Pen:
             self.frame.inks[row, cell.column] = role
 
 
-def _strokes_of(
-    plan: Plan, chosen: Collection[Link], strokes: Strokes
-) -> Iterator[tuple[Cell, str]]:
+def _strokes_of(plan: Plan, chosen: Collection[Link], strokes: Strokes) -> Iterator[tuple[Cell, str]]:
     """The character of each cell that has a line."""
     level: dict[Cell, int] = {}
     upright: dict[Cell, int] = {}
@@ -365,8 +367,8 @@ def _strokes_of(
 
 
 def _cut(name: str, width: int, mark: str) -> str:
-    """The name, in the middle shortened to so many characters: both ends tell names apart."""
+    """The name shortened to so many characters: most of its end stays, and a little of its beginning."""
     if len(name) <= width:
         return name
     kept = max(0, width - len(mark))
-    return name[: kept // 2] + mark + name[len(name) - (kept - kept // 2) :]
+    return name[: kept // 4] + mark + name[len(name) - (kept - kept // 4) :]

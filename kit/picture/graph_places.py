@@ -52,8 +52,8 @@ def arrange(talk: Conversation, before: Places | None = None) -> Places:
     received = {node: items for node in talk.nodes if (items := talk.received_by(node))}
     alone = [node for node in talk.nodes if node not in sent and node not in received]
     if before is None:
-        rows = _fresh_rows(talk, sent, received)
-        before = Places()
+        before = _fresh(talk, sent, received)
+        rows = before.items
     else:
         rows = _kept_rows(talk, before)
     senders = _seats({**sent, **dict.fromkeys(alone, ())}, rows, before.senders.seats)
@@ -68,22 +68,44 @@ def arrange(talk: Conversation, before: Places | None = None) -> Places:
 # Rows of topics and services
 
 
-def _fresh_rows(
+def _fresh(
     talk: Conversation, sent: Mapping[str, Sequence[Item]], received: Mapping[str, Sequence[Item]]
-) -> Rows:
-    """Each sender's topics below one another, with as many empty rows as their nodes need to sit near."""
-    order = _ordered(talk)
-    guests = {item.label: 1 for item in order}
-    for side in (sent, received):
-        homes = [min(items, key=lambda item: order.index(item)).label for items in side.values()]
-        for label in guests:
-            guests[label] = max(guests[label], homes.count(label))
+) -> Places:
+    """Each sender's topics below one another; where not every node can sit on the row of a topic of its own, an
+    empty row for it; and the seats that this is meant for."""
+    order = {item.label: place for place, item in enumerate(_ordered(talk))}
+    seated = [_distinct(side, order) for side in (sent, received)]
+    guests = dict.fromkeys(order, 0)
+    for side, homes in zip((sent, received), seated, strict=True):
+        without = [min(order[item.label] for item in side[node]) for node in side if node not in homes]
+        for label, place in order.items():
+            guests[label] = max(guests[label], without.count(place))
     rows: dict[str, int] = {}
     row = 0
-    for item in order:
-        rows[item.label] = row
-        row += guests[item.label]
-    return rows
+    for label in order:
+        rows[label] = row
+        row += 1 + guests[label]
+    senders, receivers = ({node: rows[label] for node, label in homes.items()} for homes in seated)
+    return Places(rows, Side(senders), Side(receivers))
+
+
+def _distinct(used: Mapping[str, Sequence[Item]], order: Mapping[str, int]) -> dict[str, str]:
+    """For as many nodes as can be an item of their own that no other node has: a maximum matching by augmenting
+    paths (Kuhn 1955), which leaves a node on its first item where it can."""
+    holder: dict[str, str] = {}
+
+    def find(node: str, tried: set[str]) -> bool:
+        for label in sorted((item.label for item in used[node]), key=order.__getitem__):
+            if label not in tried:
+                tried.add(label)
+                if label not in holder or find(holder[label], tried):
+                    holder[label] = node
+                    return True
+        return False
+
+    for node in sorted(used, key=lambda node: (len(used[node]), node)):
+        find(node, set())
+    return {node: label for label, node in holder.items()}
 
 
 def _ordered(talk: Conversation) -> list[Item]:
@@ -92,9 +114,7 @@ def _ordered(talk: Conversation) -> list[Item]:
     order = sorted(talk.items, key=lambda item: (_first_sender(talk, item), item.is_service, item.label))
     for _ in range(4):
         rank = {item.label: place for place, item in enumerate(order)}
-        middle = {
-            node: _mean(rank[item.label] for item in talk.received_by(node)) for node in talk.nodes
-        }
+        middle = {node: _mean(rank[item.label] for item in talk.received_by(node)) for node in talk.nodes}
         pull = {
             item.label: _mean(middle[node] for node in item.receivers) if item.receivers else rank[item.label]
             for item in order
@@ -189,7 +209,10 @@ def _seats(used: Mapping[str, Sequence[Item]], rows: Rows, before: Rows) -> Rows
     bottom = max((*rows.values(), *before.values()), default=-1) + len(used) + 1
     for node in sorted(
         (node for node in used if node not in seats),
-        key=lambda node: (len(used[node]) != 1, min((rows[item.label] for item in used[node]), default=bottom)),
+        key=lambda node: (
+            len(used[node]) != 1,
+            min((rows[item.label] for item in used[node]), default=bottom),
+        ),
     ):
         own = sorted(rows[item.label] for item in used[node])
         start = own[0] if own else bottom - len(used)

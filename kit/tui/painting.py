@@ -48,6 +48,15 @@ class CroppingCompositor(Compositor):
         return update and CroppedUpdate(update.chops, update.spans, update.chop_ends)
 
 
+class StillScreen(Screen[None]):
+    """A screen that is not painted while another lies over it. Textual would paint both, whole, each time
+    anything changes underneath, and from then on for every message."""
+
+    @property
+    def is_current(self) -> bool:
+        return self.is_active
+
+
 def crop_left(screen: Screen[Any]) -> bool:
     """Makes a screen send no more than what changed, from now on. False, and nothing done, if the installed
     Textual is not the one known here."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 
-from kit.live import MAXIMUM, Pacing
+from kit.pacing import MAXIMUM, Pacing
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.showing import View, clock
 from kit.tui.text_rows import Part, Row, row, spread

@@ -9,19 +9,22 @@ import threading
 import time
 from collections.abc import Callable
 from queue import SimpleQueue
-from typing import Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from kit.controllers import ControllerFile
-from kit.live import LiveRun, Pacing
-from kit.places import Place
-from kit.runner import Runner
-from kit.session import Session
+from kit.pacing import Pacing
 from kit.showing import Showing, View
+
+if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
+    from kit.live import LiveRun
+    from kit.places import Place
+    from kit.runner import Runner
+    from kit.session import Session
 
 VIEW_INTERVAL: Final = 0.045
 """Seconds between two views while the world runs: a little over twenty a second."""
 
-Wish = Callable[[Session], object]
+Wish: TypeAlias = "Callable[[Session], object]"
 
 
 class Running:
@@ -38,6 +41,7 @@ class Running:
         self._showing: Showing | None = None
         self._shown = 0.0
         self._beams = False
+        self._listener: Wish | None = None
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._helper = threading.Thread(target=self._do_jobs, name="helper", daemon=True)
         self._helper.start()
@@ -52,6 +56,8 @@ class Running:
         """Opens another world in place of the present one, which stays if that fails."""
 
         def job() -> None:
+            from kit.session import Session
+
             session = Session(find(), seed=self._seed, watched=True)
             if controller is not None:
                 session.drive_with(controller)
@@ -87,6 +93,11 @@ class Running:
         self._beams = shown
         self.wish(lambda session: None)
 
+    def listen(self, listener: Wish | None) -> None:
+        """Has the session shown to somebody else too, in the world's thread, as often as there are views."""
+        self._listener = listener
+        self.wish(lambda session: None)
+
     def close(self) -> None:
         """Ends the world and its controller, and waits for both."""
         self._jobs.put(None)
@@ -101,6 +112,8 @@ class Running:
                 self._on_trouble(str(error))
 
     def _replace(self, session: Session) -> None:
+        from kit.live import LiveRun
+
         factor = self.pacing.factor
         self._drop()
         self._session, self._showing = session, Showing(session)
@@ -129,3 +142,5 @@ class Running:
             session.look_around()
             showing.beams = self._beams
             self._on_view(showing.view())
+            if (listener := self._listener) is not None:
+                listener(session)

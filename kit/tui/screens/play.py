@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import work
 from textual.binding import Binding, BindingType
 
 from kit.controllers import ControllerFile, find, in_folder, shipped
-from kit.places import Place, find_place
-from kit.session import Session
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.look import Look
+from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.picker import Choice, Picker
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
 from kit.world.catalogue import all_maps
+
+if TYPE_CHECKING:
+    from kit.places import Place
+    from kit.session import Session
 
 TELEOP: Final = "teleop"
 
@@ -33,6 +35,7 @@ class PlayScreen(WatchScreen):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("m", "maps", "map"),
         Binding("c", "controllers", "controller"),
+        Binding("n", "nodes", "nodes"),
         Binding("g", "hand_back", show=False),
         Binding("x", "next_drive_mode", show=False),
     ]
@@ -41,8 +44,9 @@ class PlayScreen(WatchScreen):
         self, look: Look, place: str, controller: str, *, case: str | None = None, folder: Path, seed: int = 0
     ) -> None:
         super().__init__(look, case or place, seed=seed)
+        self._look = look
         self._folder = folder
-        self._find: Callable[[], Place] = partial(find_place, place, case)
+        self._find = partial(_find_place, place, case)
         self._controller = find(controller, folder)
         self._before_takeover: ControllerFile | None = None
         self._teleop = find(TELEOP)
@@ -71,6 +75,10 @@ class PlayScreen(WatchScreen):
         controller = self._before_takeover or self._controller
         self.behind.drive_with(controller)
 
+    def action_nodes(self) -> None:
+        if self.view is not None:
+            self.app.push_screen(GraphScreen(self._look, self.behind, self.place_name))
+
     @work
     async def action_maps(self) -> None:
         cards = {card.name: card for card in all_maps()}
@@ -82,7 +90,7 @@ class PlayScreen(WatchScreen):
         chosen = await self.app.push_screen_wait(Picker("Maps", choices))
         if chosen is not None:
             name, _, case = chosen.partition("/")
-            self._find = partial(find_place, name, case)
+            self._find = partial(_find_place, name, case)
             self.behind.open(self._find, self._controller)
 
     @work
@@ -93,3 +101,10 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             self._controller, self._before_takeover = files[chosen], None
             self.behind.drive_with(self._controller)
+
+
+def _find_place(name: str, case: str | None) -> Place:
+    """Called in the helper thread, which imports the physics while the frame is on the screen already."""
+    from kit.places import find_place
+
+    return find_place(name, case)

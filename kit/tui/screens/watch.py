@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.live import MAXIMUM, REAL_TIME
+from kit.pacing import MAXIMUM, REAL_TIME
 from kit.picture.scene import Scene
-from kit.session import Session
 from kit.showing import View
 from kit.tui.input.screen import DriveScreen
 from kit.tui.look import Look
+from kit.tui.painting import StillScreen
 from kit.tui.readout import PANEL_WIDTH, heading, readout, said
 from kit.tui.running import Running
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.text_rows import Row, TextRows, row
 from kit.tui.world_view import WorldView
+
+if TYPE_CHECKING:
+    from kit.session import Session
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
@@ -42,7 +45,7 @@ class Trouble(Message):
         self.text = text
 
 
-class WatchScreen(DriveScreen):
+class WatchScreen(StillScreen, DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
     keys: ClassVar[Row] = ()
@@ -131,6 +134,9 @@ class WatchScreen(DriveScreen):
     def on_resize(self) -> None:
         self._show()
 
+    def on_screen_resume(self) -> None:
+        self._show()
+
     def mode_changed(self) -> None:
         self._show()
 
@@ -142,7 +148,7 @@ class WatchScreen(DriveScreen):
     def _show(self) -> None:
         width = self.size.width
         view = self.view
-        if view is None:
+        if view is None or not self.is_active:
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.behind.pacing, width)])
@@ -174,7 +180,7 @@ class WatchScreen(DriveScreen):
         self.behind.set_factor(SPEEDS[key])
 
     def action_reset(self) -> None:
-        self.behind.wish(Session.reset)
+        self.behind.wish(lambda session: session.reset())
 
     def action_pan(self, key: str) -> None:
         self.world.pan(*PANNED[key])

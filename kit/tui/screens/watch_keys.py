@@ -4,40 +4,26 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.tui.text_rows import Row, row
+from kit.tui.key_rows import KeyTable, key_line, key_page
 
-_Table = tuple[tuple[str, str], ...]
-
-
-def _line(*keys: tuple[str, str]) -> Row:
-    parts = [part for key, text in keys for part in ((key, "bold"), f" {text} ")]
-    return row(*parts)
-
-
-def _page(*tables: _Table) -> tuple[Row, ...]:
-    rows = [row()]
-    for table in tables:
-        rows += [*(row((f" {key:<17}", "bold"), text) for key, text in table), row()]
-    return tuple(rows)
-
-
-_DRIVE: Final[_Table] = (
+_DRIVE: Final[KeyTable] = (
     ("arrows, W A S D", "drive: you take over from the controller"),
     ("g", "the controller drives again"),
     ("x", "how keys drive: automatic, latch, repeat"),
     ("Q E F Space Esc", "for your own nodes, on /teleopkeys; Space stops"),
 )
-_TIME: Final[_Table] = (
+_TIME: Final[KeyTable] = (
     ("p", "pause and go on"),
     (".", "one step while paused"),
     ("1  2  3", "real time, ten times faster, as fast as it goes"),
     ("r", "from the start again"),
 )
-_CHOICE: Final[_Table] = (
+_CHOICE: Final[KeyTable] = (
     ("m", "another map"),
     ("c", "another controller; a saved file is read again"),
+    ("n", "nodes and topics: who says what to whom"),
 )
-_PICTURE: Final[_Table] = (
+_PICTURE: Final[KeyTable] = (
     ("+  -  0", "nearer, farther, everything"),
     ("h j k l", "look left, down, up, right"),
     ("v", "follow the robot"),
@@ -45,20 +31,21 @@ _PICTURE: Final[_Table] = (
     ("Ctrl-C", "leave"),
 )
 
-PLAY_KEYS: Final = _line(
+PLAY_KEYS: Final = key_line(
     ("←↑↓→", "drive"),
     ("p", "pause"),
     (".", "step"),
     ("123", "speed"),
     ("m", "map"),
-    ("c", "controller"),
+    ("c", "code"),
+    ("n", "nodes"),
     ("r", "reset"),
     ("?", "help"),
     ("^C", "leave"),
 )
-PLAY_HELP: Final = _page(_DRIVE, _TIME, _CHOICE, _PICTURE)
+PLAY_HELP: Final = key_page(_DRIVE, _TIME, _CHOICE, _PICTURE)
 
-REPLAY_KEYS: Final = _line(
+REPLAY_KEYS: Final = key_line(
     ("p", "pause"),
     (".", "step"),
     ("123", "speed"),
@@ -67,4 +54,4 @@ REPLAY_KEYS: Final = _line(
     ("?", "help"),
     ("^C", "leave"),
 )
-REPLAY_HELP: Final = _page(_TIME, _PICTURE)
+REPLAY_HELP: Final = key_page(_TIME, _PICTURE)

@@ -1,0 +1,290 @@
+"""Who says what to whom: the nodes, topics and services of the running world as a picture, messages on their way."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.timer import Timer
+from textual.widgets import Input
+
+from kit.picture.conversation import Conversation, conversation
+from kit.picture.graph import BOX, PLAIN, Plan, Sight, Spot, draw
+from kit.picture.graph_places import Places, arrange
+from kit.picture.graph_walk import across, along, still_there
+from kit.picture.travel import Travel
+from kit.tui.frame_view import FrameView
+from kit.tui.graph_words import about, heading, rates, ruled
+from kit.tui.listening import Heard, Listening
+from kit.tui.look import Look
+from kit.tui.painting import StillScreen
+from kit.tui.running import Running
+from kit.tui.screens.graph_keys import GRAPH_HELP, GRAPH_KEYS, MESSAGE_KEYS
+from kit.tui.screens.page import Page
+from kit.tui.text_rows import TextRows, row
+
+FRAME: Final = 1 / 8
+"""Seconds between two places of a dot."""
+
+CALM: Final = 0.5
+"""Seconds between two versions of anything that is read: rates, the newest message."""
+
+ABOUT_ROWS: Final = 5
+"""Of what is chosen: its name, its ends, and as much of its newest message as there is room for."""
+
+
+class News(Message):
+    """The world's thread has heard something."""
+
+
+class GraphScreen(StillScreen):
+    """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up,k", "along(-1)", show=False),
+        Binding("down,j", "along(1)", show=False),
+        Binding("left,h", "across(-1)", show=False),
+        Binding("right,l", "across(1)", show=False),
+        Binding("pageup", "along(-10)", show=False),
+        Binding("pagedown", "along(10)", show=False),
+        Binding("enter", "details", show=False),
+        Binding("slash", "narrow", show=False),
+        Binding("a", "everything", show=False),
+        Binding("t", "tidy", show=False),
+        Binding("p", "pause", show=False),
+        Binding("full_stop", "step", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,n,q", "back", show=False),
+        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
+    ]
+    DEFAULT_CSS = f"""
+    GraphScreen {{ layout: vertical; }}
+    GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
+    GraphScreen FrameView {{ height: 1fr; }}
+    GraphScreen #about {{ height: {ABOUT_ROWS}; }}
+    GraphScreen Input, GraphScreen Input:focus {{ display: none; border: none; padding: 0; height: 1; background: transparent; }}
+    GraphScreen.-narrowing Input {{ display: block; }}
+    GraphScreen.-narrowing #keys {{ display: none; }}
+    GraphScreen.-low #about {{ height: 3; }}
+    GraphScreen.-details FrameView {{ display: none; }}
+    GraphScreen.-details #about {{ height: 1fr; }}
+    """
+    VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high")]  # noqa: RUF012 - Textual's own attribute
+
+    def __init__(self, look: Look, behind: Running, title: str) -> None:
+        super().__init__()
+        self._behind = behind
+        self._title = title
+        self._rule = "-" if look.terminal.glyphs.value == "ascii" else "─"
+        self._strokes = PLAIN if look.terminal.glyphs.value == "ascii" else BOX
+        self._picture = FrameView(look.palette)
+        self._listening = Listening(self._arrived)
+        self._announced = False
+        self._heard: Heard | None = None
+        self._talk = Conversation((), ())
+        self._places: Places | None = None
+        self._plan: Plan | None = None
+        self._travel = Travel()
+        self._rates: Mapping[str, float] = {}
+        self._chosen: Spot | None = None
+        self._chosen_row = self._top = self._scrolled = 0
+        self._everything = False
+        self._narrowed = ""
+        self._clock: Timer | None = None
+        self._read = 0.0
+        """When what is read was last made anew."""
+        self._is_stale = False
+        """Whether there is something newer to read."""
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield self._picture
+        yield TextRows(id="about")
+        yield TextRows(id="keys")
+        yield Input(placeholder="part of a name", select_on_focus=False)
+
+    def on_mount(self) -> None:
+        self._rows("heading").show([row((f"listening to {self._title} ...", "dim"))])
+        self._rows("keys").show([GRAPH_KEYS])
+        self.query_one(Input).cursor_blink = False
+        self._behind.listen(self._listening)
+
+    def on_unmount(self) -> None:
+        self._behind.listen(None)
+        self._behind.wish(lambda session: self._listening.stop())
+
+    # What arrives from the world's thread
+
+    def _arrived(self, heard: Heard) -> None:
+        self._heard = heard
+        if not self._announced:  # the newest wins
+            self._announced = True
+            self.post_message(News())
+
+    def on_news(self) -> None:
+        self._announced = False
+        heard = self._heard
+        if heard is not None and self.is_active:
+            self._travel.hear(heard.said)
+            self._is_stale = True
+            if self._clock is None:
+                self._frame()
+
+    def _frame(self) -> None:
+        """Moves the dots on, and comes back as long as there is anything to move or to read."""
+        self._clock = None
+        self._travel.frame(self._talk)
+        if self._is_stale and time.monotonic() - self._read >= CALM:
+            self._read_anew()
+        self._draw()
+        if self._travel.busy or self._is_stale:
+            self._clock = self.set_timer(FRAME, self._frame)
+
+    # What is shown
+
+    def _read_anew(self) -> None:
+        """Everything but the dots: who is there, rates, words."""
+        heard = self._heard
+        if heard is None:
+            return
+        self._read, self._is_stale = time.monotonic(), False
+        self._rates = rates(heard.said)
+        self._lay_out(self._places)
+        self._say()
+
+    def _lay_out(self, before: Places | None) -> None:
+        """Places for all that is to be seen; with the places before, nothing jumps."""
+        heard = self._heard
+        if heard is None or not self.size.width:
+            return
+        talk = conversation(heard.state, everything=self._everything, narrowed=self._narrowed)
+        if self._plan is None or talk != self._talk or before is None or self._plan.width != self.size.width:
+            self._talk, self._places = talk, arrange(talk, before)
+            self._plan = Plan(talk, self._places, self.size.width)
+        self._choose(still_there(self._plan, self._chosen, self._chosen_row))
+
+    def _choose(self, spot: Spot | None) -> None:
+        if spot != self._chosen:
+            self._scrolled = 0
+        self._chosen = spot
+        self._listening.chosen = spot.name.removesuffix("()") if spot and spot.column == "item" else None
+        if spot is not None and self._plan is not None:
+            self._chosen_row = self._plan.spots()[spot]
+            rows = max(1, self._picture.size.height)
+            self._top = min(max(self._top, self._chosen_row - rows + 1), self._chosen_row)
+            self._top = max(0, min(self._top, self._plan.places.height - rows))
+
+    def _draw(self) -> None:
+        rows = self._picture.size.height
+        if self._plan is not None and rows:
+            sight = Sight(self._rates, self._chosen, self._travel.cells(self._plan), self._top)
+            self._picture.show_frame(draw(self._plan, sight, rows, self._strokes))
+
+    def _say(self) -> None:
+        heard = self._heard
+        if heard is None:
+            return
+        width = self.size.width
+        self._rows("heading").show([heading(self._title, self._talk, heard, self._narrowed, width)])
+        head, *words = ruled(about(self._chosen, heard, width, full=self._shows_details), self._rule, width)
+        room = self._rows("about").size.height - 1
+        self._scrolled = max(0, min(self._scrolled, len(words) - room))
+        self._rows("about").show((head, *words[self._scrolled :]))
+
+    @property
+    def _shows_details(self) -> bool:
+        return self.has_class("-details")
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show_all)
+
+    def _show_all(self) -> None:
+        self._lay_out(self._places)
+        self._say()
+        self._draw()
+
+    # Keys
+
+    def action_along(self, steps: int) -> None:
+        if self._shows_details:
+            self._scrolled += steps
+            self._say()
+        elif self._plan is not None and self._chosen is not None:
+            self._move_to(along(self._plan, self._chosen, steps))
+
+    def action_across(self, steps: int) -> None:
+        if not self._shows_details and self._plan is not None and self._chosen is not None:
+            self._move_to(across(self._plan, self._chosen, steps))
+
+    def _move_to(self, spot: Spot) -> None:
+        self._choose(spot)
+        self._say()
+        self._draw()
+
+    def action_details(self) -> None:
+        self.toggle_class("-details")
+        self._rows("keys").show([MESSAGE_KEYS if self._shows_details else GRAPH_KEYS])
+        self._scrolled = 0
+        self.call_after_refresh(self._show_all)
+
+    def action_narrow(self) -> None:
+        self.add_class("-narrowing")
+        self.query_one(Input).focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        self._narrowed = event.value
+        self._anew()
+
+    def on_input_submitted(self) -> None:
+        self.remove_class("-narrowing")
+        self.set_focus(None)
+
+    def action_everything(self) -> None:
+        self._everything = not self._everything
+        self._anew()
+
+    def action_tidy(self) -> None:
+        self._anew()
+
+    def _anew(self) -> None:
+        """As if it were seen for the first time."""
+        self._lay_out(None)
+        self._say()
+        self._draw()
+
+    def action_pause(self) -> None:
+        self._behind.set_paused(not self._is_paused)
+
+    def action_step(self) -> None:
+        if self._is_paused:
+            self._behind.step()
+        else:
+            self._behind.set_paused(True)
+
+    @property
+    def _is_paused(self) -> bool:
+        return self._heard is not None and self._heard.paused
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("Nodes and topics", GRAPH_HELP))
+
+    def action_back(self) -> None:
+        """One thing at a time: out of the field, the details, the narrowing, the screen."""
+        if self.has_class("-narrowing"):
+            self.query_one(Input).value = ""
+            self.on_input_submitted()
+        elif self._shows_details:
+            self.action_details()
+        elif self._narrowed:
+            self.query_one(Input).value = ""
+        else:
+            self.dismiss()
