@@ -121,7 +121,7 @@ class Strokes:
     message: str
     broken: str
     cut: str
-    """Stands for the middle of a name that is too long."""
+    """Stands for the beginning of a name that is too long."""
 
 
 def _table(level: str, upright: str, corners: str) -> Mapping[int, str]:
@@ -367,8 +367,8 @@ def _strokes_of(plan: Plan, chosen: Collection[Link], strokes: Strokes) -> Itera
 
 
 def _cut(name: str, width: int, mark: str) -> str:
-    """The name shortened to so many characters: most of its end stays, and a little of its beginning."""
+    """The name, or as much of its end as there is room for: the end says what it is."""
     if len(name) <= width:
         return name
     kept = max(0, width - len(mark))
-    return name[: kept // 4] + mark + name[len(name) - (kept - kept // 4) :]
+    return mark + name[len(name) - kept :]

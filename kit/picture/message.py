@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
@@ -11,6 +13,10 @@ from kit.msg.message import Message
 
 INDENT: Final = "  "
 MOST_ROWS_OF_NUMBERS: Final = 4
+
+_PLAIN: Final = re.compile(r"[^\W\d_][\w ./-]*")
+_NO_TEXTS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n"})
+"""What YAML takes for something else."""
 
 
 def message_rows(message: Message, width: int, *, compact: bool = False) -> list[str]:
@@ -83,5 +89,7 @@ def _float(value: float) -> str:
 
 
 def _text(value: str) -> str:
-    plain = value and value.isprintable() and value[0].isalpha() and not set(value) & set(":#,[]{}'\"")
-    return value if plain else repr(value)
+    """In quotes unless it can be taken for nothing but a text."""
+    if _PLAIN.fullmatch(value) and value.lower() not in _NO_TEXTS:
+        return value
+    return json.dumps(value, ensure_ascii=False) if value else "''"
