@@ -1,0 +1,323 @@
+"""The actions that start no process: arguments, environment, groups, includes, timers, functions, the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from kit.ros.launch.conditions import Condition
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity, entities
+from kit.ros.launch.event_handlers import EventHandler
+from kit.ros.launch.events import Event
+from kit.ros.launch.events import Shutdown as ShutdownEvent
+from kit.ros.launch.problems import LaunchError
+from kit.ros.launch.sources import LaunchDescriptionSource
+from kit.ros.launch.substitution import SomeText, Substitution, described, normalize, perform
+
+Entities = Iterable[LaunchDescriptionEntity]
+
+
+class DeclareLaunchArgument(Action):
+    """An argument of the launch file: ``name:=value`` on the command line."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: SomeText | None = None,
+        description: str | None = None,
+        choices: Iterable[str] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.name = name
+        self.default_value = None if default_value is None else normalize(default_value)
+        self.description = description or "no description given"
+        self.choices = None if choices is None else list(choices)
+
+    @property
+    def shown_default(self) -> str | None:
+        """The default as ``--show-args`` prints it."""
+        return None if self.default_value is None else described(self.default_value)
+
+    def execute(self, context: LaunchContext) -> None:
+        if self.name not in context.launch_configurations:
+            if self.default_value is None:
+                raise LaunchError(
+                    f"Required launch argument '{self.name}' (description: '{self.description}') was not "
+                    f"provided: add {self.name}:=VALUE to the command"
+                )
+            context.launch_configurations[self.name] = perform(context, self.default_value)
+        value = context.launch_configurations[self.name]
+        if self.choices is not None and value not in self.choices:
+            raise LaunchError(
+                f"Argument '{self.name}' provided value '{value}' is not valid. Valid options are: {self.choices}"
+            )
+
+
+class SetLaunchConfiguration(Action):
+    """Gives a launch argument a value."""
+
+    def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name, self.value = normalize(name), normalize(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations[perform(context, self.name)] = perform(context, self.value)
+
+
+class UnsetLaunchConfiguration(Action):
+    """Takes a launch argument's value away."""
+
+    def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name = normalize(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations.pop(perform(context, self.name), None)
+
+
+class SetEnvironmentVariable(Action):
+    """For every process that is started from here on."""
+
+    def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name, self.value = normalize(name), normalize(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.environment[perform(context, self.name)] = perform(context, self.value)
+
+
+class AppendEnvironmentVariable(SetEnvironmentVariable):
+    """Adds to what a variable holds already."""
+
+    def __init__(
+        self,
+        name: SomeText,
+        value: SomeText,
+        *,
+        prepend: bool = False,
+        separator: SomeText = ":",
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(name, value, condition=condition)
+        self.prepend, self.separator = prepend, normalize(separator)
+
+    def execute(self, context: LaunchContext) -> None:
+        name, value = perform(context, self.name), perform(context, self.value)
+        parts = [part for part in (context.environment.get(name), value) if part]
+        joined = perform(context, self.separator).join(reversed(parts) if self.prepend else parts)
+        context.environment[name] = joined
+
+
+class UnsetEnvironmentVariable(Action):
+    """Takes a variable away."""
+
+    def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name = normalize(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.environment.pop(perform(context, self.name), None)
+
+
+class LogInfo(Action):
+    """Says something in the launch's log."""
+
+    def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.msg = normalize(msg)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.request("log", "INFO", perform(context, self.msg))
+
+
+class _Do(LaunchDescriptionEntity):
+    """One step among entities."""
+
+    def __init__(self, step: Callable[[LaunchContext], object]) -> None:
+        self._step = step
+
+    def visit(self, context: LaunchContext) -> None:
+        self._step(context)
+
+
+class GroupAction(Action):
+    """Several actions under one condition; what they set holds among them alone, unless ``scoped`` is false."""
+
+    def __init__(
+        self,
+        actions: Entities,
+        *,
+        scoped: bool = True,
+        forwarding: bool = True,
+        launch_configurations: dict[str, SomeText] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.actions = entities(actions)
+        self.scoped, self.forwarding = scoped, forwarding
+        self.launch_configurations = dict(launch_configurations or {})
+
+    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+        return self.actions
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        given = [SetLaunchConfiguration(name, value) for name, value in self.launch_configurations.items()]
+        inside = [*given, *self.actions]
+        if not self.scoped:
+            return inside
+        forget = [] if self.forwarding else [_Do(lambda context: context.launch_configurations.clear())]
+        return [_Do(LaunchContext.push), *forget, *inside, _Do(LaunchContext.pop)]
+
+
+class IncludeLaunchDescription(Action):
+    """Another launch file, with arguments of its own."""
+
+    def __init__(
+        self,
+        launch_description_source: LaunchDescriptionSource | SomeText,
+        *,
+        launch_arguments: Iterable[tuple[SomeText, SomeText]] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        if not isinstance(launch_description_source, LaunchDescriptionSource):
+            launch_description_source = LaunchDescriptionSource(launch_description_source)
+        self.source = launch_description_source
+        self.launch_arguments = list(launch_arguments or ())
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        given = [SetLaunchConfiguration(name, value) for name, value in self.launch_arguments]
+        return [*given, _Do(self._enter), _Included(self.source), _Do(lambda context: context.files.pop())]
+
+    def _enter(self, context: LaunchContext) -> None:
+        path = self.source.path(context)
+        if path in context.files:
+            circle = " -> ".join(context.files[context.files.index(path) :])
+            raise LaunchError(f"launch files include each other without end: {circle} -> {path}")
+        context.files.append(path)
+
+
+class _Included(LaunchDescriptionEntity):
+    def __init__(self, source: LaunchDescriptionSource) -> None:
+        self._source = source
+
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        return [self._source.load(context)]
+
+
+class TimerAction(Action):
+    """Actions to be carried out ``period`` seconds later."""
+
+    def __init__(
+        self,
+        *,
+        period: float | SomeText,
+        actions: Entities,
+        cancel_on_shutdown: bool = True,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.period = normalize(str(period) if isinstance(period, (int, float)) else period)
+        self.actions = entities(actions)
+        self._cancel: Callable[[], None] | None = None
+
+    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+        return self.actions
+
+    def execute(self, context: LaunchContext) -> None:
+        text = perform(context, self.period)
+        try:
+            seconds = float(text)
+        except ValueError:
+            raise LaunchError(
+                f"the period of a TimerAction is '{text}', which is no number of seconds"
+            ) from None
+        self._cancel = context.start_timer(seconds, self.actions)
+
+    def cancel(self) -> None:
+        if self._cancel is not None:
+            self._cancel()
+
+
+class OpaqueFunction(Action):
+    """Calls ``function(context, *args, **kwargs)`` and carries out the actions it returns."""
+
+    def __init__(
+        self,
+        *,
+        function: Callable[..., Any],
+        args: Iterable[Any] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.function, self.args, self.kwargs = function, tuple(args or ()), dict(kwargs or {})
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        return entities(self.function(context, *self.args, **self.kwargs))
+
+
+class RegisterEventHandler(Action):
+    """Has an event handler react from here on."""
+
+    def __init__(self, event_handler: EventHandler, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.event_handler = event_handler
+
+    def execute(self, context: LaunchContext) -> None:
+        context.register_event_handler(self.event_handler)
+
+
+class UnregisterEventHandler(RegisterEventHandler):
+    """Has an event handler react no more."""
+
+    def execute(self, context: LaunchContext) -> None:
+        context.unregister_event_handler(self.event_handler)
+
+
+class EmitEvent(Action):
+    """Has an event happen."""
+
+    def __init__(self, *, event: Event, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.event = event
+
+    def execute(self, context: LaunchContext) -> None:
+        context.emit(self.event)
+
+
+class Shutdown(Action):
+    """Ends everything that the launch has started."""
+
+    def __init__(
+        self, *, reason: str = "reason not given", condition: Condition | None = None, **_: Any
+    ) -> None:
+        super().__init__(condition=condition)
+        self.reason = reason
+
+    def execute(self, context: LaunchContext) -> None:
+        context.emit(ShutdownEvent(reason=self.reason))
+
+
+__all__ = [
+    "AppendEnvironmentVariable",
+    "DeclareLaunchArgument",
+    "EmitEvent",
+    "GroupAction",
+    "IncludeLaunchDescription",
+    "LaunchDescription",
+    "LogInfo",
+    "OpaqueFunction",
+    "RegisterEventHandler",
+    "SetEnvironmentVariable",
+    "SetLaunchConfiguration",
+    "Shutdown",
+    "Substitution",
+    "TimerAction",
+    "UnregisterEventHandler",
+    "UnsetEnvironmentVariable",
+    "UnsetLaunchConfiguration",
+]

@@ -1,0 +1,70 @@
+"""Conditions: whether an action is carried out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.launch.problems import LaunchError
+from kit.ros.launch.substitution import SomeText, described, normalize, perform
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext
+
+_TRUE, _FALSE = ("true", "1"), ("false", "0")
+
+
+class Condition:
+    """Any function of the context."""
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool]) -> None:
+        self._predicate = predicate
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        return bool(self._predicate(context))
+
+
+class IfCondition(Condition):
+    """Holds if a text says ``true`` or ``1``."""
+
+    def __init__(self, predicate_expression: SomeText | bool) -> None:
+        text: Any = (
+            str(predicate_expression) if isinstance(predicate_expression, bool) else predicate_expression
+        )
+        self._expression = normalize(text)
+        super().__init__(predicate=self._says_so)
+
+    def _says_so(self, context: LaunchContext) -> bool:
+        text = perform(context, self._expression)
+        if text.strip().lower() not in (*_TRUE, *_FALSE):
+            raise LaunchError(
+                f"{described(self._expression)} is '{text}': a condition must say one of {', '.join(_TRUE + _FALSE)}"
+            )
+        return text.strip().lower() in _TRUE
+
+
+class UnlessCondition(IfCondition):
+    """Holds if a text says ``false`` or ``0``."""
+
+    def _says_so(self, context: LaunchContext) -> bool:
+        return not super()._says_so(context)
+
+
+class LaunchConfigurationEquals(Condition):
+    """Holds if a launch argument has this value; None: if it has none."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: SomeText | None) -> None:
+        self._name = launch_configuration_name
+        self._expected = None if expected_value is None else normalize(expected_value)
+        super().__init__(predicate=self._is_equal)
+
+    def _is_equal(self, context: LaunchContext) -> bool:
+        value = context.launch_configurations.get(self._name)
+        return value == (None if self._expected is None else perform(context, self._expected))
+
+
+class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
+    """Holds if a launch argument has another value."""
+
+    def _is_equal(self, context: LaunchContext) -> bool:
+        return not super()._is_equal(context)

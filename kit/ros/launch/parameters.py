@@ -1,0 +1,112 @@
+"""Parameters that a launch file gives to nodes, as ``--ros-args`` takes them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from kit.ros.exceptions import InvalidRosArguments
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.problems import LaunchError
+from kit.ros.launch.substitution import SomeText, Substitution, normalize, perform
+
+
+class ParameterValue:
+    """A value whose type is said, rather than found from its text."""
+
+    def __init__(self, value: Any, *, value_type: Any = None) -> None:
+        self.value, self.value_type = value, value_type
+
+    def evaluate(self, context: LaunchContext) -> Any:
+        if not isinstance(self.value, (str, Substitution, list, tuple)):
+            return self.value
+        text = perform(context, self.value)
+        if self.value_type is str:
+            return text
+        value = _read(text)
+        if self.value_type in (int, float, bool):
+            if self.value_type is float and type(value) is int:
+                value = float(value)
+            if type(value) is not self.value_type:
+                raise LaunchError(f"a parameter is to be of type {self.value_type.__name__}, but is '{text}'")
+        return value
+
+
+class ParameterFile:
+    """A file of parameters."""
+
+    def __init__(self, param_file: SomeText, *, allow_substs: bool | SomeText = False) -> None:
+        self.param_file = normalize(param_file)
+
+
+class Parameter(ParameterValue):
+    """A single parameter with its name."""
+
+    def __init__(self, name: SomeText, value: Any, *, value_type: Any = None) -> None:
+        super().__init__(value, value_type=value_type)
+        self.name = normalize(name)
+
+
+def arguments(context: LaunchContext, given: Iterable[Any]) -> Iterator[str]:
+    """``-p`` and ``--params-file`` for what a node's ``parameters`` list holds. LaunchError."""
+    for entry in given:
+        if isinstance(entry, Mapping):
+            for name, value in flattened(context, entry):
+                yield from ("-p", f"{name}:={value}")
+        elif isinstance(entry, Parameter):
+            yield from ("-p", f"{perform(context, entry.name)}:={written(entry.evaluate(context))}")
+        else:
+            source = entry.param_file if isinstance(entry, ParameterFile) else entry
+            path = perform(context, source)
+            if not Path(path).is_file():
+                raise LaunchError(f"the parameter file {path} does not exist")
+            yield from ("--params-file", path)
+
+
+def flattened(
+    context: LaunchContext, values: Mapping[Any, Any], prefix: str = ""
+) -> Iterator[tuple[str, str]]:
+    """Names and written values of a dict of parameters, dicts in it included."""
+    for key, value in values.items():
+        name = prefix + perform(context, key)
+        if isinstance(value, Mapping):
+            yield from flattened(context, value, f"{name}.")
+        else:
+            yield name, written(_evaluated(context, value))
+
+
+def _evaluated(context: LaunchContext, value: Any) -> Any:
+    """The value as ROS 2 finds it: texts and substitutions are read as YAML, lists of them are joined first."""
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context)
+    if isinstance(value, (str, Path, Substitution)):
+        return _read(perform(context, value))
+    if isinstance(value, (list, tuple)):
+        if any(isinstance(entry, Substitution) for entry in value):
+            return _read(perform(context, value))
+        return list(value)
+    return value
+
+
+def _read(text: str) -> Any:
+    from kit.ros.parameter_files import parse_value  # only now: it takes PyYAML
+
+    try:
+        return parse_value(text)
+    except InvalidRosArguments:
+        return text
+
+
+def written(value: Any) -> str:
+    """A value as it must stand on a command line to be read as the same value."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return repr(value).replace("inf", ".inf").replace("nan", ".nan")
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(written(entry) for entry in value)}]"
+    raise LaunchError(f"no parameter can hold {value!r:.40}, a {type(value).__name__}")

@@ -1,0 +1,200 @@
+"""The actions that start a process: ``ExecuteProcess``, and ``Node`` for a program of a package."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from kit.ros.launch import parameters as parameter_arguments
+from kit.ros.launch.conditions import Condition
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.entity import Action, LaunchDescriptionEntity, entities
+from kit.ros.launch.event_handlers import OnProcessExit
+from kit.ros.launch.substitution import SomeText, normalize, perform
+from kit.ros.naming import absolute_namespace
+
+WITHOUT_MEANING = frozenset(
+    {
+        "emulate_tty", "sigterm_timeout", "sigkill_timeout", "log_cmd", "cached_output", "output_format",
+        "respawn_max_retries", "exec_name", "sigint_sigterm_timeout",
+    }
+)  # fmt: skip
+"""Options of processes that ROS 2 has and that make no difference here."""
+
+
+class ExecuteProcess(Action):
+    """Starts a program."""
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[SomeText],
+        name: SomeText | None = None,
+        cwd: SomeText | None = None,
+        env: Mapping[Any, SomeText] | None = None,
+        additional_env: Mapping[Any, SomeText] | None = None,
+        prefix: SomeText | None = None,
+        shell: bool = False,
+        output: SomeText | Mapping[str, str] = "log",
+        respawn: bool | SomeText = False,
+        respawn_delay: float | None = None,
+        on_exit: Any = None,
+        condition: Condition | None = None,
+        **others: Any,
+    ) -> None:
+        super().__init__(condition=condition)
+        strange = sorted(others.keys() - WITHOUT_MEANING)
+        if strange:
+            raise TypeError(f"{type(self).__name__}() has no argument {', '.join(map(repr, strange))}")
+        self.cmd = [normalize(part) for part in cmd]
+        self.title = None if name is None else normalize(name)
+        self.cwd = None if cwd is None else normalize(cwd)
+        self.env, self.additional_env = env, additional_env
+        self.prefix = None if prefix is None else normalize(prefix)
+        self.shell = shell
+        self.output = output
+        self.respawn = normalize(str(respawn)) if isinstance(respawn, bool) else normalize(respawn)
+        self.respawn_delay = respawn_delay
+        self.on_exit = on_exit
+        self.number: int | None = None
+        """Which process it has started."""
+
+    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+        return () if callable(self.on_exit) else entities(self.on_exit)
+
+    def execute(self, context: LaunchContext) -> None:
+        if self.on_exit is not None:
+            context.register_event_handler(OnProcessExit(target_action=self, on_exit=self.on_exit))
+        context.request("process", self, self.specification(context))
+
+    def respawns(self, context: LaunchContext) -> bool:
+        return perform(context, self.respawn).lower() in ("true", "1")
+
+    def specification(self, context: LaunchContext) -> dict[str, Any]:
+        """What is to be started, as plain data."""
+        command = [perform(context, part) for part in self.cmd]
+        title = Path(command[0].split()[0]).name if command and command[0] else "process"
+        return {
+            "kind": "command",
+            "title": title if self.title is None else perform(context, self.title),
+            "command": command,
+            "shell": self.shell,
+            **self._surroundings(context),
+        }
+
+    def _surroundings(self, context: LaunchContext) -> dict[str, Any]:
+        environment = dict(context.environment)
+        if self.env is not None:
+            environment = _performed(context, self.env)
+        environment |= _performed(context, self.additional_env or {})
+        return {
+            "environment": environment,
+            "cwd": None if self.cwd is None else str(Path(perform(context, self.cwd)).absolute()),
+            "file": self.place.file if self.place else None,
+            "line": self.place.line if self.place else None,
+        }
+
+
+def _performed(context: LaunchContext, values: Mapping[Any, SomeText]) -> dict[str, str]:
+    return {perform(context, key): perform(context, value) for key, value in values.items()}
+
+
+class Node(ExecuteProcess):
+    """Starts a program of a package, with a node's name, namespace, parameters and remappings."""
+
+    def __init__(
+        self,
+        *,
+        executable: SomeText,
+        package: SomeText | None = None,
+        name: SomeText | None = None,
+        namespace: SomeText | None = None,
+        exec_name: SomeText | None = None,
+        parameters: Iterable[Any] | None = None,
+        remappings: Iterable[tuple[SomeText, SomeText]] | None = None,
+        ros_arguments: Iterable[SomeText] | None = None,
+        arguments: Iterable[SomeText] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(cmd=[executable], name=exec_name, **kwargs)
+        self.package = None if package is None else normalize(package)
+        self.executable = normalize(executable)
+        self.node_name = None if name is None else normalize(name)
+        self.namespace = None if namespace is None else normalize(namespace)
+        self.parameters = list(parameters or ())
+        self.remappings = [
+            (normalize(match), normalize(replacement)) for match, replacement in remappings or ()
+        ]
+        self.ros_arguments = [normalize(each) for each in ros_arguments or ()]
+        self.arguments = [normalize(each) for each in arguments or ()]
+
+    def specification(self, context: LaunchContext) -> dict[str, Any]:
+        executable = perform(context, self.executable)
+        own = [perform(context, each) for each in self.arguments]
+        ros = [perform(context, each) for each in self.ros_arguments]
+        if self.node_name is not None:
+            ros += ["-r", f"__node:={perform(context, self.node_name)}"]
+        namespace = self._namespace(context)
+        if namespace is not None:
+            ros += ["-r", f"__ns:={namespace}"]
+        for name, value in context.scope.parameters:
+            ros += ["-p", f"{name}:={value}"]
+        ros += parameter_arguments.arguments(context, self.parameters)
+        remappings = [(perform(context, match), perform(context, to)) for match, to in self.remappings]
+        for match, to in (*remappings, *context.scope.remappings):
+            ros += ["-r", f"{match}:={to}"]
+        return {
+            "kind": "node",
+            "title": Path(executable).name if self.title is None else perform(context, self.title),
+            "package": None if self.package is None else perform(context, self.package),
+            "executable": executable,
+            "arguments": [*own, *(["--ros-args", *ros] if ros else [])],
+            **self._surroundings(context),
+        }
+
+    def _namespace(self, context: LaunchContext) -> str | None:
+        pushed = context.scope.namespace
+        if self.namespace is None:
+            return pushed or None
+        return joined_namespace(pushed, perform(context, self.namespace))
+
+
+def joined_namespace(outer: str, inner: str) -> str:
+    """A namespace within another; an absolute one stands for itself."""
+    if inner.startswith("/") or not outer:
+        return absolute_namespace(inner)
+    return f"{outer.rstrip('/')}/{inner}".rstrip("/") or "/"
+
+
+class PushRosNamespace(Action):
+    """A namespace around the nodes that follow in the group."""
+
+    def __init__(self, namespace: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.namespace = normalize(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.scope.namespace = joined_namespace(context.scope.namespace, perform(context, self.namespace))
+
+
+class SetParameter(Action):
+    """A parameter for all nodes that follow in the group."""
+
+    def __init__(self, name: SomeText, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name, self.value = normalize(name), value
+
+    def execute(self, context: LaunchContext) -> None:
+        values = {perform(context, self.name): self.value}
+        context.scope.parameters += parameter_arguments.flattened(context, values)
+
+
+class SetRemap(Action):
+    """A remapping for all nodes that follow in the group."""
+
+    def __init__(self, src: SomeText, dst: SomeText, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.src, self.dst = normalize(src), normalize(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.scope.remappings.append((perform(context, self.src), perform(context, self.dst)))

@@ -1,0 +1,159 @@
+"""One run of a launch file: what is asked for, in which order, and what follows from what happens.
+
+Time and events come from outside; requests go outside, as plain data::
+
+    log        level, text
+    process    number, specification              start it; ``processes`` says what a specification holds
+    end        number                             end it
+    shutdown   reason                             end everything
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from heapq import heappop, heappush
+from itertools import count
+from types import MappingProxyType
+from typing import Any, Final
+
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
+from kit.ros.launch.events import (
+    Event,
+    ProcessExited,
+    ProcessIO,
+    ProcessMatchingEvent,
+    ProcessStarted,
+    Shutdown,
+)
+from kit.ros.launch.problems import LaunchError, Place
+from kit.ros.launch.processes import ExecuteProcess
+
+Request = list[Any]
+"""A kind and its content."""
+
+
+class LaunchService:
+    """Carries a launch description out, as far as it can without starting anything itself."""
+
+    def __init__(
+        self, file: str, arguments: dict[str, str], *, environment: dict[str, str] | None = None
+    ) -> None:
+        self.context = context = LaunchContext(environment=environment)
+        context.launch_configurations.update(arguments)
+        context.files.append(file)
+        context.request = self._request
+        context.emit = self._emit
+        context.start_timer = self._start_timer
+        self._requests: list[Request] = []
+        self._events: list[Event] = []
+        self._timers: list[tuple[int, int, tuple[LaunchDescriptionEntity, ...]]] = []
+        self._cancelled: set[int] = set()
+        self._actions: dict[int, tuple[ExecuteProcess, str]] = {}
+        self._numbers = count(1)
+        self._now_ns = 0
+        self.place: Place | None = None
+        """The line of the launch file that is being carried out."""
+
+    @property
+    def wake_ns(self) -> int | None:
+        """When the next timer is due."""
+        return self._timers[0][0] if self._timers else None
+
+    def begin(self, description: LaunchDescription) -> list[Request]:
+        """Carries out what is to be done at once. Raises LaunchError, and what the launch file's functions raise."""
+        self._visit(description)
+        return self._finish()
+
+    def go_on(self, now_ns: int, happened: Iterable[list[Any]]) -> list[Request]:
+        """What follows from the passing of time and from what has happened: see ``_NEWS``. Raises likewise."""
+        self._now_ns = now_ns
+        for kind, *about in happened:
+            _NEWS[kind](self, *about)
+        while self._timers and self._timers[0][0] <= now_ns:
+            _, number, actions = heappop(self._timers)
+            if number not in self._cancelled:
+                for action in actions:
+                    self._visit(action)
+        return self._finish()
+
+    def _finish(self) -> list[Request]:
+        while self._events:
+            self._handle(self._events.pop(0))
+        requests, self._requests = self._requests, []
+        return requests
+
+    def _visit(self, entity: LaunchDescriptionEntity) -> None:
+        place = getattr(entity, "place", None)
+        before, self.place = self.place, place or self.place
+        try:
+            for part in entity.visit(self.context) or ():
+                self._visit(part)
+        except LaunchError as problem:
+            if problem.place is None:
+                problem.place = self.place
+            raise
+        self.place = before
+
+    def _handle(self, event: Event) -> None:
+        if isinstance(event, ProcessMatchingEvent):
+            for number, (action, _) in list(self._actions.items()):
+                if event.process_matcher(action):
+                    self._requests.append(["end", number])
+        for handler in list(self.context.handlers):
+            if handler.matches(event):
+                for entity in handler.handle(event, self.context):
+                    self._visit(entity)
+        if isinstance(event, Shutdown) and not self.context.is_shutdown:
+            self.context.is_shutdown = True
+            self._timers.clear()
+            self._requests.append(["shutdown", event.reason])
+
+    # What the context's users ask for
+
+    def _request(self, kind: str, *content: Any) -> None:
+        if kind == "process":
+            action, specification = content
+            number = next(self._numbers)
+            self._actions[number] = (action, f"{specification['title']}-{number}")
+            action.number = number
+            content = (number, specification)
+        self._requests.append([kind, *content])
+
+    def _emit(self, event: Event) -> None:
+        self._events.append(event)
+
+    def _start_timer(self, seconds: float, actions: Iterable[LaunchDescriptionEntity]) -> Callable[[], None]:
+        number = next(self._numbers)
+        heappush(self._timers, (self._now_ns + int(seconds * 1e9), number, tuple(actions)))
+        return lambda: self._cancelled.add(number)
+
+    # What has happened
+
+    def _started(self, number: int, pid: int) -> None:
+        action, name = self._actions[number]
+        self._emit(ProcessStarted(action=action, name=name, pid=pid))
+
+    def _exited(self, number: int, pid: int, code: int) -> None:
+        action, name = self._actions.pop(number)
+        self._emit(ProcessExited(action=action, name=name, pid=pid, returncode=code))
+        if action.respawns(self.context) and not self.context.is_shutdown:
+            self._start_timer(action.respawn_delay or 0.0, [action])
+
+    def _printed(self, number: int, text: str, from_stdout: bool) -> None:
+        action, name = self._actions[number]
+        self._emit(ProcessIO(action=action, name=name, text=text.encode(), from_stdout=from_stdout))
+
+    def _interrupted(self, reason: str) -> None:
+        self._emit(Shutdown(reason=reason, due_to_sigint=True))
+
+
+_NEWS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
+    {
+        "started": LaunchService._started,
+        "exited": LaunchService._exited,
+        "printed": LaunchService._printed,
+        "interrupted": LaunchService._interrupted,
+    }
+)
+"""What can have happened: a process has started, ended or printed something; the user wants the end."""

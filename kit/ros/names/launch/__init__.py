@@ -1,0 +1,23 @@
+"""ROS 2's launch, as this project offers it."""
+
+from kit.ros.launch.actions import Substitution
+from kit.ros.launch.conditions import Condition
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity
+from kit.ros.launch.event_handlers import EventHandler
+from kit.ros.launch.events import Event
+from kit.ros.launch.sources import LaunchDescriptionSource
+from kit.ros.launch.substitution import SomeText as SomeSubstitutionsType
+
+__all__ = [
+    "Action",
+    "Condition",
+    "Event",
+    "EventHandler",
+    "LaunchContext",
+    "LaunchDescription",
+    "LaunchDescriptionEntity",
+    "LaunchDescriptionSource",
+    "SomeSubstitutionsType",
+    "Substitution",
+]

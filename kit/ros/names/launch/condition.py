@@ -1,0 +1,3 @@
+from kit.ros.launch.conditions import Condition
+
+__all__ = ["Condition"]

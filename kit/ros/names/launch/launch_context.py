@@ -1,0 +1,3 @@
+from kit.ros.launch.context import LaunchContext
+
+__all__ = ["LaunchContext"]

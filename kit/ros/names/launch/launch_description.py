@@ -1,0 +1,3 @@
+from kit.ros.launch.entity import LaunchDescription
+
+__all__ = ["LaunchDescription"]

@@ -1,0 +1,3 @@
+from kit.ros.launch.substitution import SomeText as SomeSubstitutionsType
+
+__all__ = ["SomeSubstitutionsType"]

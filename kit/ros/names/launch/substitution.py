@@ -1,0 +1,3 @@
+from kit.ros.launch.substitution import Substitution
+
+__all__ = ["Substitution"]

@@ -1,0 +1,1 @@
+"""ROS 2's part of launch, as this project offers it."""

@@ -1,0 +1,3 @@
+from kit.ros.launch.parameters import Parameter, ParameterFile, ParameterValue
+
+__all__ = ["Parameter", "ParameterFile", "ParameterValue"]

@@ -1,0 +1,3 @@
+from kit.ros.launch.substitution import FindPackageShare
+
+__all__ = ["FindPackageShare"]

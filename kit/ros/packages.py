@@ -1,0 +1,281 @@
+"""ROS 2 packages as they lie on disk, before any build: what they are called, what programs they have.
+
+Nothing of a package is run: its ``setup.py`` is read as a syntax tree. A package's *share* folder is its own
+folder here, so that ``world/x.yaml`` lies where an installed package would have it.
+"""
+
+from __future__ import annotations
+
+import ast
+import configparser
+import os
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+from xml.etree import ElementTree
+
+DEEPEST: Final = 3
+"""Folders below a search folder in which packages are looked for, as in a workspace: ``src/group/package``."""
+
+SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
+"""Environment variable with the folders in which programs look for packages."""
+
+IGNORED: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
+"""A folder with such a file is left out, as by colcon."""
+
+
+class PackageError(Exception):
+    """A package that cannot be read or is not there; the message names file, line and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Executable:
+    """A program of a package: what ``ros2 run PACKAGE NAME`` starts."""
+
+    name: str
+    module: str
+    function: str
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    name: str
+    folder: Path
+    version: str = "0.0.0"
+    description: str = ""
+    build_type: str = ""
+    executables: tuple[Executable, ...] = ()
+    source: Path | None = None
+    """The folder that its modules are imported from, if it has programs in Python."""
+
+    @property
+    def launch_files(self) -> tuple[Path, ...]:
+        """Python launch files, by name, at its top or in its ``launch`` folder."""
+        found = [*self.folder.glob("*launch.py"), *self.folder.glob("launch/**/*launch.py")]
+        return tuple(sorted(found, key=lambda path: (path.name, path)))
+
+    def executable(self, name: str) -> Executable:
+        """Raises PackageError, naming those there are."""
+        for each in self.executables:
+            if each.name == name:
+                return each
+        there = ", ".join(each.name for each in self.executables) or "none"
+        raise PackageError(f"package '{self.name}' has no executable '{name}'; it has: {there}")
+
+    def file_of(self, executable: Executable) -> Path:
+        """The file in which a program's module stands. Raises PackageError."""
+        source = self.source or self.folder
+        base = source.joinpath(*executable.module.split("."))
+        for path in (base.with_suffix(".py"), base / "__init__.py"):
+            if path.is_file():
+                return path
+        raise PackageError(
+            f"package '{self.name}': executable '{executable.name}' is the module '{executable.module}', "
+            f"but there is no {base.with_suffix('.py')}"
+        )
+
+
+def read_package(folder: Path) -> Package:
+    """The package in a folder with a ``package.xml``. Raises PackageError."""
+    file = folder / "package.xml"
+    try:
+        root = ElementTree.fromstring(file.read_bytes())
+    except FileNotFoundError:
+        raise PackageError(f"{folder}: no package.xml here, so this is no ROS 2 package") from None
+    except OSError as problem:
+        raise PackageError(f"{file}: {problem.strerror}") from None
+    except ElementTree.ParseError as problem:
+        line, column = problem.position
+        raise PackageError(f"{file}:{line}:{column + 1}: broken XML: {problem.msg}") from None
+    name = (root.findtext("name") or "").strip()
+    if not name:
+        raise PackageError(f"{file}: the package has no <name>")
+    executables, source = _programs(folder)
+    return Package(
+        name,
+        folder,
+        (root.findtext("version") or "0.0.0").strip(),
+        " ".join((root.findtext("description") or "").split()),
+        (root.findtext("export/build_type") or "").strip(),
+        executables,
+        source,
+    )
+
+
+def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
+    """Names and folders of the packages in and below some folders; the first of a name counts."""
+    found: dict[str, Path] = {}
+    for start in folders:
+        for folder in _package_folders(start, DEEPEST):
+            try:
+                name = (
+                    ElementTree.fromstring((folder / "package.xml").read_bytes()).findtext("name") or ""
+                ).strip()
+            except (OSError, ElementTree.ParseError):
+                continue  # whoever asks for it by its folder hears what is wrong with it
+            found.setdefault(name, folder)
+    found.pop("", None)
+    return found
+
+
+def search_folders() -> list[Path]:
+    """Where this program looks for packages."""
+    return [Path(entry) for entry in os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep) if entry]
+
+
+def share_folder(name: str) -> Path:
+    """The share folder of a package, as a program asks for it. Raises PackageError."""
+    found = find_packages(search_folders())
+    if name in found:
+        return found[name]
+    there = ", ".join(sorted(found)) or "none"
+    raise PackageError(f"package '{name}' not found; there are: {there}")
+
+
+def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
+    if any((folder / name).exists() for name in IGNORED):
+        return
+    if (folder / "package.xml").is_file():
+        yield folder
+        return
+    if deep == 0:
+        return
+    try:
+        below = sorted(path for path in folder.iterdir() if path.is_dir() and not path.name.startswith("."))
+    except OSError:
+        return
+    for path in below:
+        yield from _package_folders(path, deep - 1)
+
+
+# Programs
+
+
+def _programs(folder: Path) -> tuple[tuple[Executable, ...], Path | None]:
+    """A package's programs in Python, and where their modules lie."""
+    lines: list[str] = []
+    source: Path | None = None
+    setup = folder / "setup.py"
+    if setup.is_file():
+        arguments = _setup_arguments(setup)
+        entry_points = arguments.get("entry_points", {})
+        if isinstance(entry_points, Mapping):
+            lines += _strings(entry_points.get("console_scripts", ()))
+        directories = arguments.get("package_dir")
+        source = folder / str(directories.get("", "")) if isinstance(directories, Mapping) else folder
+    if (folder / "setup.cfg").is_file():
+        lines += _from_configuration(folder / "setup.cfg")
+        source = source or folder
+    if (folder / "pyproject.toml").is_file():
+        lines += _from_project(folder / "pyproject.toml")
+        source = source or folder
+    return tuple(_executable(line, folder) for line in lines), source
+
+
+def _executable(line: str, folder: Path) -> Executable:
+    name, equals, target = (part.strip() for part in line.partition("="))
+    module, colon, function = (part.strip() for part in target.partition(":"))
+    if not (name and equals and module and colon and function):
+        raise PackageError(
+            f"{folder / 'setup.py'}: the console script '{line}' must look like 'name = package.module:function'"
+        )
+    return Executable(name, module, function)
+
+
+def _strings(found: Any) -> list[str]:
+    if isinstance(found, str):
+        return [line for line in found.splitlines() if line.strip()]
+    return [entry for entry in found if isinstance(entry, str)] if isinstance(found, Sequence) else []
+
+
+def _from_configuration(file: Path) -> list[str]:
+    parser = configparser.ConfigParser(interpolation=None)
+    try:
+        parser.read_string(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError, configparser.Error) as problem:
+        raise PackageError(f"{file}: {' '.join(str(problem).split())}") from None
+    return _strings(parser.get("options.entry_points", "console_scripts", fallback=""))
+
+
+def _from_project(file: Path) -> list[str]:
+    try:
+        scripts = tomllib.loads(file.read_text(encoding="utf-8")).get("project", {}).get("scripts", {})
+    except (OSError, ValueError) as problem:
+        raise PackageError(f"{file}: {problem}") from None
+    return [f"{name} = {target}" for name, target in scripts.items()]
+
+
+def _setup_arguments(file: Path) -> dict[str, Any]:
+    """The keyword arguments of the file's call of ``setup`` that are plain values."""
+    try:
+        tree = ast.parse(file.read_bytes(), str(file))
+    except (OSError, ValueError) as problem:
+        raise PackageError(f"{file}: cannot be read ({problem})") from None
+    except SyntaxError as problem:
+        raise PackageError(f"{file}:{problem.lineno}: {problem.msg}") from None
+    names: dict[str, Any] = {}
+    arguments: dict[str, Any] = {}
+    for statement in tree.body:
+        if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
+            try:
+                names[statement.targets[0].id] = _value(statement.value, names)
+            except _NotPlain:
+                continue
+        for call in ast.walk(statement):
+            if isinstance(call, ast.Call) and _called(call) == "setup":
+                for keyword in call.keywords:
+                    if keyword.arg in ("entry_points", "package_dir"):
+                        arguments[keyword.arg] = _plain(keyword.value, names, file)
+    return arguments
+
+
+def _called(call: ast.Call) -> str:
+    return call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
+
+
+class _NotPlain(Exception):
+    """An expression that only running the file could evaluate."""
+
+    def __init__(self, node: ast.AST) -> None:
+        self.line = getattr(node, "lineno", 0)
+
+
+def _plain(node: ast.expr, names: Mapping[str, Any], file: Path) -> Any:
+    try:
+        return _value(node, names)
+    except _NotPlain as problem:
+        raise PackageError(
+            f"{file}:{problem.line}: this is computed when the file runs, which the kit does not do; "
+            "write the entry points as plain texts"
+        ) from None
+
+
+def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
+    """What an expression of plain values, names of such, and texts put together from them is."""
+    if isinstance(node, ast.Constant):
+        return node.value
+    if isinstance(node, ast.Name) and node.id in names:
+        return names[node.id]
+    if isinstance(node, (ast.List, ast.Tuple)):
+        return [_value(entry, names) for entry in node.elts]
+    if isinstance(node, ast.Dict) and None not in node.keys:
+        return {
+            _value(key, names): _value(value, names)
+            for key, value in zip(node.keys, node.values, strict=True)
+            if key is not None
+        }
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        left, right = _value(node.left, names), _value(node.right, names)
+        if type(left) is type(right) and isinstance(left, (str, list)):
+            return left + right
+    if isinstance(node, ast.JoinedStr):
+        return "".join(_piece(part, names) for part in node.values)
+    raise _NotPlain(node)
+
+
+def _piece(node: ast.expr, names: Mapping[str, Any]) -> str:
+    if isinstance(node, ast.FormattedValue) and node.conversion == -1 and node.format_spec is None:
+        return str(_value(node.value, names))
+    return str(_value(node, names))
