@@ -114,6 +114,11 @@ class Run:
         return self.folder / "best.npz"
 
     @property
+    def reward(self) -> Path:
+        """The student's reward, if ``RunConfig.reward_file`` names one: as it was when the run began."""
+        return self.folder / "reward.py"
+
+    @property
     def log(self) -> Path:
         return self.folder / "log.txt"
 
@@ -251,6 +256,8 @@ def new_run(folder: Path, config: RunConfig, name: str | None = None) -> Run:
     if name is not None and not NAME.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
     made = _make(folder, name) if name is not None else _make_free(folder, _usual_name(config))
+    if config.reward_file is not None:  # the run keeps its own: the student goes on writing
+        write_atomically(Run(made).reward, Path(config.reward_file).read_bytes())
     write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
     return Run(made)
 

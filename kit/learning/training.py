@@ -26,7 +26,7 @@ from kit.learning.presets import Falling, Preset, find_preset
 from kit.learning.rewards import RewardFunction
 from kit.learning.runs import Run, RunConfig, RunError
 from kit.learning.strategies import Count, Counts, Memory, TrainThenTest, TrainUntil, UntilSure, Verdict
-from kit.learning.student import StudentReward
+from kit.learning.student import RewardFileError, StudentReward
 from kit.learning.tally import Episode, Outcome
 from kit.learning.tasks import Task
 
@@ -63,18 +63,18 @@ def fitted(choice: TaskChoice, algorithm: Algorithm) -> TaskChoice:
 def train(run: Run, *, interrupted: Callable[[], bool] = lambda: False) -> Ended:
     """Trains the run to its end, or goes on where it was interrupted. Returns how it ended.
 
-    ``interrupted``: asked now and then whether to leave everything as it is, to go on another time. Raises RunError
-    if the run is damaged, busy or has ended, or the disk is full, and LearnerMissing.
+    ``interrupted``: asked now and then whether to leave everything as it is, to go on another time; if so, raises
+    KeyboardInterrupt. Raises RunError if the run is damaged or busy, or the disk is full, and LearnerMissing.
     """
     config = run.config()
     if find_algorithm(config.algorithm).neural:
         require_learner()
     with run.held(), _disk(run), EventWriter(run.events_file) as events:
         try:
-            with _reward(config) as reward:
+            with _reward(run, config) as reward:
                 training = _Training(run, config, events, reward, interrupted)
                 ended = training.go()
-        except (GuestError, RewardError) as error:
+        except (GuestError, RewardError, RewardFileError) as error:
             ended = _failed(run, str(error))
         events.write(ended)
     return ended
@@ -86,14 +86,12 @@ def _failed(run: Run, message: str) -> Ended:
 
 
 @contextmanager
-def _reward(config: RunConfig) -> Iterator[RewardFunction | None]:
+def _reward(run: Run, config: RunConfig) -> Iterator[RewardFunction | None]:
     """The student's reward, if there is one."""
     if config.reward_file is None:
         yield None
         return
-    from pathlib import Path
-
-    with StudentReward(Path(config.reward_file), seed=config.seed) as reward:
+    with StudentReward(run.reward, seed=config.seed) as reward:
         yield reward
 
 
@@ -109,6 +107,10 @@ def _disk(run: Run) -> Iterator[None]:
             f"{run.folder}: the disk is full. The run is whole up to its last checkpoint: make room, then "
             f"`kit train --resume {run.name}`."
         ) from None
+
+
+class _Stopped(Halt):
+    """Somebody asked for it."""
 
 
 class _Training:
@@ -135,7 +137,7 @@ class _Training:
         self._seconds = 0.0
         self._looks = 0
         self._resumed = 0
-        self._next_look = self._preset.strategy.every
+        self._looked_at, self._next_look = 0, self._preset.strategy.every
         self._known: Any = None
         parts = self._restored()
         self._learner = _learner(
@@ -190,7 +192,7 @@ class _Training:
         while True:
             if self._interrupted():
                 self._checkpoint()
-                raise Halt("interrupted", "")
+                raise KeyboardInterrupt
             order = self._run.asked()
             if order != "pause":
                 break
@@ -203,7 +205,7 @@ class _Training:
         self._batch.since += now - paused
         self._control_at = now
         if order == "stop":
-            raise Halt("stopped", "as asked")
+            raise _Stopped("as asked")
 
     # Looking
 
@@ -214,7 +216,7 @@ class _Training:
         test = _Test(self._examiner, policy, self._config.seed, self._looks, self._preset.strategy.greedy)
         verdict = self._preset.strategy.look(steps, self._memory, test)
         self._looks, self._memory = test.looks, verdict.memory
-        self._next_look = steps + self._preset.strategy.every
+        self._looked_at, self._next_look = steps, steps + self._preset.strategy.every
         save_policy(policy, self._run.newest_policy)
         if verdict.keep:
             save_policy(policy, self._run.best_policy)
@@ -224,7 +226,7 @@ class _Training:
             self._learner.recall(self._known)
         self._batch = _Batch(steps)
         if verdict.stop and not last:
-            raise Halt("finished", verdict.reason)
+            raise Halt(verdict.reason)
 
     # Writing
 
