@@ -10,6 +10,8 @@ import click
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
     "check": ("grader.verbs.check", "Judge one submission: a verdict per criterion, and what to do next."),
+    "new": ("grader.verbs.new", "Make an assignment's folder, to start from."),
+    "self-test": ("grader.verbs.self_test", "Try an assignment out on its own solution and wrong solutions."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``grader --help``."""
 

@@ -123,6 +123,10 @@ class Grading:
             timing=Timing(self._started, round(time.perf_counter() - self._began, 3)),
         )
 
+    def evidence(self, criterion_id: str) -> Sequence[Evidence]:
+        """What a criterion is judged on: for a teacher's own tests."""
+        return self._gatherer.evidence(self._by_id(criterion_id))
+
     def worst(self) -> Evidence | None:
         """The public episode that earned least of all; None if all earned everything."""
         shares: dict[int, tuple[float, Evidence]] = {}

@@ -27,24 +27,38 @@ class Check:
     anchors: Anchors
     """Unless the assignment gives others."""
     unit: str
+    """``%`` for a share."""
     params: type[Any]
     """A frozen dataclass whose defaults say what may be given: numbers, texts, lists of texts."""
     feedback: str
     """``{actual}``, ``{full}``, ``{where}``, ``{passed}``, ``{count}`` are filled in."""
+    words: tuple[str, str] | None
+    """For a yes or no: what 0 and 1 mean."""
 
     def said(self, measure: float) -> str:
-        """A measure with its unit."""
+        """A measure in words, or with its unit."""
+        if self.words is not None:
+            return self.words[measure >= 1.0]
+        if self.unit == "%":
+            measure *= 100.0
         number = f"{measure:.2f}".rstrip("0").rstrip(".") if abs(measure) < 1e6 else f"{measure:g}"
         return f"{number} {self.unit}".strip()
 
 
 def check(
-    *, none: float, full: float, unit: str = "", params: type[Any] = NoParams
+    *,
+    none: float,
+    full: float,
+    unit: str = "",
+    params: type[Any] = NoParams,
+    words: tuple[str, str] | None = None,
 ) -> Callable[[Callable[[Any, Any], float]], Check]:
     """Makes a check of a function; its docstring is the feedback."""
 
     def make(function: Callable[[Any, Any], float]) -> Check:
         text = inspect.getdoc(function) or ""
-        return Check(function.__name__, function, Anchors(none, full), unit, params, " ".join(text.split()))
+        return Check(
+            function.__name__, function, Anchors(none, full), unit, params, " ".join(text.split()), words
+        )
 
     return make

@@ -37,13 +37,13 @@ class Band:
     """m"""
 
 
-@check(none=0, full=1)
+@check(none=0, full=1, words=("stopped early", "runs to the end"))
 def runs(drive: Drive, params: NoParams) -> float:
     """Your program stopped before the episode was over ({where}). {passed} of {count} episodes ran through."""
     return 1.0 if drive.failure is None else 0.0
 
 
-@check(none=0, full=1)
+@check(none=0, full=1, words=("not reached", "reached"))
 def reached(drive: Drive, params: NoParams) -> float:
     """The robot reached its target in {passed} of {count} episodes. Look at {where}."""
     return 1.0 if drive.score.reached_s is not None else 0.0
@@ -56,7 +56,7 @@ def in_time(drive: Drive, params: NoParams) -> float:
     return math.inf if drive.score.reached_s is None else drive.score.reached_s
 
 
-@check(none=0, full=0.9)
+@check(none=0, full=0.9, unit="%")
 def approach(drive: Drive, params: NoParams) -> float:
     """In the worst episode ({where}) the robot closed {actual} of the distance to its target; {full} earns all
     points."""
@@ -81,9 +81,9 @@ def clearance(drive: Drive, params: NoParams) -> float:
     return float(drive.clearances.min())
 
 
-@check(none=0.3, full=0.9, params=Band)
+@check(none=0.3, full=0.9, unit="%", params=Band)
 def keeps_distance(drive: Drive, params: Band) -> float:
-    """Of its time, the robot kept the asked distance to the wall for a share of {actual} in the worst episode
+    """The robot kept the asked distance to the wall for {actual} of its time in the worst episode
     ({where}); {full} earns all points."""
     near = drive.clearances
     return float(np.mean((near >= params.low) & (near <= params.high)))
@@ -115,9 +115,9 @@ def short_way(drive: Drive, params: NoParams) -> float:
     return drive.score.distance_m / max(straight - case.target_radius, 1e-9)
 
 
-@check(none=0.5, full=0.1, params=Topic)
+@check(none=0.5, full=0.1, unit="%", params=Topic)
 def rate(drive: Drive, params: Topic) -> float:
-    """The program's messages do not come at the asked rate: it is off by a share of {actual} ({where}); {full} is
+    """The program's messages do not come at the asked rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, not a sleep."""
     talk = drive.talk.get(params.topic)
     if talk is None or drive.seconds == 0.0 or params.rate <= 0.0:
@@ -125,9 +125,9 @@ def rate(drive: Drive, params: Topic) -> float:
     return abs(talk.count / drive.seconds - params.rate) / params.rate
 
 
-@check(none=0, full=1, params=Topics)
+@check(none=0, full=1, unit="%", params=Topics)
 def topics(drive: Drive, params: Topics) -> float:
-    """Of the asked topics the program published a share of {actual} ({where}). Compare the names and the types with
+    """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
     what the task says: `kit topic list` shows what there is."""
     wanted = [each.split() for each in params.topics]
     heard = [

@@ -1,0 +1,166 @@
+"""The pytest plugin: ``pytest FOLDER --submission FILE -p grader.plugin``.
+
+It collects ``assignment.yaml``, one item per criterion, and nothing of the student's: the submission is data that
+another process runs. A criterion that fails is a failure; a grader that breaks is an error, not the student's; what
+is judged only with secret seeds is skipped. Points stand in the items' properties, and so in a JUnit report.
+
+A teacher's own tests beside the assignment (``test_*.py``) get the fixture ``grading``: recordings the grader made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.archives import Refused
+from grader.assignment import Assignment, Criterion
+from grader.grading import Grading
+from grader.reading import SHEET, read
+from grader.result import Status, Test, amount
+from grader.session import LevelTooLow, Terms, opened
+from grader.submission import take
+from grader.writers.cleaning import plain
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("grader", "grading a student's work")
+    group.addoption("--submission", metavar="FILE", help="what was handed in: a file, a folder or an archive")
+    group.addoption("--grading-level", type=int, metavar="N", help="how far to lock the program in (0 to 3)")
+    group.addoption("--secret-seeds", action="store_true", help="use the secret seeds too: for the grade")
+
+
+class NotPassed(Exception):
+    """A criterion is not met; the message is for the student."""
+
+
+class GraderBroken(Exception):
+    """The grader could not judge."""
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> AssignmentFile | None:
+    if file_path.name != SHEET or parent.config.getoption("--submission") is None:
+        return None
+    made: AssignmentFile = AssignmentFile.from_parent(parent, path=file_path)
+    return made
+
+
+class AssignmentFile(pytest.File):
+    """One assignment: an item for each of its criteria."""
+
+    def collect(self) -> Iterator[CriterionItem]:
+        try:
+            assignment = read(self.path.parent)
+        except WorldError as error:
+            raise self.CollectError(str(error)) from None
+        for criterion in assignment.criteria:
+            yield CriterionItem.from_parent(
+                self, name=criterion.id, assignment=assignment, criterion=criterion
+            )
+
+
+class CriterionItem(pytest.Item):
+    """One criterion, judged on the recordings that the session shares."""
+
+    def __init__(self, *, assignment: Assignment, criterion: Criterion, **more: Any) -> None:
+        super().__init__(**more)
+        self._assignment = assignment
+        self._criterion = criterion
+
+    def runtest(self) -> None:
+        test = self.config.stash[GRADINGS].open(self._assignment).judge(self._criterion)
+        self.user_properties += [
+            ("points", amount(test.points)),
+            ("max_points", amount(test.max_points)),
+            ("status", test.status.value),
+        ]
+        if test.status is Status.SKIPPED:
+            pytest.skip(plain(test.rationale))
+        if test.status is Status.GRADER_ERROR:
+            raise GraderBroken(plain(f"{test.rationale}\n{test.log}"))
+        if test.status is not Status.PASS:
+            raise NotPassed(_feedback(test))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
+        """What was wrong, not where in the grader it was noticed."""
+        return str(excinfo.value)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        return self.path, None, f"{self._assignment.title}: {self._criterion.title}"
+
+
+def _feedback(test: Test) -> str:
+    parts = [
+        f"{amount(test.points)} of {amount(test.max_points)} points",
+        test.rationale,
+        f"expected {test.expected}, got {test.actual}" if test.actual else "",
+        *(f"hint: {hint}" for hint in test.hints[:1]),
+    ]
+    return plain("\n".join(part for part in parts if part))
+
+
+class Gradings:
+    """The gradings of one session: each assignment's episodes are run once."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
+        self._stack = ExitStack()
+        self._open: dict[str, Grading] = {}
+
+    def open(self, assignment: Assignment) -> Grading:
+        key = str(assignment.folder)
+        if key not in self._open:
+            level = self._config.getoption("--grading-level")
+            terms = Terms(
+                None if level is None else Level(level), secret=bool(self._config.getoption("--secret-seeds"))
+            )
+            try:
+                submission = take(Path(str(self._config.getoption("--submission"))), assignment.submit)
+                self._open[key] = self._stack.enter_context(opened(assignment, submission, terms))
+            except (Refused, LevelTooLow) as error:
+                raise NotPassed(str(error)) from None
+        return self._open[key]
+
+    def close(self) -> None:
+        self._stack.close()
+
+
+GRADINGS = pytest.StashKey[Gradings]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[GRADINGS] = Gradings(config)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    if GRADINGS in config.stash:
+        config.stash[GRADINGS].close()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """A grader that breaks is an error in the report (as in a fixture), never a failure of the student's."""
+    report = yield
+    if (
+        isinstance(item, CriterionItem)
+        and call.excinfo is not None
+        and call.excinfo.errisinstance(GraderBroken)
+    ):
+        report.when = "setup"
+    return report
+
+
+@pytest.fixture(scope="session")
+def grading(request: pytest.FixtureRequest) -> Grading:
+    """The grading of the assignment in the folder of the session: for a teacher's own tests."""
+    folder = request.config.rootpath
+    if request.config.getoption("--submission") is None:
+        pytest.skip("nothing was handed in: say --submission FILE")
+    return request.config.stash[GRADINGS].open(read(folder))

@@ -1,0 +1,168 @@
+"""Does an assignment do what its teacher means? The starter, the solution and the wrong solutions say so.
+
+``starter.py`` must run into no error and not pass. ``solution.py`` must earn everything, and do the same twice. Every
+``wrong/ID.py`` (or ``wrong/ID+ID__comment.py``) must lose the criteria it is named for, those that depend on them,
+and no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from grader.archives import Refused
+from grader.assignment import Assignment, Seeds
+from grader.result import Result, Status, Verdict, amount
+from grader.scoring import least_passes, unfair_fail
+from grader.session import Terms, grade
+from grader.submission import take
+
+STARTER: Final = "starter.py"
+SOLUTION: Final = "solution.py"
+WRONG: Final = "wrong"
+
+SUCCESSES: Final = (0.9, 0.95, 0.99)
+"""How often a good work may truly succeed; for the odds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """One thing that was tried out."""
+
+    name: str
+    problems: tuple[str, ...]
+    """What is not as it should be; empty: all is well."""
+    summary: str
+
+
+@dataclass(frozen=True, slots=True)
+class Odds:
+    """How likely a good work fails a criterion by bad luck."""
+
+    criterion: str
+    episodes: int
+    passes: int
+    """So many have to succeed."""
+    unfair: tuple[float, ...]
+    """For each of ``SUCCESSES``."""
+
+
+def prove(assignment: Assignment, terms: Terms) -> Iterator[Proof]:
+    """Tries the folder's programs one after the other. Raises LevelTooLow."""
+    yield _starter(assignment, terms)
+    yield _solution(assignment, terms)
+    wrong = sorted((assignment.folder / WRONG).glob("*.py"))
+    if not wrong:
+        yield Proof(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
+    for file in wrong:
+        yield _wrong(assignment, file, terms)
+
+
+def odds(assignment: Assignment, *, secret: bool) -> Iterator[Odds]:
+    """For every criterion that is a matter of succeeding or not, in several episodes."""
+    for criterion in assignment.criteria:
+        count = 0
+        for name in criterion.trials:
+            trial = assignment.trial(name)
+            count += len(trial.seeds) if criterion.seeds is not Seeds.SECRET else 0
+            count += len(trial.secret_seeds) if secret and criterion.seeds is not Seeds.PUBLIC else 0
+        if count:
+            passes = least_passes(count, criterion.need if criterion.need is not None else 1.0)
+            yield Odds(
+                criterion.id,
+                count,
+                passes,
+                tuple(unfair_fail(success, count, passes) for success in SUCCESSES),
+            )
+
+
+def _starter(assignment: Assignment, terms: Terms) -> Proof:
+    result = _graded(assignment, assignment.folder / STARTER, terms)
+    if isinstance(result, str):
+        return Proof(STARTER, (result,), "")
+    problems = _broken(result)
+    if result.verdict is Verdict.PASS:
+        problems.append("it passes: there is nothing left to do")
+    rude = {Status.STUDENT_ERROR, Status.TIMEOUT, Status.RESOURCE_LIMIT, Status.PROTOCOL_ERROR}
+    problems += [
+        f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in rude
+    ]
+    return Proof(STARTER, tuple(problems), _summary(result))
+
+
+def _solution(assignment: Assignment, terms: Terms) -> Proof:
+    file = assignment.folder / SOLUTION
+    result = _graded(assignment, file, terms)
+    if isinstance(result, str):
+        return Proof(SOLUTION, (result,), "")
+    problems = _broken(result)
+    problems += [
+        f"{test.id}: {test.status.value}, {amount(test.points)} of {amount(test.max_points)} points: {test.rationale}"
+        for test in result.tests
+        if test.is_judged and test.status is not Status.PASS
+    ]
+    problems += [
+        f"{test.id}: not judged: {test.rationale}" for test in result.tests if test.status is Status.SKIPPED
+    ]
+    again = _graded(assignment, file, terms)
+    if isinstance(again, Result) and again.tests != result.tests:
+        problems.append(
+            "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
+        )
+    return Proof(SOLUTION, tuple(problems), _summary(result))
+
+
+def _wrong(assignment: Assignment, file: Path, terms: Terms) -> Proof:
+    name = f"{WRONG}/{file.name}"
+    meant = set(file.stem.partition("__")[0].split("+"))
+    known = {criterion.id for criterion in assignment.criteria}
+    if not meant <= known:
+        return Proof(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
+    result = _graded(assignment, file, terms)
+    if isinstance(result, str):
+        return Proof(name, (result,), "")
+    lost = {test.id for test in result.tests if test.status is not Status.PASS}
+    depending = {
+        criterion.id for criterion in assignment.criteria if _depends(assignment, criterion.id, meant)
+    }
+    problems = _broken(result)
+    problems += [f"it should lose {each}, and does not" for each in sorted(meant - lost)]
+    problems += [f"it loses {each}, which it should not" for each in sorted(lost - meant - depending)]
+    return Proof(name, tuple(problems), _summary(result))
+
+
+def _depends(assignment: Assignment, identity: str, meant: set[str]) -> bool:
+    after = {criterion.id: criterion.after for criterion in assignment.criteria}
+    at: str | None = identity
+    while at is not None:
+        if at in meant:
+            return True
+        at = after[at]
+    return False
+
+
+def _graded(assignment: Assignment, file: Path, terms: Terms) -> Result | str:
+    if not file.is_file():
+        return "it is missing"
+    try:
+        return grade(assignment, take(file, assignment.submit), terms)
+    except Refused as error:
+        return str(error)
+
+
+def _broken(result: Result) -> list[str]:
+    return [
+        f"{test.id}: the grader broke: {(test.log.strip().splitlines() or ['?'])[-1]}"
+        for test in result.tests
+        if test.status is Status.GRADER_ERROR
+    ]
+
+
+def _summary(result: Result) -> str:
+    points = (
+        "no grade" if result.points is None else f"{amount(result.points)} of {amount(result.max_points)}"
+    )
+    lost = ", ".join(test.id for test in result.tests if test.status is not Status.PASS)
+    return f"{points} points" + (f"; lost: {lost}" if lost else "")
