@@ -15,6 +15,7 @@ from kit.host import verdicts
 from kit.host.confine import DESK_LEVEL, Level
 from kit.host.delegation import Delegation
 from kit.host.failure import Failure, GuestError
+from kit.host.installed import Installed
 from kit.host.launcher import Child
 from kit.host.limits import DESK, Limits
 from kit.host.output import Printed
@@ -40,8 +41,12 @@ class Guest:
         seed: int = 0,
         limits: Limits = DESK,
         level: Level = DESK_LEVEL,
+        installed: Installed | None = None,
     ) -> None:
-        """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``."""
+        """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
+
+        ``installed``: the file is run as a part of a package, not by itself.
+        """
         self.file = file
         self._graph = graph
         self._delegation = Delegation(graph)
@@ -52,7 +57,7 @@ class Guest:
         self.has_ended = False
         """Whether the program has come to its own end."""
         begin = {"args": list(args), "seed": seed, "now": self._now_ns, "events": self._delegation.news()}
-        self._child = Child("node", file, begin, limits=limits, level=level)
+        self._child = Child("node", file, begin, limits=limits, level=level, installed=installed)
 
     @classmethod
     def start(

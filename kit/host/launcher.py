@@ -25,13 +25,14 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 from kit.host import verdicts
 from kit.host.confine import DESK_LEVEL, Cage, Level
 from kit.host.failure import Failure, GuestError
+from kit.host.installed import Installed
 from kit.host.limits import DESK, KIB, Limits
 from kit.host.output import Output, Position, Printed, Stream
 from kit.host.protocol import Confined, Ended, Failed, Frame, Refused, parse
 from kit.host.reaper import end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
-Role: TypeAlias = Literal["node", "functions"]
+Role: TypeAlias = Literal["node", "functions", "launch"]
 
 LARGEST_SOURCE: Final = 512 * KIB
 """Bytes of a student's file."""
@@ -65,12 +66,16 @@ class Child:
         *,
         limits: Limits = DESK,
         level: Level = DESK_LEVEL,
+        installed: Installed | None = None,
     ) -> None:
         self.failure: Failure | None = None
         self._file = file.absolute()
         self._limits = limits
         self._level = level
+        self._home = self._file.parent if installed is None else installed.folder
         self._start = {**start, **_program(self._file), "reply_s": limits.reply_s}
+        if installed is not None:
+            self._start |= installed.as_start()
         self._seq = 0
         self._waited = 0.0
         self._output = Output(limits.output)
@@ -216,7 +221,7 @@ class Child:
         return verdicts.dead(status, self._where(), self._limits)
 
     def _where(self) -> Position | None:
-        return self._output.position(str(self._file.parent))
+        return self._output.position(str(self._home))
 
     def _send(self) -> None:
         if not self._unsent:

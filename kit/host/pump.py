@@ -34,6 +34,8 @@ class PipePump:
         self._exchange = exchange
         self._regulars: set[int] = set()
         self._away: set[int] = set()
+        self._fickle: set[int] = set()
+        """Threads that were once waited for in vain: not worth more than a moment again."""
         self._given_up = 0
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
@@ -53,7 +55,7 @@ class PipePump:
             looks = graph.looks
             if looks[me].change != graph.changes:
                 return False
-            self._regulars |= looks.keys()
+            self._regulars |= looks.keys() - self._fickle
             self._away -= looks.keys()
             waking = any(look.change != graph.changes for look in looks.values())
             busy = graph.busy - sum(look.pooled for look in looks.values())
@@ -65,6 +67,8 @@ class PipePump:
             patience = CALLBACK_S if busy > self._given_up or strangers & self._regulars else STRANGER_S
             if time.monotonic() - began > patience and not waking:
                 self._away |= strangers
+                self._fickle |= strangers
+                self._regulars -= strangers
                 self._given_up = busy
                 return True
             graph.somebody_waits.wait(STRANGER_S / 5)

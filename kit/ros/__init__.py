@@ -18,3 +18,8 @@ def names_folder() -> Path:
     from pathlib import Path  # a fifth of the time that starting a node takes, and few need it
 
     return Path(__file__).parent / "names"
+
+
+def stand_ins_folder() -> Path:
+    """The folder of packages that stand in for what packages of Flatland's time import and is not installed."""
+    return Path(__file__).parent / "stand_ins"

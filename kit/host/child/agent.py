@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from typing import NoReturn
@@ -14,7 +15,9 @@ from kit.host.child.program import Program, explain
 def preload(role: str) -> None:
     """Imports what a program of this role will need, while there is still the right to keep it compiled."""
     if role == "node":
-        import kit.host.child.nodes  # noqa: F401 - for later
+        import kit.host.child.nodes
+    elif role == "launch":
+        import kit.host.child.launching  # noqa: F401 - likewise
 
 
 def work(role: str, channel: Channel) -> NoReturn:
@@ -26,20 +29,27 @@ def work(role: str, channel: Channel) -> NoReturn:
     _, start = conversation.next_question()
     conversation.allow(start["start_s"])
     conversation.reply_s = start["reply_s"]
-    program = Program(start["file"], start["source"].encode("latin-1"))
+    program = Program(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
         if problem.exc_value is not None:
             conversation.fail(explain(problem.exc_value, program))
 
     threading.excepthook = thread_has_failed
-    sys.path += [*start["libraries"], program.folder]
+    os.environ.update(start.get("environment", {}))
+    if "cwd" in start:
+        os.chdir(start["cwd"])
+    sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
     seeds.plant(start["seed"])
     try:
         if role == "node":
             from kit.host.child import nodes
 
             nodes.run(program, conversation, start)
+        elif role == "launch":
+            from kit.host.child import launching
+
+            launching.run(program, conversation, start)
         else:
             calls.serve(program, conversation)
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read

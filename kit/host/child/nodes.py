@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 import threading
 import time
 from collections.abc import Callable
 from types import ModuleType
+from typing import Final
 
 from kit.host.child.conversation import Conversation
 from kit.host.child.program import Program
 from kit.host.embassy import Embassy
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.wire import Json
-from kit.ros import names_folder
+from kit.ros import names_folder, stand_ins_folder
 from kit.ros.context import set_default_graph
 from kit.ros.graph import Graph
 from kit.ros.node import Node
+
+SWITCH_S: Final = 0.0005
+"""How long one of a package's threads may keep the interpreter while others want it."""
 
 
 def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
@@ -28,9 +33,12 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
     _keep_simulated_time(embassy.graph)
     embassy.hear(start["events"])
     try:
-        module = program.load("__main__")
-        if not embassy.has_had_nodes:
-            _begin(module, program)
+        if start.get("entry"):
+            _enter(start["entry"], program)
+        else:
+            module = program.load("__main__")
+            if not embassy.has_had_nodes:
+                _begin(module, program)
     except SystemExit as stop:
         # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
         if stop.code not in (None, 0) or len(program.frames(stop.__traceback__)) > 1:
@@ -41,6 +49,24 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
     if not embassy.has_had_nodes:
         raise _nothing_to_run("The program came to its end without making a node.", program)
     embassy.end()
+
+
+def _enter(entry: str, program: Program) -> None:
+    """Calls a package's function, as the script would that an installation makes of an entry point."""
+    # Last: what is really installed comes first.
+    sys.path.append(str(stand_ins_folder()))
+    # A thread that waits by looking again and again must not keep the others from the interpreter for long.
+    sys.setswitchinterval(SWITCH_S)
+    name, _, function = entry.partition(":")
+    module = importlib.import_module(name)
+    main = getattr(module, function, None)
+    if not callable(main):
+        raise _nothing_to_run(
+            f"There is no {function}() in {name}, which setup.py names as entry point.", program
+        )
+    result = main()
+    if result not in (None, 0):
+        raise SystemExit(result)
 
 
 def _begin(module: ModuleType, program: Program) -> None:

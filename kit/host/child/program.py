@@ -18,9 +18,10 @@ LONGEST_MESSAGE = 600
 class Program:
     """One file, as its bytes were when it was started."""
 
-    def __init__(self, file: str, source: bytes) -> None:
+    def __init__(self, file: str, source: bytes, folder: str | None = None) -> None:
         self.file = file
-        self.folder = os.path.dirname(file)
+        self.folder = folder or os.path.dirname(file)
+        """Messages name files relative to it."""
         self._source = source
 
     def load(self, name: str) -> ModuleType:
