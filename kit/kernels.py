@@ -139,7 +139,8 @@ def point_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float
     length2 = dx * dx + dy * dy
     t = ((x - ax) * dx + (y - ay) * dy) / length2 if length2 > 0.0 else 0.0
     t = min(max(t, 0.0), 1.0)
-    return math.hypot(ax + t * dx - x, ay + t * dy - y)
+    dx, dy = ax + t * dx - x, ay + t * dy - y
+    return math.sqrt(dx * dx + dy * dy)  # hypot takes three times as long
 
 
 @jit
@@ -390,15 +391,39 @@ def placed_hulls(fleet: Fleet) -> Shapes:
 
 
 @jit
-def clearance(x: float, y: float, walls: Segments) -> float:
-    """Distance from a point to the nearest wall; inf without any."""
-    nearest = math.inf
-    for k in range(walls.discs.shape[0]):
-        if math.hypot(walls.discs[k, 0] - x, walls.discs[k, 1] - y) - walls.discs[k, 2] < nearest:
-            for j in range(walls.starts[k], walls.starts[k + 1]):
-                a, b = walls.ends[j, :2], walls.ends[j, 2:]
-                nearest = min(nearest, point_segment(x, y, a[0], a[1], b[0], b[1]))
-    return nearest
+def nearest_wall(
+    x: float, y: float, theta: float, hulls: Shapes, bit: int, radius: float, walls: Segments
+) -> tuple[float, bool]:
+    """How near to a robot's origin a wall is (inf without any), and whether one meets its hull.
+
+    The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin.
+    """
+    cos, sin, nearest, meets = math.cos(theta), math.sin(theta), math.inf, False
+    for block in range(walls.discs.shape[0]):
+        away = math.hypot(walls.discs[block, 0] - x, walls.discs[block, 1] - y) - walls.discs[block, 2]
+        if away > max(nearest, radius):
+            continue
+        for j in range(walls.starts[block], walls.starts[block + 1]):
+            ax, ay, bx, by = (
+                walls.ends[j, 0] - x,
+                walls.ends[j, 1] - y,
+                walls.ends[j, 2] - x,
+                walls.ends[j, 3] - y,
+            )
+            away = point_segment(0.0, 0.0, ax, ay, bx, by)
+            nearest = min(nearest, away)
+            if meets or away > radius:
+                continue
+            ax, ay, bx, by = (
+                cos * ax + sin * ay,
+                cos * ay - sin * ax,
+                cos * bx + sin * by,
+                cos * by - sin * bx,
+            )
+            for k in range(hulls.polygon_bits.shape[0]):
+                corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
+                meets |= hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners)
+    return nearest, meets
 
 
 @jit
@@ -424,36 +449,20 @@ def hulls_meet(hulls: Shapes) -> bool:
 
 
 @jit
-def hull_meets_wall(x: float, y: float, radius: float, hulls: Shapes, bit: int, walls: Segments) -> bool:
-    """Whether a wall meets the polygons on the layer ``bit``, all within ``radius`` of the point."""
-    for j in range(walls.starts[0], walls.starts[-1]):
-        ax, ay, bx, by = walls.ends[j, 0], walls.ends[j, 1], walls.ends[j, 2], walls.ends[j, 3]
-        if point_segment(x, y, ax, ay, bx, by) > radius:
-            continue
-        for k in range(hulls.polygon_bits.shape[0]):
-            corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
-            if hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners):
-                return True
-    return False
-
-
-@jit
 def stop_robots(
     fleet: Fleet, walls: Segments, before: Floats, hulls: Shapes, poses: Floats, free: Floats, hit: Flags
 ) -> None:
     """Puts the robots of one world that meet something back to where they were ``before``; they are hit."""
-    near = poses.shape[0] > 1
+    together = False
+    if poses.shape[0] > 1:
+        place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
+        together = hulls_meet(hulls)
     for k in range(poses.shape[0]):
+        meets = False
         if free[k] <= fleet.radius:
-            free[k] = clearance(poses[k, 0], poses[k, 1], walls)
-            near |= free[k] <= fleet.radius
-    if not near:
-        return
-    place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
-    together = hulls_meet(hulls)
-    for k in range(poses.shape[0]):
-        x, y, close = poses[k, 0], poses[k, 1], free[k] <= fleet.radius
-        if together or (close and hull_meets_wall(x, y, fleet.radius, hulls, 1 << k, walls)):
+            x, y, theta = poses[k, 0], poses[k, 1], poses[k, 2]
+            free[k], meets = nearest_wall(x, y, theta, fleet.hulls, 1 << k, fleet.radius, walls)
+        if together or meets:
             poses[k], free[k], hit[k] = before[k], 0.0, True
 
 
@@ -501,15 +510,9 @@ def arrivals(
 
 @jit
 def look_worlds(
-    fleet: Fleet,
-    which: Integers,
-    maps: Integers,
-    poses: Floats,
-    keys: Integers,
-    drawn: Integers,
-    ranges: Singles,
+    fleet: Fleet, maps: Integers, poses: Floats, keys: Integers, drawn: Integers, ranges: Singles
 ) -> None:
-    """Scans of the worlds ``which``, as ``scan`` and ``add_noise`` make them; the reach where nothing is seen.
+    """Scans of all robots, as ``scan`` and ``add_noise`` make them; the reach where nothing is seen.
 
     The noise of world i is number ``drawn[i]`` and following of ``keys[i]``. ``ranges`` (n, r, rays).
     """
@@ -518,34 +521,33 @@ def look_worlds(
     padded = (rays + 31) // 32 * 32  # whole vectors are faster; a ray without a direction meets nothing
     cos, near = np.zeros(padded, dtype=np.float32), np.zeros(padded, dtype=np.float32)
     sin = np.zeros(padded, dtype=np.float32)
-    for i in which:
+    for i in range(poses.shape[0]):
         if others:
             place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
         for k in range(robots):
-            x, y, theta = poses[i, k]
+            x, y, theta = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2]
             turn_beams(theta, fleet.beams, cos, sin)
             near[:] = fleet.reach
             meet_walls(x, y, cos, sin, walls_of(fleet, maps[i]), near)
-            meet_shapes(x, y, cos, sin, hulls, ~(1 << k) if others else 0, near)
+            if others:
+                meet_shapes(x, y, cos, sin, hulls, ~(1 << k), near)
             ranges[i, k] = near[:rays]
             add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)
 
 
 @jit
-def sense_worlds(
-    which: Integers, far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles
-) -> None:
+def sense_worlds(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
     """Limits ``ranges`` (n, r, rays) to 0..``far``, and fills ``sensed`` (n, r, numbers) with some rays and minima.
 
     ``single`` (r, s): rays given as they are, first; ``sectors`` (rays): the sector each ray belongs to, from 0.
     """
-    s = single.shape[1]
-    for i in which:
+    s, nothing, most = single.shape[1], Single(0), Single(far)
+    sensed[:] = most
+    for i in range(ranges.shape[0]):
         for k in range(ranges.shape[1]):
             seen, numbers = ranges[i, k], sensed[i, k]
             for j in range(seen.shape[0]):
-                seen[j] = min(max(seen[j], Single(0)), Single(far))
-            numbers[:] = far
+                seen[j] = min(max(seen[j], nothing), most)
             for j in range(seen.shape[0]):
                 numbers[s + sectors[j]] = min(numbers[s + sectors[j]], seen[j])
             for j in range(s):
@@ -579,6 +581,38 @@ def uniforms(keys: Integers, first: Integers, drawn: Floats) -> None:
     for i in range(drawn.shape[0]):
         for j in range(drawn.shape[1]):
             drawn[i, j] = uniform(keys[i], first[i] + j)
+
+
+@jit
+def add_forces(x: Floats, y: Floats, charges: Floats, starts: Integers, fx: Floats, fy: Floats) -> None:
+    """Adds to ``fx``, ``fy`` (n) the forces of charges at the points ``x``, ``y`` (n); see ``kit.fields.charges``.
+
+    ``charges`` (m, 9) ``ax ay ux uy length low high intensity rank``: stretches from a along the unit vector u, that
+    act where the foot of the perpendicular lies from ``low`` to ``high`` along them. Of those from ``starts[c]``
+    on, before the next start, the one of the least rank + r^2 acts, with intensity / r^2; none at r = 0.
+    """
+    n = x.shape[0]
+    least, away_x, away_y, pull = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    for c in range(starts.shape[0] - 1):
+        least[:], away_x[:], away_y[:], pull[:] = math.inf, 0.0, 0.0, 0.0
+        for ax, ay, ux, uy, length, low, high, intensity, rank in charges[starts[c] : starts[c + 1]]:
+            for i in range(n):
+                dx, dy = ax - x[i], ay - y[i]
+                along = -(dx * ux + dy * uy)
+                share = min(max(along, 0.0), length)
+                dx, dy = dx + share * ux, dy + share * uy
+                key = rank + dx * dx + dy * dy
+                acts = (along >= low) & (along <= high) & (key < least[i])
+                least[i] = key if acts else least[i]
+                away_x[i] = dx if acts else away_x[i]
+                away_y[i] = dy if acts else away_y[i]
+                pull[i] = intensity if acts else pull[i]
+        for i in range(n):
+            square = away_x[i] * away_x[i] + away_y[i] * away_y[i]
+            cube = square * math.sqrt(square)
+            share = pull[i] / cube if cube > 0.0 else 0.0
+            fx[i] += share * away_x[i]
+            fy[i] += share * away_y[i]
 
 
 def warm() -> None:

@@ -1,0 +1,191 @@
+"""Charges on a map and the forces they exert (dissertation, sections 4.1.3.1 and 4.1.3.2).
+
+Lengths in metres. A force is in newtons if intensities of charges are in N m^2 and those of tension points in
+N/m; as in the dissertation only directions and ratios of forces matter. A positive intensity attracts, a
+negative one repels: the robot itself counts as the charge -1, and Coulomb's constant as 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kit import kernels
+
+Floats = NDArray[np.float64]
+
+FIRST: Final = 1e12
+"""Lines that go before nearer ones are preferred by so many square metres."""
+BLOCK: Final = 512
+"""So many points at once: their arrays stay in the processor's nearest cache."""
+
+
+class Handover(Enum):
+    """Which charge of a composite acts where several could."""
+
+    NEAREST = "nearest"
+    """The nearest one: the dissertation's text, section 4.1.3.1."""
+    FIRST_LINE = "first_line"
+    """The first line, in the order of the list, whose strip holds the point, else the nearest point charge: its
+    code and appendix A.5. Differs only where two strips overlap."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointCharge:
+    """Coulomb's law: |F| = |i| / r^2 with r the distance to the point (equation 4.12).
+
+    Towards the point if i > 0, away from it if i < 0; no force at the point itself, where no direction is right.
+    """
+
+    x: float
+    y: float
+    intensity: float = 1.0
+
+    def force(self, points: ArrayLike) -> Floats:
+        """At ``points`` (..., 2): forces (..., 2)."""
+        return Field.of([self]).forces(points)
+
+
+@dataclass(frozen=True, slots=True)
+class LineCharge:
+    """A wall's face, in any direction: as a point charge at the foot of the perpendicular (section 4.1.3.1).
+
+    No force where the foot lies beyond the ends: the charge acts on a strip as wide as itself, on both sides.
+    """
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    intensity: float = 1.0
+
+    @property
+    def length(self) -> float:
+        return math.hypot(self.bx - self.ax, self.by - self.ay)
+
+    @property
+    def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        return (self.ax, self.ay), (self.bx, self.by)
+
+    def force(self, points: ArrayLike) -> Floats:
+        """At ``points`` (..., 2): forces (..., 2)."""
+        return Field.of([self]).forces(points)
+
+
+@dataclass(frozen=True, slots=True)
+class CompositeCharge:
+    """Lines and the corners they meet in, of which one acts at a time (section 4.1.3.1).
+
+    For wall corners that stand out into the free space: there the strips of the two lines leave a gap, which
+    the corner's point charge fills. The force does not jump where one hands over to the other.
+    """
+
+    lines: tuple[LineCharge, ...]
+    points: tuple[PointCharge, ...]
+    handover: Handover = Handover.NEAREST
+
+    def force(self, points: ArrayLike) -> Floats:
+        """At ``points`` (..., 2): forces (..., 2)."""
+        return Field.of([self]).forces(points)
+
+
+Charge = PointCharge | LineCharge | CompositeCharge
+
+
+@dataclass(frozen=True, slots=True)
+class TensionPoint:
+    """Hooke's law: |F| = i r, towards the point if i > 0 (equation 4.13). Grows with the distance, unlike Coulomb's."""
+
+    x: float
+    y: float
+    intensity: float
+
+    def force(self, points: ArrayLike) -> Floats:
+        """At ``points`` (..., 2): forces (..., 2)."""
+        forces: Floats = self.intensity * (np.array((self.x, self.y)) - np.asarray(points, dtype=float))
+        return forces
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Field:
+    """Many charges as arrays, for ``kit.kernels.add_forces``, where the formula stands."""
+
+    stretches: Floats
+    """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""
+    starts: NDArray[np.int64]
+    """(c + 1): the first stretch of each charge."""
+
+    @classmethod
+    def of(cls, charges: Iterable[Charge]) -> Field:
+        groups = [list(_stretches(charge)) for charge in charges]
+        rows = [row for group in groups for row in group]
+        return cls(
+            np.array(rows, dtype=np.float64).reshape(-1, 9),
+            np.cumsum([0, *map(len, groups)], dtype=np.int64),
+        )
+
+    def forces(self, points: ArrayLike) -> Floats:
+        """The sum of all charges' forces at ``points`` (..., 2), in that shape."""
+        places = np.asarray(points, dtype=np.float64)
+        x, y = (np.ascontiguousarray(places[..., axis].ravel()) for axis in (0, 1))
+        fx, fy = np.zeros_like(x), np.zeros_like(y)
+        for first in range(0, len(x), BLOCK):
+            some = slice(first, first + BLOCK)
+            kernels.add_forces(x[some], y[some], self.stretches, self.starts, fx[some], fy[some])
+        return np.stack((fx, fy), axis=-1).reshape(places.shape)
+
+
+Row = tuple[float, float, float, float, float, float, float, float, float]
+
+
+def _stretches(charge: Charge) -> Iterator[Row]:
+    if isinstance(charge, PointCharge):
+        yield _point(charge)
+    elif isinstance(charge, LineCharge):
+        yield _line(charge, (), 0.0)
+    else:
+        # A corner at a line's end is that line, going on acting beyond its end: half the work for the same force.
+        corners = {(point.x, point.y): point for point in charge.points}
+        spare = dict(corners)
+        for number, line in enumerate(charge.lines):
+            first = charge.handover is Handover.FIRST_LINE
+            joined = (
+                ()
+                if first
+                else tuple(
+                    end for end in line.ends if end in corners and corners[end].intensity == line.intensity
+                )
+            )
+            for end in joined:
+                spare.pop(end, None)
+            yield _line(line, joined, FIRST * (number - len(charge.lines)) if first else 0.0)
+        yield from map(_point, spare.values())
+
+
+def _point(charge: PointCharge) -> Row:
+    return charge.x, charge.y, 0.0, 0.0, 0.0, 0.0, 0.0, charge.intensity, 0.0
+
+
+def _line(line: LineCharge, corners: tuple[tuple[float, float], ...], rank: float) -> Row:
+    length = line.length
+    ux, uy = ((line.bx - line.ax) / length, (line.by - line.ay) / length) if length else (0.0, 0.0)
+    start, end = line.ends
+    low = -math.inf if start in corners else 0.0
+    high = math.inf if end in corners else length
+    return line.ax, line.ay, ux, uy, length, low, high, line.intensity, rank
+
+
+def members(charges: Iterable[Charge]) -> Iterator[PointCharge | LineCharge]:
+    """Every point and line, those of composites too."""
+    for charge in charges:
+        if isinstance(charge, CompositeCharge):
+            yield from charge.lines
+            yield from charge.points
+        else:
+            yield charge

@@ -1,0 +1,158 @@
+"""The free floor of a map as a grid: how far every place is from the walls, and what can be reached."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.world.catalogue import root_of
+from kit.world.loading import load_world
+from kit.world.records import World
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Cell = tuple[int, int]
+"""Row and column."""
+
+CELL: Final = 0.025
+"""Side of a cell [m], on maps that are not too large for it."""
+MOST_CELLS: Final = 120_000
+MARGIN: Final = 0.1
+"""So much [m] around the walls belongs to the grid."""
+FAR: Final = 0.6
+"""Walls farther than this [m] are all alike: nothing that drives here is so large."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Floor:
+    """Square cells; ``clearance[row, column]`` [m] is from a cell's middle to the nearest wall, at most FAR."""
+
+    walls: Floats
+    """(n, 4) ``x1 y1 x2 y2`` [m]"""
+    corner: tuple[float, float]
+    """The middle of the first cell."""
+    cell: float
+    clearance: Floats
+    inside: Flags
+    """(rows, columns): where something thin gets to from where the models stand."""
+
+    @classmethod
+    def of(cls, walls: Floats, starts: Iterable[tuple[float, float]]) -> Floor:
+        """The floor between walls (n, 4), n > 0, on which ``starts`` lie."""
+        ends = walls.reshape(-1, 2)
+        low, high = ends.min(axis=0) - MARGIN, ends.max(axis=0) + MARGIN
+        width, height = (high - low).tolist()
+        cell = max(CELL, math.sqrt(width * height / MOST_CELLS))
+        shape = math.ceil(height / cell) + 1, math.ceil(width / cell) + 1
+        clearance = np.full(shape, FAR)
+        x, y = low[0] + cell * np.arange(shape[1]), low[1] + cell * np.arange(shape[0])
+        for ax, ay, bx, by in walls.tolist():
+            columns = _span(min(ax, bx) - FAR, max(ax, bx) + FAR, low[0], cell, shape[1])
+            rows = _span(min(ay, by) - FAR, max(ay, by) + FAR, low[1], cell, shape[0])
+            near = clearance[rows, columns]
+            np.minimum(near, _distance(x[columns], y[rows], ax, ay, bx, by), out=near)
+        floor = cls(walls, (float(low[0]), float(low[1])), cell, clearance, np.zeros(shape, dtype=np.bool_))
+        for start in starts:
+            if not floor.inside[floor.cell_at(*start)]:
+                floor.inside[floor.reached(start, 0.0)] = True
+        return floor
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        rows, columns = self.clearance.shape
+        return rows, columns
+
+    @property
+    def middles(self) -> Floats:
+        """(rows, columns, 2): the cells' places."""
+        rows, columns = self.shape
+        x, y = (self.corner[0] + self.cell * np.arange(columns), self.corner[1] + self.cell * np.arange(rows))
+        return np.stack(np.meshgrid(x, y), axis=-1)
+
+    def cell_at(self, x: float, y: float) -> Cell:
+        """The cell that holds a place; the nearest one for a place off the grid."""
+        column, row = (x - self.corner[0]) / self.cell, (y - self.corner[1]) / self.cell
+        return (
+            min(max(round(row), 0), self.clearance.shape[0] - 1),
+            min(max(round(column), 0), self.clearance.shape[1] - 1),
+        )
+
+    def middle(self, cell: Cell) -> tuple[float, float]:
+        return self.corner[0] + self.cell * cell[1], self.corner[1] + self.cell * cell[0]
+
+    def reached(self, start: tuple[float, float], radius: float) -> Flags:
+        """(rows, columns): where a disc of that radius [m] gets to from ``start``."""
+        # Nothing slips through a wall where cells that it crosses are blocked.
+        free = self.clearance > max(radius, self.cell * 0.75)
+        been = np.zeros_like(free)
+        first = self.cell_at(*start)
+        been[first] = free[first]
+        waiting = deque([first] if free[first] else [])
+        while waiting:
+            row, column = waiting.popleft()
+            for beside in ((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)):
+                inside = 0 <= beside[0] < free.shape[0] and 0 <= beside[1] < free.shape[1]
+                if inside and free[beside] and not been[beside]:
+                    been[beside] = True
+                    waiting.append(beside)
+        return been
+
+    def widest_way(self, start: tuple[float, float], goal: tuple[float, float]) -> float:
+        """The radius [m] of the largest disc that gets from start to goal; 0 if not even the smallest does."""
+        low, high = 0.0, FAR
+        for _ in range(8):
+            middle = 0.5 * (low + high)
+            if self.reached(start, middle)[self.cell_at(*goal)]:
+                low = middle
+            else:
+                high = middle
+        return low if low > self.cell else 0.0
+
+
+def open_floor(world_file: Path) -> tuple[World, Floor]:
+    """A world with its floor. Raises WorldError, and ValueError if it has no walls."""
+    world = load_world(world_file, root=root_of(world_file))
+    return world, floor_of(world)
+
+
+def floor_of(world: World) -> Floor:
+    """Raises ValueError if the world has no walls."""
+    walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
+    if not walls or not sum(map(len, walls)):
+        raise ValueError(f"{world.file}: a world without walls has no floor to drive on.")
+    return Floor.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
+
+
+def wall_depth(floor: Floor, x: float, y: float) -> float:
+    """How far [m] a place lies behind the face of a solid wall; 0 in the open.
+
+    Walls made from a picture bound what is dark: a place is inside if a ray from it crosses them an odd number
+    of times. Walls that are bare lines have no inside.
+    """
+    ax, ay, bx, by = floor.walls.T
+    crosses = (ay > y) != (by > y)
+    rise = np.where(crosses, by - ay, 1.0)
+    right = crosses & (ax + (y - ay) / rise * (bx - ax) > x)
+    if np.count_nonzero(right) % 2 == 0:
+        return 0.0
+    return float(min(_distance(np.array([x]), np.array([y]), *wall)[0, 0] for wall in floor.walls.tolist()))
+
+
+def _span(low: float, high: float, origin: float, cell: float, count: int) -> slice:
+    return slice(max(0, math.floor((low - origin) / cell)), min(count, math.ceil((high - origin) / cell) + 1))
+
+
+def _distance(x: Floats, y: Floats, ax: float, ay: float, bx: float, by: float) -> Floats:
+    """(rows, columns): from the grid ``x``, ``y`` to a segment."""
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    right, up = (x - ax)[None, :], (y - ay)[:, None]
+    share = np.clip((right * dx + up * dy) / square, 0.0, 1.0) if square else 0.0
+    return np.hypot(right - share * dx, up - share * dy)

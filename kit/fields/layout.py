@@ -1,0 +1,213 @@
+"""A map's charges: ``charges.yaml`` beside its world file, or derived from its walls where there is none.
+
+intensities: {walls: -1, target: 15, robot: -1, tension: 100}
+charges:
+  - line: [-0.42, -0.22, 0.42, -0.22]      # x1 y1 x2 y2 [m]
+  - point: [0.1, 0.2]
+    times: 2                               # twice the walls' intensity
+  - composite:
+      - line: [0.42, -0.22, 0.42, 1.22]
+      - line: [0.42, 1.22, 1.82, 1.22]
+      - point: [0.42, 1.22]
+    handover: nearest                      # or first_line
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from numpy.typing import ArrayLike
+
+from kit.fields.charges import Charge, CompositeCharge, Field, Floats, Handover, LineCharge, PointCharge
+from kit.fields.derived import derive
+from kit.fields.floor import Floor, wall_depth
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems
+from kit.world.records import Place
+from kit.world.section import Section
+
+FILE: Final = "charges.yaml"
+
+JOINED: Final = 1e-6
+"""Ends nearer than this [m] are one corner."""
+DEEPEST: Final = 0.03
+"""A charge no farther [m] behind a wall's face lies on it: drawings are not exact."""
+
+HANDOVERS: Final = MappingProxyType({each.value: each for each in Handover})
+
+
+@dataclass(frozen=True, slots=True)
+class Intensities:
+    """How strongly each kind of charge acts. The defaults are the dissertation's (tutorial 3)."""
+
+    walls: float = -1.0
+    """N m^2, of every charge of the layout, times its own ``times``."""
+    target: float = 15.0
+    """N m^2, of the point charge at the target."""
+    robot: float = -1.0
+    """N m^2, of each robot for the other one."""
+    tension: float = 100.0
+    """N/m, of the point each robot should be at."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """Charges of strength 1 and the intensities that scale them: a changed intensity needs no new field."""
+
+    charges: tuple[Charge, ...]
+    intensities: Intensities
+    source: Path | None
+    """The file they were read from; None: derived from the walls."""
+    field: Field
+
+    def with_intensities(self, intensities: Intensities) -> Layout:
+        return replace(self, intensities=intensities)
+
+    def wall_forces(self, points: ArrayLike) -> Floats:
+        """Of all charges but the target's, at ``points`` (..., 2), in that shape [N]."""
+        return self.intensities.walls * self.field.forces(points)
+
+    def forces(self, points: ArrayLike, target: tuple[float, float]) -> Floats:
+        """Of all charges, the target's too, at ``points`` (..., 2), in that shape [N]."""
+        pull = PointCharge(*target, self.intensities.target).force(points)
+        return self.wall_forces(points) + pull
+
+
+def layout_of(world_file: Path, floor: Floor) -> Layout:
+    """The layout beside a world file, or the one derived from its walls. Raises WorldError."""
+    file = world_file.parent / FILE
+    return read_layout(file, floor) if file.is_file() else derived_layout(floor)
+
+
+def derived_layout(floor: Floor) -> Layout:
+    """From the walls that the floor is bounded by, with the dissertation's intensities."""
+    charges = derive(floor)
+    return Layout(charges, Intensities(), None, Field.of(charges))
+
+
+def read_layout(file: Path, floor: Floor | None = None) -> Layout:
+    """What a charge file describes; with ``floor`` also whether its charges lie where charges can.
+
+    Raises WorldError with all that is wrong.
+    """
+    problems = Problems()
+    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+    charges: tuple[Charge, ...] = ()
+    intensities = Intensities()
+    if section is not None:
+        intensities = _intensities(section.section("intensities"))
+        charges = tuple(_charges(section.sections("charges"), floor))
+        section.finish()
+    problems.raise_if_any()
+    return Layout(charges, intensities, file, Field.of(charges))
+
+
+def _intensities(section: Section) -> Intensities:
+    usual = Intensities()
+    read = Intensities(
+        walls=section.number("walls", usual.walls),
+        target=section.number("target"),
+        robot=section.number("robot", usual.robot),
+        tension=section.number("tension", usual.tension, minimum=0),
+    )
+    if read.target <= 0 and section.has("target"):
+        section.error("the target must attract: give it an intensity above 0", "target")
+    section.finish()
+    return read
+
+
+def _charges(sections: Iterable[Section], floor: Floor | None) -> Iterator[Charge]:
+    for section in sections:
+        times = section.number("times", 1.0)
+        if section.has("composite"):
+            parts = section.sections("composite", at_least=1)
+            handover = section.choice("handover", HANDOVERS, Handover.NEAREST.value)
+            yield _composite(section, parts, times, handover, floor)
+        else:
+            charge = _member(section, times, floor)
+            if charge is not None:
+                yield charge
+        section.finish()
+
+
+def _member(section: Section, times: float, floor: Floor | None) -> LineCharge | PointCharge | None:
+    if section.has("line"):
+        ax, ay, bx, by = section.numbers("line", length=4)
+        line = LineCharge(ax, ay, bx, by, times)
+        if line.length == 0:
+            section.error("the line has no length: its ends are the same point", "line")
+        elif floor is not None:
+            _check_place(section, "line", _along(line), floor)
+        return line
+    if section.has("point"):
+        point = PointCharge(*section.point("point"), times)
+        if floor is not None:
+            _check_place(section, "point", [(point.x, point.y)], floor)
+        return point
+    section.error("a charge is one of: line, point, composite")
+    return None
+
+
+def _composite(
+    section: Section, parts: tuple[Section, ...], times: float, handover: Handover, floor: Floor | None
+) -> CompositeCharge:
+    found = []
+    for part in parts:
+        found.append(_member(part, times, floor))
+        part.finish()
+    lines = tuple(each for each in found if isinstance(each, LineCharge))
+    points = tuple(each for each in found if isinstance(each, PointCharge))
+    _check_closed(section, lines, points)
+    return CompositeCharge(lines, points, handover)
+
+
+def _check_closed(section: Section, lines: tuple[LineCharge, ...], points: tuple[PointCharge, ...]) -> None:
+    """Every line of a composite meets a corner, and where two lines meet there is one: else nothing acts in the
+    gap between their strips."""
+    corners = [(point.x, point.y) for point in points]
+    ends = [end for line in lines for end in line.ends]
+    for line in lines:
+        if not any(math.dist(end, corner) <= JOINED for end in line.ends for corner in corners):
+            section.error(
+                f"the composite is open: the line {_text(*line.ends[0], *line.ends[1])} ends at none of its "
+                "points. Add the corner as a point, or take the line out",
+                "composite",
+            )
+    for number, end in enumerate(ends):
+        meets = any(math.dist(end, other) <= JOINED for other in ends[number + 1 :])
+        if meets and not any(math.dist(end, corner) <= JOINED for corner in corners):
+            section.error(
+                f"the composite is open: two lines meet at {_text(*end)}, and no point stands there, so that "
+                "nothing acts between their strips",
+                "composite",
+            )
+
+
+def _check_place(section: Section, key: str, places: list[tuple[float, float]], floor: Floor) -> None:
+    for x, y in places:
+        depth = wall_depth(floor, x, y)
+        if depth > DEEPEST:
+            section.error(
+                f"the charge lies inside a wall: {_text(x, y)} is {depth:.2f} m behind its face. "
+                "Charges stand on the faces of walls, or in the free space",
+                key,
+            )
+            return
+
+
+def _along(line: LineCharge) -> list[tuple[float, float]]:
+    """Places on a line, its ends not quite."""
+    return [
+        (line.ax + share * (line.bx - line.ax), line.ay + share * (line.by - line.ay))
+        for share in (0.02, 0.25, 0.5, 0.75, 0.98)
+    ]
+
+
+def _text(*numbers: float) -> str:
+    return "[" + ", ".join(f"{number:g}" for number in numbers) + "]"
