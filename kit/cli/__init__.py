@@ -21,6 +21,15 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
+    "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
+    "runs": ("kit.cli.runs", "List the training runs; pause, go on, stop."),
+    "watch": ("kit.cli.watch", "Watch a training, line by line."),
+    "evaluate": (
+        "kit.cli.evaluate",
+        "Test a trained policy case by case; draw its paths; make it a ROS 2 node.",
+    ),
+    "compare": ("kit.cli.compare", "Test several policies on the same episodes, side by side."),
+    "crosstable": ("kit.cli.crosstable", "Train on each group of cases, test on all: a table, resumable."),
     "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }
@@ -70,7 +79,7 @@ class LazyGroup(click.Group):
     cls=LazyGroup,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`kit VERB --help` explains a verb. Leave every screen with Ctrl-C or q.",
+    epilog="`kit VERB --help` explains a verb. Ctrl-C leaves every screen.",
 )
 @click.version_option(kit.__version__, prog_name="kit")
 @click.pass_context

@@ -148,9 +148,10 @@ def _whole_lines(file: Path) -> int:
 class EventReader:
     """Reads a run's events as they come, each once."""
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, *, from_now: bool = False) -> None:
+        """``from_now``: leave out what stands in the file already."""
         self._file = file
-        self._place = 0
+        self._place = _whole_lines(file) if from_now and file.exists() else 0
 
     def new(self) -> Iterator[Event]:
         """Those written since the last time; none while there is no file."""

@@ -56,7 +56,7 @@ class Memory:
     """What a strategy must remember from one look to the next; it goes into every checkpoint."""
 
     best: tuple[float, float] | None = None
-    """Worst case and accuracy of the policy kept."""
+    """Of the policy kept: what its worst case is likely not below, and its accuracy."""
     best_low: float = 0.0
     """What that policy's accuracy is not below, as far as its test tells."""
     best_steps: int = 0
@@ -95,9 +95,15 @@ class Strategy(Protocol):
         """After so many steps."""
 
 
+def _likely(counts: Counts) -> float:
+    """What the worst case's share is likely not below: of two policies without a failure the one that was tested
+    longer is the better one."""
+    return min((at_least(count.reached, count.episodes) for count in counts.values()), default=0.0)
+
+
 def _remembered(counts: Counts, steps: int, memory: Memory) -> tuple[Memory, bool]:
     """The memory with this test in it, and whether this policy is the best so far. Ties go to the newer one."""
-    mark = worst(counts), accuracy(counts)
+    mark = _likely(counts), accuracy(counts)
     if memory.best is not None and mark < memory.best:
         return memory, False
     low = _pooled(counts).low
@@ -123,7 +129,7 @@ class TrainThenTest:
 
     def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
         counts = test(self.episodes)
-        mark = worst(counts), accuracy(counts)
+        mark = _likely(counts), accuracy(counts)
         return Verdict(counts, replace(memory, best=mark, best_steps=steps), keep=True)
 
 

@@ -11,6 +11,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from kit.host.failure import GuestError
@@ -140,10 +142,11 @@ class _Training:
         self._looked_at, self._next_look = 0, self._preset.strategy.every
         self._known: Any = None
         parts = self._restored()
-        self._learner = _learner(
-            *(run, algorithm, self._preset, choice, self._task),
+        self._learner = make_learner(
+            *(algorithm, self._preset, choice, self._task),
             seed=seed_for(config.seed, "training", self._resumed),
             reward=reward,
+            tensorboard=_tensorboard(run),
         )
         if parts:
             self._learner.load(parts)
@@ -154,22 +157,16 @@ class _Training:
 
     def go(self) -> Ended:
         self._write(Started(time.time(), self._learner.steps, versions()))
-        how, reason = "finished", ""
+        stopped, reason = False, "all steps are done"
         try:
             self._learner.learn(self._preset.steps, self)
-            reason = "all steps done"
-            if self._learner.steps >= self._next_look - self._preset.strategy.every + 1:
+            if self._learner.steps > self._looked_at:
                 self._look(last=True)
         except Halt as halt:
-            how, reason = halt.args
-        if how == "interrupted":
-            raise KeyboardInterrupt
+            stopped, reason = isinstance(halt, _Stopped), str(halt)
         self._tell_progress()
         self._checkpoint()
-        kind = "stopped" if how == "stopped" else "finished"
-        return Ended(
-            "stopped" if kind == "stopped" else "finished", self._learner.steps, self._elapsed(), reason
-        )
+        return Ended("stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason)
 
     def between(self) -> None:
         now = time.monotonic()
@@ -271,16 +268,17 @@ class _Training:
         return parts
 
 
-def _learner(
-    run: Run,
+def make_learner(
     algorithm: Algorithm,
     preset: Preset,
     choice: TaskChoice,
     task: Task,
     *,
     seed: int,
-    reward: RewardFunction | None,
+    reward: RewardFunction | None = None,
+    tensorboard: Path | None = None,
 ) -> Learner:
+    """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on."""
     if algorithm.family == "table":
         batch = BatchEnv(task, preset.worlds, seed, reward=reward)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
@@ -289,13 +287,11 @@ def _learner(
     from kit.learning.vecenv import make_vec
 
     venv = make_vec(task, preset.worlds, seed, reward)
-    return DeepLearner(algorithm, preset, choice, venv, seed, _tensorboard(run))
+    return DeepLearner(algorithm, preset, choice, venv, seed, tensorboard)
 
 
-def _tensorboard(run: Run) -> Any:
+def _tensorboard(run: Run) -> Path | None:
     """Where its files go; None where it is not installed."""
-    from importlib.util import find_spec
-
     return run.folder / "tensorboard" if find_spec("tensorboard") else None
 
 

@@ -1,0 +1,73 @@
+"""``kit compare``: several policies on the same episodes, side by side."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from kit.cli import learning_options, options
+
+
+@click.command()
+@click.argument("policies", metavar="RUN or POLICY.npz ...", nargs=-1, required=True)
+@learning_options.on
+@learning_options.episodes
+@learning_options.sampled
+@learning_options.test_seed
+@click.option("--curves", is_flag=True, help="Also draw how their tests went while they learned.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@options.workspace
+def command(
+    policies: tuple[str, ...],
+    on: str | None,
+    episodes: int,
+    sampled: bool,
+    seed: int,
+    curves: bool,
+    as_json: bool,
+    workspace: Path | None,
+) -> None:
+    """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
+    with learning_options.mistakes():
+        from kit.learning.evaluation import Examiner, seed_for
+        from kit.learning.telling import side_by_side
+
+        results = {}
+        for name in policies:
+            title, policy = learning_options.find_policy(name, workspace)
+            task = learning_options.test_task(policy, None, on)
+            fresh = seed_for(seed, "evaluate")
+            results[title] = Examiner(task).test(policy, episodes, fresh, greedy=not sampled)
+        if as_json:
+            click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
+        else:
+            click.echo("\n".join(side_by_side(results)))
+        if curves:
+            _draw(policies, workspace)
+
+
+def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
+    import shutil
+
+    import numpy as np
+
+    from kit.learning.events import Tested
+    from kit.learning.runs import find_run
+    from kit.learning.telling import shares_of
+    from kit.picture.curve import Axes, Curve, draw_curves
+    from kit.picture.encode import ENCODERS
+
+    drawn = []
+    for name in policies:
+        tests = [
+            event
+            for event in find_run(learning_options.runs_folder(workspace), name).events()
+            if isinstance(event, Tested)
+        ]
+        means = [float(np.mean([*shares_of(test).values()])) for test in tests]
+        drawn.append(Curve(name, np.array([float(test.steps) for test in tests]), np.array(means)))
+    columns, _ = shutil.get_terminal_size()
+    frame = draw_curves(drawn, Axes("steps", 0.0, 1.0), columns - 1, 16, ENCODERS["braille"](True))
+    click.echo("\n".join(frame.rows()))

@@ -1,0 +1,64 @@
+"""``kit crosstable``: trained on each group of cases, tested on all of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import click
+
+from kit.cli import learning_options, options
+
+
+@click.command()
+@click.argument("task", default="hallway")
+@click.option(
+    "--groups", metavar="GROUPS", help="Only these groups, with commas between; `all` is all cases."
+)
+@click.option("--algo", default="ppo", show_default=True, help="By which algorithm.")
+@click.option("--preset", type=click.Choice(("kit", "seed")), default="kit", show_default=True)
+@click.option(
+    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
+)
+@click.option("--steps", type=click.IntRange(1), help="At most for each group; by default the preset's.")
+@learning_options.episodes
+@click.option("--at-once", type=click.IntRange(1, 64), help="Trainings side by side; by default one a core.")
+@click.option("--name", help="Of the table; by default made of task, algorithm and seed.")
+@options.workspace
+def command(
+    task: str,
+    groups: str | None,
+    algo: str,
+    preset: Literal["kit", "seed"],
+    seed: int,
+    steps: int | None,
+    episodes: int,
+    at_once: int | None,
+    name: str | None,
+    workspace: Path | None,
+) -> None:
+    """Make the table of TASK (the dissertation's table 3.5 is `hallway`): the success on every case of agents that
+    were trained on one group each. Interrupt it as you like; the same command goes on where it was.
+    """
+    with learning_options.mistakes():
+        from kit.learning.algorithms import find_algorithm
+        from kit.learning.choice import TaskChoice
+        from kit.learning.crosstable import crosstable, groups_of, rows_of
+        from kit.learning.extra import require_learner
+        from kit.learning.runs import RunConfig
+
+        if find_algorithm(algo).neural:
+            require_learner()
+        config = RunConfig(TaskChoice(task), algo, preset, seed, steps)
+        chosen = learning_options.names(groups) or groups_of(config)
+        folder = (
+            learning_options.runs_folder(workspace).parent
+            / "tables"
+            / (name or f"{task}-{algo}-{preset}-{seed}")
+        )
+        try:
+            columns = crosstable(folder, config, chosen, episodes=episodes, at_once=at_once, tell=click.echo)
+        except KeyboardInterrupt:
+            click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")
+            raise SystemExit(130) from None
+        click.echo("\n".join(rows_of(columns)))

@@ -1,0 +1,111 @@
+"""``kit evaluate``: how good a policy is, case by case."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import learning_options, options
+
+if TYPE_CHECKING:
+    from kit.learning.policies import Policy
+    from kit.learning.tasks import Task
+
+
+@click.command()
+@click.argument("policy", metavar="[RUN or POLICY.npz]", required=False)
+@learning_options.on
+@click.option("--task", help="Another task than the one it was trained on, with the same inputs and actions.")
+@learning_options.episodes
+@learning_options.sampled
+@learning_options.test_seed
+@click.option("--newest", is_flag=True, help="The newest policy of the run instead of the best.")
+@click.option("--paths", type=click.IntRange(1, 100), help="Also show so many ways driven in each case.")
+@click.option(
+    "--pictures",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Save the ways as PNG in this folder instead.",
+)
+@click.option(
+    "--node",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Only write the policy as a ROS 2 node into this file.",
+)
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@options.workspace
+def command(
+    policy: str | None,
+    on: str | None,
+    task: str | None,
+    episodes: int,
+    sampled: bool,
+    seed: int,
+    newest: bool,
+    paths: int | None,
+    pictures: Path | None,
+    node: Path | None,
+    as_json: bool,
+    workspace: Path | None,
+) -> None:
+    """Test a run's best policy, by default the last run's, on fresh episodes of every case.
+
+    Needs neither torch nor the process that trained it. The interval says where the true share lies, with 95 %
+    confidence (Wilson).
+    """
+    with learning_options.mistakes():
+        from kit.learning.evaluation import Examiner, seed_for
+
+        title, found = learning_options.find_policy(policy, workspace, newest=newest)
+        if node is not None:
+            _write_node(found, node)
+            return
+        place = learning_options.test_task(found, task, on)
+        result = Examiner(place).test(found, episodes, seed_for(seed, "evaluate"), greedy=not sampled)
+        if as_json:
+            click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))
+        else:
+            click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
+            click.echo("\n".join(result.rows()))
+        if paths is not None or pictures is not None:
+            _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
+
+
+def _write_node(policy: Policy, file: Path) -> None:
+    from kit.learning.policy_node import node_source
+    from kit.workspace import write_atomically
+
+    write_atomically(file, node_source(policy).encode())
+    task = policy.trained_on.resolve()
+    click.echo(
+        f"{file}: `kit play {task.maps[0]} --controller {file}` drives it here, `python3 {file}` on a robot."
+    )
+
+
+def _show_paths(
+    policy: Policy, task: Task, count: int, pictures: Path | None, seed: int, *, greedy: bool
+) -> None:
+    from kit.learning.evaluation import seed_for
+    from kit.learning.paths import drive, scene_of
+    from kit.picture.encode import ENCODERS
+    from kit.picture.image import draw, image_camera, save
+    from kit.picture.text import plain_rows
+
+    ways = drive(policy, task, count, seed_for(seed, "paths"), greedy=greedy)
+    columns, rows = shutil.get_terminal_size()
+    if pictures is not None:
+        pictures.mkdir(parents=True, exist_ok=True)
+    for card, case in task.courses():
+        scene = scene_of(card, case, ways, task.target_radius)
+        if pictures is not None:
+            file = pictures / f"{case.name}.png"
+            save(file, draw(scene, image_camera(scene.bounds, 640, 640)))
+            click.echo(file)
+        else:
+            click.echo(f"\n{case.name}")
+            click.echo(
+                "\n".join(plain_rows(scene, columns - 1, max(10, rows - 4), ENCODERS["braille"](True)))
+            )

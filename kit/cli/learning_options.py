@@ -1,0 +1,100 @@
+"""What the verbs of learning share: how runs and policies are found, and how mistakes end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.learning.policies import Policy
+    from kit.learning.tasks import Task
+
+on = click.option(
+    "--on",
+    metavar="CASES",
+    help="Only these cases or groups of the task, with commas between: doors,straight.",
+)
+episodes = click.option(
+    "--episodes",
+    type=click.IntRange(1, 1_000_000),
+    default=500,
+    show_default=True,
+    help="How many of each case.",
+)
+sampled = click.option(
+    "--sampled", is_flag=True, help="Actions by chance, as in training, instead of the best ones."
+)
+test_seed = click.option(
+    "--seed",
+    type=click.IntRange(0, 2**31 - 1),
+    default=1,
+    show_default=True,
+    help="Of the test's episodes; training never sees the same ones.",
+)
+
+
+def names(text: str | None) -> tuple[str, ...]:
+    """What stands between the commas."""
+    return tuple(part.strip() for part in (text or "").split(",") if part.strip())
+
+
+@contextmanager
+def mistakes() -> Iterator[None]:
+    """Ends the verb with one clear line for whatever a user can cause."""
+    from kit.host.failure import GuestError
+    from kit.learning.algorithms import UnknownAlgorithm
+    from kit.learning.arena import Unsupported
+    from kit.learning.extra import LearnerMissing
+    from kit.learning.policies import PolicyError
+    from kit.learning.runs import RunError
+    from kit.learning.student import RewardFileError
+    from kit.learning.tasks import UnknownTask
+    from kit.workspace import WorkspaceError
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except UnknownAlgorithm as error:
+        options.fail(str(error))
+    except (GuestError, LearnerMissing, PolicyError, RewardFileError, RunError, Unsupported) as error:
+        options.fail(str(error))
+    except (UnknownTask, WorkspaceError, WorldError) as error:
+        options.fail(str(error))
+    except OSError as error:
+        options.fail(f"{error.filename}: {error.strerror}." if error.filename else str(error))
+
+
+def runs_folder(workspace: Path | None) -> Path:
+    """Where the runs lie. WorkspaceError."""
+    from kit.workspace import open_workspace
+
+    return open_workspace(workspace).runs
+
+
+def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
+    """A policy by the name of its run, or by its file; without a name that of the last run. With its title."""
+    from kit.learning.policies import load_policy
+    from kit.learning.runs import find_run
+
+    if name is not None and (name.endswith(".npz") or "/" in name):
+        return Path(name).stem, load_policy(Path(name))
+    run = find_run(runs_folder(workspace), name)
+    return run.name, run.policy(newest=newest)
+
+
+def test_task(policy: Policy, task: str | None, on: str | None) -> Task:
+    """What to test a policy on: what it was trained on, or another task with the same inputs and actions."""
+    from dataclasses import replace
+
+    choice = policy.trained_on
+    if task is not None:
+        choice = replace(choice, task=task, on=())
+    if on is not None:
+        choice = replace(choice, on=() if on == "all" else names(on))
+    return choice.resolve()

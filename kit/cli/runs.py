@@ -1,0 +1,69 @@
+"""``kit runs``: the trainings there are, and what they are asked to do."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from kit.cli import learning_options, options
+
+if TYPE_CHECKING:
+    from kit.learning.runs import Run
+
+
+@click.command()
+@click.argument("run", required=False)
+@click.option("--pause", "order", flag_value="pause", help="Let it rest, with all it knows.")
+@click.option("--go", "order", flag_value="go", help="Go on after a pause.")
+@click.option("--stop", "order", flag_value="stop", help="End it; `kit train --resume` could go on.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+@options.workspace
+def command(
+    run: str | None, order: Literal["pause", "go", "stop"] | None, as_json: bool, workspace: Path | None
+) -> None:
+    """List the training runs, show RUN, or ask it (by default the last one) to pause, go on or stop."""
+    from kit.learning.runs import all_runs, find_run
+    from kit.learning.telling import table_of
+
+    with learning_options.mistakes():
+        folder = learning_options.runs_folder(workspace)
+        if order is not None:
+            _ask(find_run(folder, run), order)
+        elif run is not None:
+            _show(find_run(folder, run), as_json)
+        elif as_json:
+            rows = [{"name": each.name, **asdict(each.summary())} for each in all_runs(folder)]
+            click.echo(json.dumps(rows, indent=2))
+        else:
+            found = all_runs(folder)
+            click.echo("\n".join(table_of(found)) if found else "No runs yet. `kit train turn` starts one.")
+
+
+def _ask(run: Run, order: Literal["pause", "go", "stop"]) -> None:
+    from kit.learning.runs import RunError
+
+    if not run.alive:
+        raise RunError(f"{run.name} is not being trained. `kit train --resume {run.name}` goes on with it.")
+    run.ask(order)
+    click.echo(f"{run.name}: {order}.")
+
+
+def _show(run: Run, as_json: bool) -> None:
+    from kit.learning.telling import line_of
+
+    config, summary = run.config(), run.summary()
+    if as_json:
+        click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **asdict(summary)}, indent=2))
+        return
+    click.echo(
+        f"{run.name}: {config.choice.title}, {config.algorithm}, preset {config.preset}, seed {config.seed}"
+    )
+    click.echo(f"{summary.state}, {summary.steps:,} steps in {summary.seconds:.1f} s  {summary.reason}")
+    for title, test in (("last test", summary.tested), ("best", summary.best)):
+        if test is not None:
+            click.echo(f"{title:10}{line_of(test).strip()}")
+    click.echo(f"in {run.folder}")

@@ -1,0 +1,202 @@
+"""``kit train``: start a training, or go on with one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from kit.cli import learning_options, options
+
+if TYPE_CHECKING:
+    from kit.learning.choice import TaskChoice
+    from kit.learning.events import EventReader
+    from kit.learning.runs import Run, RunConfig
+
+
+@click.command()
+@click.argument("task", required=False)
+@click.option("--algo", default="ppo", show_default=True, help="By which algorithm; `--list` shows all.")
+@click.option(
+    "--preset",
+    type=click.Choice(("kit", "seed")),
+    default="kit",
+    show_default=True,
+    help="Settings: the kit's own, or the dissertation's.",
+)
+@learning_options.on
+@click.option(
+    "--reward",
+    "reward_file",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Your own reward: a Python file with a function reward().",
+)
+@click.option("--algorithm-reward", "reward", help="Another one of the kit's rewards, by name.")
+@click.option("--scale", type=float, help="Multiplies the reward.")
+@click.option(
+    "--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all chance."
+)
+@click.option("--steps", type=click.IntRange(1), help="At most; by default the preset's.")
+@click.option("--worlds", type=click.IntRange(1, 100_000), help="So many at once; by default the preset's.")
+@click.option(
+    "--learning-rate", type=click.FloatRange(0, min_open=True), help="Constant; by default the preset's."
+)
+@click.option("--goal", type=click.FloatRange(0, 1), help="Stop at this success; by default the preset's.")
+@click.option("--keep-training", is_flag=True, help="To the last step, whatever tests say.")
+@click.option(
+    "--measured-to", type=click.Choice(("hull", "axle")), help="What of the robot must be near the target."
+)
+@click.option("--tell-target", is_flag=True, help="The agent is told distance and rotation to the target.")
+@click.option("--tell-arrived", is_flag=True, help="The agents are told who has arrived.")
+@click.option(
+    "--timeout-terminal", is_flag=True, help="Running out of time ends an episode like a crash (wrong)."
+)
+@click.option("--name", help="Of the run.")
+@click.option("--resume", metavar="RUN", help="Go on with a run that was stopped or killed.")
+@click.option("--detach", is_flag=True, help="Do not watch; it trains on either way.")
+@click.option("--list", "listed", is_flag=True, help="List tasks, cases, algorithms and rewards.")
+@options.workspace
+def command(
+    task: str | None,
+    algo: str,
+    preset: Literal["kit", "seed"],
+    on: str | None,
+    reward_file: Path | None,
+    reward: str | None,
+    scale: float | None,
+    seed: int,
+    steps: int | None,
+    worlds: int | None,
+    learning_rate: float | None,
+    goal: float | None,
+    keep_training: bool,
+    measured_to: Literal["hull", "axle"] | None,
+    tell_target: bool,
+    tell_arrived: bool,
+    timeout_terminal: bool,
+    name: str | None,
+    resume: str | None,
+    detach: bool,
+    listed: bool,
+    workspace: Path | None,
+) -> None:
+    """Train an agent for TASK in a process of its own, and watch it.
+
+    Ctrl-C ends the watching, not the training: `kit watch` looks again, `kit runs --stop` stops it. It also goes on
+    when the connection drops.
+
+    \b
+    kit train turn
+    kit train hallway --on doors,straight --algo dqn
+    kit train turn --reward my_reward.py --name mine
+    """
+    if listed:
+        click.echo("\n".join(_list()))
+        return
+    with learning_options.mistakes():
+        if resume is not None:
+            _go_on(resume, workspace, detach)
+            return
+        if task is None:
+            raise click.UsageError(
+                "Which task? `kit train --list` lists them; `kit train turn` is the first."
+            )
+        from kit.learning.choice import TaskChoice
+        from kit.learning.runs import RunConfig
+
+        choice = TaskChoice(
+            task,
+            learning_options.names(on),
+            measured_to=measured_to,
+            tells_target=tell_target or None,
+            tells_arrived=tell_arrived or None,
+            reward=reward,
+            scale=scale,
+            timeout_terminal=timeout_terminal or None,
+        )
+        config = RunConfig(
+            choice,
+            *(algo, preset, seed, steps, worlds, learning_rate, goal, keep_training),
+            reward_file=None if reward_file is None else str(reward_file.absolute()),
+        )
+        _begin(config, name, workspace, detach)
+
+
+def _begin(config: RunConfig, name: str | None, workspace: Path | None, detach: bool) -> None:
+    """Checks everything that can be wrong before anything is written."""
+    from kit.learning.algorithms import find_algorithm
+    from kit.learning.extra import require_learner
+    from kit.learning.runs import new_run
+    from kit.learning.student import parameters_of
+
+    _check(config.choice)
+    if find_algorithm(config.algorithm).neural:
+        require_learner()
+    if config.reward_file is not None:
+        parameters_of(Path(config.reward_file))
+    _start(new_run(learning_options.runs_folder(workspace), config, name), detach)
+
+
+def _check(choice: TaskChoice) -> None:
+    from kit.learning.courses import Courses
+
+    Courses(choice.resolve())
+
+
+def _go_on(name: str, workspace: Path | None, detach: bool) -> None:
+    from kit.learning.runs import RunError, find_run
+
+    run = find_run(learning_options.runs_folder(workspace), name)
+    run.config()
+    summary = run.summary()
+    if summary.state in ("running", "paused"):
+        run.ask("go")
+        click.echo(f"{run.name} is being trained; if it paused, it goes on.")
+        if not detach:
+            _follow(run)
+        return
+    if summary.state == "finished":
+        raise RunError(
+            f"{run.name} has finished: {summary.reason}. `kit evaluate {run.name}` tests it; start another with "
+            "another --seed."
+        )
+    _start(run, detach)
+
+
+def _start(run: Run, detach: bool) -> None:
+    from kit.learning.events import EventReader
+    from kit.learning.worker import start
+
+    reader = EventReader(run.events_file, from_now=True)
+    start(run)
+    click.echo(f"{run.name}: training in {run.folder}")
+    if detach:
+        click.echo(f"`kit watch {run.name}` shows how it goes.")
+    else:
+        _follow(run, reader)
+
+
+def _follow(run: Run, reader: EventReader | None = None) -> None:
+    from kit.cli.watch import follow
+
+    follow(run, reader=reader)
+
+
+def _list() -> list[str]:
+    from kit.learning.algorithms import ALGORITHMS
+    from kit.learning.rewards import REWARDS
+    from kit.learning.tasks import TASKS
+
+    lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in TASKS)]
+    lines.append("\nCases, by group:")
+    for task in TASKS:
+        if "-" in task.name:  # the same cases as its namesake's
+            continue
+        groups: dict[str, list[str]] = {}
+        for _, case in task.courses():
+            groups.setdefault(case.group or "(no group)", []).append(case.name)
+        lines += [f"  {task.name:12} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
+    lines.append("\nAlgorithms:")
+    lines += [f"  {row.name:20} {row.title} ({row.maker})" for row in ALGORITHMS.values()]
+    return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]

@@ -1,0 +1,71 @@
+"""``kit watch``: how a training goes, line by line."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import learning_options, options
+
+if TYPE_CHECKING:
+    from kit.learning.events import EventReader
+    from kit.learning.runs import Run
+
+LINE_S = 2.0
+"""A line of progress so often at most; tests and everything else are always told."""
+
+
+@click.command()
+@click.argument("run", required=False)
+@click.option("--once", is_flag=True, help="Tell what has happened so far, and end.")
+@options.workspace
+def command(run: str | None, once: bool, workspace: Path | None) -> None:
+    """Watch RUN, by default the last one, until it ends; Ctrl-C ends the watching, not the training."""
+    from kit.learning.runs import find_run
+
+    with learning_options.mistakes():
+        found = find_run(learning_options.runs_folder(workspace), run)
+        found.config()
+        follow(found, once=once)
+
+
+def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -> None:
+    """Prints a run's events as they come, until nobody trains it any more; exit code 1 if it failed.
+
+    ``reader``: of its events, if not all of them.
+    """
+    from kit.learning.events import Ended, EventReader, Progress
+    from kit.learning.telling import line_of
+
+    reader = reader or EventReader(run.events_file)
+    told_at, ended = -LINE_S, None
+    try:
+        while True:
+            alive = run.alive  # asked first: whatever is written before the end is read below
+            for event in reader.new():
+                if isinstance(event, Progress):
+                    if event.seconds - told_at < LINE_S:
+                        continue
+                    told_at = event.seconds
+                ended = event if isinstance(event, Ended) else None
+                click.echo(line_of(event))
+            if once or not alive:
+                break
+            time.sleep(0.1)
+    except KeyboardInterrupt:
+        click.echo(
+            f"\n{run.name} trains on. `kit watch {run.name}` looks again, `kit runs {run.name} --stop` stops it."
+        )
+        return
+    if ended is None:
+        if not once or not run.alive:
+            click.echo(
+                f"{run.name} was interrupted. `kit train --resume {run.name}` goes on from its last checkpoint."
+            )
+    elif ended.how == "failed":
+        raise SystemExit(1)
+    elif not once:
+        click.echo(f"`kit evaluate {run.name}` tests the policy that was kept.")
