@@ -22,6 +22,9 @@ from kit.world.records import Circle, Polygon
 LOOK_EVERY = 5
 """Ticks between two looks at how near the walls are: 0.05 s, in which a robot at 1 m/s goes 5 cm."""
 
+COLUMNS, ROWS = 60, 18
+"""Of the picture."""
+
 Floats = NDArray[np.float64]
 
 
@@ -127,8 +130,12 @@ class Drive:
         )
         return Body(model.name, pose, polygons, discs, robot=True)
 
-    def picture(self, columns: int = 60, rows: int = 18) -> str:
-        """Where the robot went and where it ended, in plain characters."""
+    def remark(self, check: str) -> str:
+        """What else there is to say; the check's own sentence says all."""
+        return ""
+
+    def picture(self, check: str = "") -> str:
+        """Where the robot went and where it ended, in plain characters; the same for every check."""
         if not len(self.track):
             return ""
         case = self.place.case
@@ -138,4 +145,4 @@ class Drive:
             targets=(Disc(*case.target, case.target_radius),) if case else (),
             trails=(self.track[::LOOK_EVERY, :2].copy(),),
         )
-        return "\n".join(row.rstrip() for row in plain_rows(scene, columns, rows))
+        return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))

@@ -57,7 +57,11 @@ class Evidence(Protocol):
     def steps(self) -> int: ...
     @property
     def printed(self) -> tuple[str, ...]: ...
-    def picture(self) -> str: ...
+    def remark(self, check: str) -> str:
+        """What else there is to say of it in the light of a check, in a sentence; may be empty."""
+
+    def picture(self, check: str = "") -> str:
+        """It in plain characters, in the light of a check; may be empty."""
 
 
 class Gatherer(Protocol):
@@ -179,7 +183,7 @@ class Grading:
                 for look in looks
             ),
             log="" if worst.evidence.secret else "\n".join(worst.evidence.printed),
-            replay="" if full or worst.evidence.secret else worst.evidence.picture(),
+            replay="" if full or worst.evidence.secret else worst.evidence.picture(criterion.check),
         )
 
     def _look(self, criterion: Criterion) -> tuple[_Look, ...]:
@@ -217,13 +221,14 @@ class Grading:
         if worst.measure is None:
             title = self._by_id(criterion.after or criterion.id).title
             return f"{evidence.label} does not count here: “{title}” comes first."
-        return criterion.feedback.format(
+        said = criterion.feedback.format(
             actual=check.said(worst.measure),
             full=check.said(criterion.anchors.full),
             where=evidence.label,
             passed=sum(look.share == 1.0 for look in looks),
             count=len(looks),
         )
+        return f"{said} {evidence.remark(criterion.check)}".strip()
 
     def _broken(self, criterion: Criterion, log: str) -> Test:
         return Test(

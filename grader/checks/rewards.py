@@ -1,0 +1,64 @@
+"""Checks of reward functions: what they say of single steps, of whole drives, and what they teach a perfect learner."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from grader.checks.contract import Check, NoParams, check
+from grader.examination import Exam
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    limit: float = 1e5
+    """No reward may be larger, either way."""
+
+
+@check(none=0, full=1, words=("out of bounds", "fine"), params=Bounds)
+def contract(exam: Exam, params: Bounds) -> float:
+    """The reward of a single step is larger than the task allows. Smaller numbers teach the same, and faster."""
+    return 1.0 if float(np.abs(exam.rewards).max()) <= params.limit else 0.0
+
+
+@check(none=0, full=1, words=("changes", "always the same"))
+def pure(exam: Exam, params: NoParams) -> float:
+    """The same step does not always get the same reward. A reward may depend on nothing but what it is given: no
+    counting, no remembering, no chance, no clock."""
+    return 1.0 if exam.is_pure else 0.0
+
+
+@check(none=0.9, full=0.995, unit="%")
+def symmetric(exam: Exam, params: NoParams) -> float:
+    """Mirror or turn the whole world and the reward is another one; only {actual} of the steps keep theirs. The robot
+    would learn to prefer a side."""
+    return exam.symmetry
+
+
+@check(none=0.4, full=1, unit="%")
+def ordered(exam: Exam, params: NoParams) -> float:
+    """Better drives must be paid more, all in all; that holds for {actual} of the comparisons."""
+    return float(np.mean([pair.is_right for pair in exam.pairs])) if exam.pairs else float("nan")
+
+
+@check(none=0.5, full=1, unit="%")
+def loops(exam: Exam, params: NoParams) -> float:
+    """Going round in a loop must not pay as well as arriving; that holds for {actual} of the loops that were tried."""
+    return float(np.mean([not loop.pays for loop in exam.loops])) if exam.loops else float("nan")
+
+
+@check(none=0.5, full=0.999, unit="%")
+def planned(exam: Exam, params: NoParams) -> float:
+    """A robot that does exactly what this reward asks for reaches the target in {actual} of all cases. The picture
+    shows what it does instead: that is what your reward pays best."""
+    return exam.judged.success
+
+
+CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
+    {each.name: each for each in (contract, pure, symmetric, ordered, loops, planned)}
+)
+"""Every check of a reward, by name."""

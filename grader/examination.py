@@ -1,0 +1,199 @@
+"""Evidence about a reward: every transition of the model evaluated in the student's process, and what follows."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import Final, Self
+
+import numpy as np
+
+from grader import behaviours, planning
+from grader.assignment import Assignment, Criterion
+from grader.model import NAMES, Floats, Model, build
+from grader.symmetry import Turned, mirrored, rotated
+from grader.transitions import Steps
+from kit.host.batch import StudentFunctions
+from kit.host.confine import Level
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.wire import printable
+
+FUNCTION: Final = "reward"
+SHUFFLE: Final = 1234
+"""The seed of the order in which the same transitions are asked for a second time."""
+MOST_SAMPLES: Final = 4000
+"""Transitions that the mirrored and the rotated task are compared on."""
+
+
+class Exam:
+    """One reward function. What is asked of it first is asked of it in its process; it is asked once."""
+
+    label = "the reward"
+    secret = False
+
+    def __init__(self, file: Path, assignment: Assignment, level: Level) -> None:
+        assert assignment.grid is not None
+        self.model: Model = build(assignment.grid)
+        self.level = level
+        self.failure: Failure | None = None
+        self.printed: tuple[str, ...] = ()
+        self.steps = 0
+        self._file = file
+        self._limits = assignment.limits
+        self._names: tuple[str, ...] = ()
+        try:
+            self._names = signature(file)
+            self.rewards: Floats = self._asked(Steps.all(self.model)).reshape(self.model.states, -1)
+        except GuestError as error:
+            self.failure = error.failure
+
+    @property
+    def outcome(self) -> str:
+        return "examined" if self.failure is None else f"stopped ({self.failure.kind.value})"
+
+    @cached_property
+    def plan(self) -> planning.Plan:
+        return planning.plan(self.model, self.rewards)
+
+    @cached_property
+    def judged(self) -> planning.Outcome:
+        return planning.judge(self.plan)
+
+    @cached_property
+    def is_pure(self) -> bool:
+        """Whether the same transitions give the same rewards to the bit: in another order, and in a fresh process."""
+        steps = Steps.all(self.model)
+        order = np.random.default_rng(SHUFFLE).permutation(len(steps))
+        shuffled = Steps(self.model, steps.states[order], steps.moves[order])
+        try:
+            with self._open() as functions:
+                first = self._call(functions, shuffled)
+                second = self._call(functions, steps)
+        except GuestError:
+            return False
+        known = self.rewards.reshape(-1)
+        return bool(np.array_equal(first, known[order]) and np.array_equal(second, known))
+
+    @cached_property
+    def symmetry(self) -> float:
+        """The share of transitions whose reward stays the same when the whole task is mirrored and when it is turned."""
+        everything = Steps.all(self.model)
+        pick = np.random.default_rng(SHUFFLE).permutation(len(everything))[:MOST_SAMPLES]
+        sample = Steps(self.model, everything.states[pick], everything.moves[pick])
+        known = self.rewards.reshape(-1)[pick]
+        same = np.ones(len(sample), dtype=np.bool_)
+        turns: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
+        try:
+            with self._open() as functions:
+                for turned in turns:
+                    same &= np.isclose(self._call(functions, turned), known, rtol=1e-6, atol=1e-9)
+        except GuestError:
+            return 0.0
+        return float(same.mean())
+
+    @cached_property
+    def pairs(self) -> tuple[behaviours.Pair, ...]:
+        """Behaviours compared by what the reward pays them in all."""
+        return behaviours.pairs(self.model, self.rewards)
+
+    @cached_property
+    def loops(self) -> tuple[behaviours.Loop, ...]:
+        return behaviours.loops(self.model, self.rewards)
+
+    def remark(self, check: str) -> str:
+        """What else there is to say in the light of a check."""
+        if check == "ordered":
+            wrong = next((pair for pair in self.pairs if not pair.is_right), None)
+            return "" if wrong is None else str(wrong)
+        if check == "loops":
+            paid = next((loop for loop in self.loops if loop.pays), None)
+            return "" if paid is None else str(paid)
+        return ""
+
+    def picture(self, check: str = "") -> str:
+        """What a robot would do that has learnt this reward perfectly, where it does not do what was meant."""
+        if self.failure is not None or self.judged.exploit is None:
+            return ""
+        way = planning.follow(self.plan, self.judged.exploit, self.model.task.max_steps)
+        return planning.picture(self.model, way)
+
+    def _asked(self, steps: Steps) -> Floats:
+        with self._open() as functions:
+            try:
+                return self._call(functions, steps)
+            finally:
+                self.printed = tuple(printable(line.text) for line in functions.take_output().lines)
+
+    def _open(self) -> StudentFunctions:
+        return StudentFunctions(self._file, limits=self._limits, level=self.level)
+
+    def _call(self, functions: StudentFunctions, steps: Steps) -> Floats:
+        self.steps += len(steps)
+        if not self._names:
+            return np.array(functions.call(FUNCTION, [{} for _ in range(len(steps))]), dtype=np.float64)
+        return np.array(functions.call_columns(FUNCTION, steps.columns(self._names)), dtype=np.float64)
+
+
+class Examination:
+    """The one piece of evidence that there is of a reward."""
+
+    def __init__(self, assignment: Assignment, file: Path, *, level: Level, may_fall: bool) -> None:
+        self.level = level
+        while True:
+            self._exam = Exam(file, assignment, self.level)
+            failure = self._exam.failure
+            if (
+                failure is None
+                or failure.kind is not FailureKind.CONFINEMENT
+                or not may_fall
+                or self.level == 0
+            ):
+                break
+            self.level = Level(self.level - 1)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Every process has ended already."""
+
+    def evidence(self, criterion: Criterion) -> Sequence[Exam]:
+        return [self._exam]
+
+    def all(self) -> Sequence[Exam]:
+        return [self._exam]
+
+
+def signature(file: Path) -> tuple[str, ...]:
+    """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        line = error.lineno if isinstance(error, SyntaxError) else None
+        raise _wrong(file, f"this is not Python: {type(error).__name__}", line, FailureKind.SYNTAX) from None
+    found = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == FUNCTION]
+    if not found:
+        raise _wrong(file, f"there is no function {FUNCTION}() in it.", None)
+    node = found[-1]
+    arguments = node.args
+    if arguments.vararg or arguments.kwarg or arguments.posonlyargs:
+        raise _wrong(file, f"name what {FUNCTION}() needs one by one, without * and /.", node.lineno)
+    names = tuple(argument.arg for argument in (*arguments.args, *arguments.kwonlyargs))
+    for name in names:
+        if name not in NAMES:
+            near = get_close_matches(name, NAMES, n=1)
+            hint = f"Did you mean {near[0]}?" if near else f"There is: {', '.join(NAMES)}."
+            raise _wrong(
+                file, f"{FUNCTION}() asks for {printable(name)[:40]}, which there is not. {hint}", node.lineno
+            )
+    return names
+
+
+def _wrong(file: Path, message: str, line: int | None, kind: FailureKind = FailureKind.IMPORT) -> GuestError:
+    return GuestError(Failure(kind, message, file.name, line))

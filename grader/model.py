@@ -1,0 +1,180 @@
+"""A small model of a driving task, on which the best behaviour under any reward can be computed exactly.
+
+Square cells, eight headings, four moves: forward, back, a turn to the left, a turn to the right. Driving into a wall
+is a collision and ends the episode, entering the target's cell ends it well. The last move is part of the state, for
+rewards may depend on it. Every transition there is, is evaluated once, in one batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grader.assignment import GridTask
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+CELL: Final = 0.25
+"""m"""
+HEADINGS: Final = 8
+MOVES: Final = ("forward", "back", "left", "right")
+FORWARD, BACK, LEFT, RIGHT = range(4)
+NO_MOVE: Final = 4
+"""The last move of a state in which an episode begins."""
+LASTS: Final = len(MOVES) + 1
+STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
+"""By heading, counter-clockwise from x: the next cell (columns, rows up)."""
+LONGEST_RANGE: Final = 10.0
+"""m, to which the model looks ahead."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """All states and transitions of one task. A state is a number: ``(cell * HEADINGS + heading) * LASTS + last``."""
+
+    task: GridTask
+    cells: Integers
+    """(n, 2) column and row (from below) of every cell of floor."""
+    target: int
+    """The number of the target's cell."""
+    next: Integers
+    """(states, moves) the state after; the same place after a collision."""
+    hit: Flags
+    """(states, moves) whether the move runs into a wall."""
+    reached: Flags
+    """(states, moves) whether the move enters the target."""
+
+    @property
+    def states(self) -> int:
+        return len(self.next)
+
+    @property
+    def done(self) -> Flags:
+        """(states, moves) whether the episode ends."""
+        return self.hit | self.reached
+
+    @property
+    def starts(self) -> Integers:
+        """Every state in which an episode may begin: not in the target, no move before."""
+        states: Integers = np.arange(self.states)
+        begin: Integers = states[(self.cell_of(states) != self.target) & (states % LASTS == NO_MOVE)]
+        return begin
+
+    def cell_of(self, states: Integers) -> Integers:
+        return states // (HEADINGS * LASTS)
+
+    def heading_of(self, states: Integers) -> Integers:
+        return states // LASTS % HEADINGS
+
+    def pose(self, states: Integers) -> Floats:
+        """(..., 3) ``x y theta`` [m, m, rad]"""
+        middle = (self.cells[self.cell_of(states)] + 0.5) * CELL
+        return np.concatenate([middle, (self.heading_of(states) * (np.pi / 4))[..., None]], axis=-1)
+
+    @cached_property
+    def ahead(self) -> Floats:
+        """(cells, HEADINGS) room ahead [m]: from a cell's middle to the nearest wall's edge."""
+        floor = {tuple(cell): number for number, cell in enumerate(self.cells.tolist())}
+        room = np.zeros((len(self.cells), HEADINGS))
+        for number, (column, row) in enumerate(self.cells.tolist()):
+            for heading, (dx, dy) in enumerate(STEPS):
+                free = 0
+                while (column + (free + 1) * dx, row + (free + 1) * dy) in floor:
+                    free += 1
+                room[number, heading] = min(LONGEST_RANGE, (free + 0.5) * CELL * float(np.hypot(dx, dy)))
+        return room
+
+    @cached_property
+    def to_go(self) -> Floats:
+        """(cells) the shortest way to the target [m] that passes no wall; infinite where there is none."""
+        length = np.full(len(self.cells), np.inf)
+        length[self.target] = 0.0
+        number = {tuple(cell): index for index, cell in enumerate(self.cells.tolist())}
+        waiting = [self.target]
+        while waiting:
+            at = waiting.pop(0)
+            column, row = self.cells[at].tolist()
+            for dx, dy in STEPS:
+                beside = number.get((column + dx, row + dy))
+                far = length[at] + CELL * float(np.hypot(dx, dy))
+                if beside is not None and far < length[beside] - 1e-9:
+                    length[beside] = far
+                    waiting.append(beside)
+        return length
+
+    def state_at(self, column: int, row: int, heading: int) -> int:
+        """Where an episode begins. LookupError if there is no floor."""
+        found = np.flatnonzero((self.cells == (column, row)).all(axis=1))
+        if not len(found):
+            raise LookupError(f"no floor at {column}, {row}")
+        return (int(found[0]) * HEADINGS + heading) * LASTS + NO_MOVE
+
+
+def build(task: GridTask) -> Model:
+    """The model of a map drawn in characters."""
+    rows = task.rows[::-1]
+    cells = [(x, y) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign != "#"]
+    number = {cell: index for index, cell in enumerate(cells)}
+    target = next(index for (x, y), index in number.items() if rows[y][x] == "G")
+    states = len(cells) * HEADINGS * LASTS
+    after = np.zeros((states, len(MOVES)), dtype=np.int64)
+    hit = np.zeros((states, len(MOVES)), dtype=np.bool_)
+    for cell, (x, y) in enumerate(cells):
+        for heading in range(HEADINGS):
+            first = (cell * HEADINGS + heading) * LASTS
+            for move, (to, turned, is_hit) in enumerate(_moves(number, x, y, heading)):
+                after[first : first + LASTS, move] = (to * HEADINGS + turned) * LASTS + move
+                hit[first : first + LASTS, move] = is_hit
+    reached = (after // (HEADINGS * LASTS) == target) & (np.arange(states) // (HEADINGS * LASTS) != target)[
+        :, None
+    ]
+    return Model(task, np.array(cells, dtype=np.int64), target, after, hit, reached & ~hit)
+
+
+def _moves(
+    number: Mapping[tuple[int, int], int], x: int, y: int, heading: int
+) -> Sequence[tuple[int, int, bool]]:
+    """For each move: the cell and heading after it, and whether it is a collision."""
+    here = number[x, y]
+    dx, dy = STEPS[heading]
+    driven = []
+    for sign in (1, -1):
+        # Between two walls that touch at a corner nothing passes.
+        way = ((x + sign * dx, y + sign * dy), (x + sign * dx, y), (x, y + sign * dy))
+        free = all(cell in number for cell in way)
+        driven.append((number[way[0]] if free else here, heading, not free))
+    return (*driven, (here, (heading + 1) % HEADINGS, False), (here, (heading - 1) % HEADINGS, False))
+
+
+NAMES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "x": "where the robot is [m]",
+        "y": "where the robot is [m]",
+        "heading": "the robot's [rad], counter-clockwise from x",
+        "previous_x": "before the step [m]",
+        "previous_y": "before the step [m]",
+        "previous_heading": "before the step [rad]",
+        "target_x": "[m]",
+        "target_y": "[m]",
+        "distance": "to the target, as the crow flies [m]",
+        "previous_distance": "before the step [m]",
+        "to_go": "to the target, along the shortest way [m]",
+        "previous_to_go": "before the step [m]",
+        "bearing": "of the target from straight ahead, to the left positive [rad]",
+        "previous_bearing": "before the step [rad]",
+        "front": "room straight ahead [m]",
+        "move": "what the robot did: forward, back, left or right",
+        "previous_move": "what it did the step before; empty in the first",
+        "collided": "whether it ran into a wall, which ends the episode",
+        "reached": "whether it is in the target, which ends the episode",
+    }
+)
+"""What a student's ``reward`` may ask for by its parameters' names, and what it gets."""

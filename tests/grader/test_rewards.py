@@ -1,0 +1,251 @@
+"""Rewards judged by what they ask for: nine of the literature, the dissertation's, and contracts that are broken."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grader import planning
+from grader.assignment import Assignment, GridTask, Kind
+from grader.examination import Exam
+from grader.kit_rewards import rewards_of
+from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NAMES, NO_MOVE, Model, build
+from grader.symmetry import mirrored, rotated
+from grader.transitions import COLUMNS, Steps
+from kit.host.confine import Level
+from kit.host.failure import FailureKind
+from kit.host.limits import GRADER
+from kit.learning.rewards import ALGORITHM_1, ALGORITHM_3, Reward
+
+ROOM = GridTask(
+    (
+        "###############",
+        *("#.............#",) * 3,
+        "#..........G..#",
+        *("#.............#",) * 2,
+        "#....######...#",
+        *("#.............#",) * 6,
+        "###############",
+    ),
+    discount=0.98,
+    max_steps=200,
+)
+SMALL = GridTask(("########", "#......#", "#.##...#", "#....G.#", "########"), discount=0.98, max_steps=80)
+
+HALLS = (
+    ("#######", *("#.....#",) * 2, "#..G..#", *("#.....#",) * 7, "#######"),
+    ("############", *("#..........#",) * 2, "#........G.#", *("#....#######",) * 5, "############"),
+)
+"""Of the width for which Algorithm 1 was made: in a wide room, looking at much room pays better than arriving."""
+
+REWARDS = {
+    "sparse": ("reached, collided", "return 10.0 * reached - 10.0 * collided - 0.1"),
+    "shaped": (
+        "reached, collided, distance, previous_distance",
+        "return 10.0 * reached - 10.0 * collided - 0.1 + previous_distance - 0.98 * distance * (not (reached or collided))",
+    ),
+    "progress": (
+        "reached, collided, to_go, previous_to_go",
+        "return 10.0 * reached - 10.0 * collided + previous_to_go - to_go - 0.01",
+    ),
+    "one-sided": (
+        "reached, distance, previous_distance, collided",
+        "return max(0.0, previous_distance - distance) * 10 + 1.0 * reached - collided",
+    ),
+    "closeness": ("distance, collided", "return 1.0 / (1.0 + distance) - collided"),
+    "alive": ("reached, collided", "return 0.0 if collided else 10.0 if reached else 1.0"),
+    "moving": (
+        "move, reached, collided",
+        "return (0.5 if move in ('forward', 'back') else 0.0) + 5.0 * reached - 5.0 * collided",
+    ),
+    "turning": (
+        "move, reached, collided",
+        "return (0.5 if move in ('left', 'right') else 0.0) + 5.0 * reached - 5.0 * collided",
+    ),
+    "sign": ("distance, previous_distance, collided", "return distance - previous_distance - collided"),
+}
+GOOD = ("sparse", "shaped", "progress")
+
+
+def source(name: str) -> str:
+    names, body = REWARDS[name]
+    return f"def reward({names}):\n{textwrap.indent(body, '    ')}\n"
+
+
+@cache
+def room(task: GridTask = ROOM) -> Model:
+    return build(task)
+
+
+def examine(folder: Path, text: str, task: GridTask = SMALL) -> Exam:
+    file = folder / "reward.py"
+    file.write_text(textwrap.dedent(text))
+    assignment = Assignment(
+        folder, "r", "R", Kind.REWARD, "reward.py", Level.LIMITED, GRADER, (), (), task, "v", False
+    )
+    return Exam(file, assignment, Level.LIMITED)
+
+
+@pytest.mark.parametrize("name", REWARDS)
+def test_nine_rewards_are_judged_by_what_they_ask_for(tmp_path: Path, name: str) -> None:
+    exam = examine(tmp_path, source(name), ROOM)
+    assert exam.failure is None
+    if name in GOOD:
+        assert exam.judged.success == pytest.approx(1.0)
+        assert exam.judged.exploit is None
+        assert exam.picture() == ""
+        assert exam.judged.steps < 20
+    else:
+        assert exam.judged.success < 0.5
+        shown = exam.picture()
+        assert "S start" in shown
+        assert "G target" in shown
+
+
+@pytest.mark.parametrize("name", ["one-sided", "closeness", "alive", "moving", "turning"])
+def test_the_exploit_is_a_way_that_never_arrives(tmp_path: Path, name: str) -> None:
+    exam = examine(tmp_path, source(name), ROOM)
+    assert exam.judged.exploit is not None
+    way = planning.follow(exam.plan, exam.judged.exploit, ROOM.max_steps)
+    assert len(way) == ROOM.max_steps + 1
+    assert exam.model.target not in exam.model.cell_of(way)
+
+
+@pytest.mark.parametrize("rows", HALLS, ids=["hall", "turn"])
+@pytest.mark.parametrize("reward", [ALGORITHM_1, ALGORITHM_3], ids=lambda each: each.name)
+def test_the_seeds_own_algorithms_teach_what_they_should(reward: Reward, rows: tuple[str, ...]) -> None:
+    model = build(GridTask(rows, 0.98, 200))
+    outcome = planning.judge(planning.plan(model, rewards_of(reward, model)))
+    assert outcome.success == pytest.approx(1.0)
+
+
+def test_a_reward_that_says_nothing_does_not_pass() -> None:
+    """Every move is as good as every other one; some luck does not make it a reward."""
+    model = room()
+    outcome = planning.judge(planning.plan(model, np.zeros((model.states, 4))))
+    assert outcome.success < 0.5
+
+
+def test_values_satisfy_bellmans_equation() -> None:
+    model = room(SMALL)
+    rewards = np.random.default_rng(3).normal(size=(model.states, 4))
+    made = planning.plan(model, rewards)
+    ahead = made.values.max(axis=1)[model.next] * ~model.done
+    assert made.values == pytest.approx(rewards + SMALL.discount * ahead, abs=1e-7)
+
+
+def test_the_model_drives_as_the_map_says() -> None:
+    model = room(SMALL)
+    east = model.state_at(1, 3, 0)
+    assert model.cells[model.cell_of(model.next[east, FORWARD])].tolist() == [2, 3]
+    assert model.heading_of(model.next[east, LEFT]) == 1
+    assert model.next[east, LEFT] % LASTS == LEFT
+    # Between two walls that touch at a corner nothing passes.
+    assert model.hit[model.state_at(1, 3, HEADINGS - 1), FORWARD]
+    beside = model.state_at(4, 1, 0)
+    assert model.reached[beside, FORWARD]
+    assert not model.hit[beside, FORWARD]
+    assert (model.starts % LASTS == NO_MOVE).all()
+
+
+def test_every_name_a_reward_may_ask_for_has_a_column() -> None:
+    assert list(COLUMNS) == list(NAMES)
+    steps = Steps.all(room(SMALL))
+    for name, column in steps.columns(tuple(NAMES)).items():
+        assert len(column) == len(steps), name
+
+
+@pytest.mark.parametrize("turned", [mirrored, rotated])
+def test_a_turned_task_is_the_same_task(turned: Callable[[Steps], Steps]) -> None:
+    steps = Steps.all(room(SMALL))
+    other = turned(steps)
+    assert np.array_equal(other.hit, steps.hit)
+    assert np.array_equal(other.reached, steps.reached)
+    for name in ("distance", "to_go", "front"):
+        assert np.allclose(COLUMNS[name](other), COLUMNS[name](steps)), name
+
+
+@pytest.mark.parametrize(
+    ("body", "least", "most"), [("-abs(bearing)", 0.999, 1), ("bearing", 0, 0.6), ("x", 0, 0.2)]
+)
+def test_symmetry(tmp_path: Path, body: str, least: float, most: float) -> None:
+    exam = examine(tmp_path, f"def reward(bearing, x): return {body}")
+    assert least <= exam.symmetry <= most
+
+
+@pytest.mark.parametrize(
+    ("text", "pure"),
+    [
+        ("def reward(distance): return -distance", True),
+        ("import random\ndef reward(distance): return random.random()", False),
+        ("n = 0\ndef reward(distance):\n    global n\n    n += 1\n    return -distance - 1e-9 * n", False),
+        (
+            "last = [0.0]\ndef reward(distance):\n    d = distance - last[0]\n    last[0] = distance\n    return d",
+            False,
+        ),
+        ("import time\ndef reward(distance): return time.time()", False),
+        ("def reward(distance, seen=None): return 0.0", None),
+    ],
+)
+def test_a_reward_has_no_memory_and_no_chance(tmp_path: Path, text: str, pure: bool | None) -> None:
+    exam = examine(tmp_path, text)
+    if pure is None:
+        assert exam.failure is not None
+    else:
+        assert exam.is_pure is pure
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "said"),
+    [
+        ("def reword(distance): return 1", FailureKind.IMPORT, "no function reward"),
+        ("def reward(*distance): return 1", FailureKind.IMPORT, "one by one"),
+        ("def reward(distanse): return 1", FailureKind.IMPORT, "Did you mean distance"),
+        ("def reward(distance: return 1", FailureKind.SYNTAX, "not Python"),
+        ("(" * 5000, FailureKind.SYNTAX, "not Python"),
+        ("-" * 100_000 + "1", FailureKind.SYNTAX, "not Python"),
+        ("def reward(distance): return float('nan')", FailureKind.EXCEPTION, "finite"),
+        ("def reward(distance): return 1e999", FailureKind.EXCEPTION, "finite"),
+        ("def reward(distance): return True", FailureKind.EXCEPTION, "finite"),
+        ("def reward(distance): pass", FailureKind.EXCEPTION, "return"),
+        ("def reward(distance): return 1 / (distance - distance)", FailureKind.EXCEPTION, "division"),
+    ],
+)
+def test_a_broken_contract_is_told_in_words(tmp_path: Path, text: str, kind: FailureKind, said: str) -> None:
+    exam = examine(tmp_path, text)
+    assert exam.failure is not None
+    assert exam.failure.kind is kind
+    assert said in exam.failure.message
+
+
+def test_better_drives_are_paid_more(tmp_path: Path) -> None:
+    assert all(pair.is_right for pair in examine(tmp_path, source("progress"), ROOM).pairs)
+    wrong = examine(tmp_path, source("alive"), ROOM)
+    assert not all(pair.is_right for pair in wrong.pairs)
+    assert "spinning" in wrong.remark("ordered") or "turning" in wrong.remark("ordered")
+
+
+@pytest.mark.parametrize(
+    ("name", "loop"),
+    [("one-sided", "forward and back"), ("turning", "spinning"), ("moving", "forward and back")],
+)
+def test_loops_that_pay_are_named(tmp_path: Path, name: str, loop: str) -> None:
+    exam = examine(tmp_path, source(name), ROOM)
+    assert any(loop in each.name for each in exam.loops if each.pays)
+    assert "for ever is paid" in exam.remark("loops")
+    good = examine(tmp_path, source("shaped"), ROOM)
+    assert not any(each.pays for each in good.loops)
+
+
+def test_a_longer_horizon_changes_what_pays() -> None:
+    """Why the discount belongs to the task: staying alive pays 50 at 0.98 and 2 at 0.5."""
+    short = replace(ROOM, discount=0.5)
+    model = build(short)
+    rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
+    assert planning.judge(planning.plan(model, rewards)).success == pytest.approx(1.0)
