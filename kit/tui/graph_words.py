@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 from kit.msg.message import Message
@@ -49,7 +50,7 @@ def about(spot: Spot | None, heard: Heard, width: int, *, full: bool = False) ->
     name = spot.name.removesuffix("()")
     if name == spot.name:
         topic = next((topic for topic in heard.state.topics if topic.name == name), None)
-        head = () if topic is None else tuple(_of_topic(topic, heard.said, full))
+        head = () if topic is None else tuple(_of_topic(topic, heard.said, width, full))
     else:
         service = next((service for service in heard.state.services if service.name == name), None)
         head = () if service is None else tuple(_of_service(service))
@@ -67,10 +68,11 @@ def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
     )
 
 
-def _of_topic(topic: TopicState, said: Mapping[Flow, Said], full: bool) -> Iterator[Row]:
+def _of_topic(topic: TopicState, said: Mapping[Flow, Said], width: int, full: bool) -> Iterator[Row]:
     yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
     for mismatch in topic.mismatches:
-        yield row((f"nothing arrives: {mismatch.why}", "bad"))
+        for line in textwrap.wrap(f"nothing arrives: {mismatch.why}", width):
+            yield row((line, "bad"))
     if not full:
         yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
         return

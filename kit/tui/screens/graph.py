@@ -54,7 +54,7 @@ class GraphScreen(StillScreen):
         Binding("pageup", "along(-10)", show=False),
         Binding("pagedown", "along(10)", show=False),
         Binding("enter", "details", show=False),
-        Binding("slash", "narrow", show=False),
+        Binding("slash", "narrow", show=False, priority=True),
         Binding("a", "everything", show=False),
         Binding("t", "tidy", show=False),
         Binding("p", "pause", show=False),
@@ -68,9 +68,7 @@ class GraphScreen(StillScreen):
     GraphScreen #heading, GraphScreen #keys {{ height: 1; }}
     GraphScreen FrameView {{ height: 1fr; }}
     GraphScreen #about {{ height: {ABOUT_ROWS}; }}
-    GraphScreen Input, GraphScreen Input:focus {{ display: none; border: none; padding: 0; height: 1; background: transparent; }}
-    GraphScreen.-narrowing Input {{ display: block; }}
-    GraphScreen.-narrowing #keys {{ display: none; }}
+    GraphScreen Input, GraphScreen Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
     GraphScreen.-low #about {{ height: 3; }}
     GraphScreen.-details FrameView {{ display: none; }}
     GraphScreen.-details #about {{ height: 1fr; }}
@@ -79,6 +77,7 @@ class GraphScreen(StillScreen):
 
     def __init__(self, look: Look, behind: Running, title: str) -> None:
         super().__init__()
+        self.look = look
         self._behind = behind
         self._title = title
         self._rule = "-" if look.terminal.glyphs.value == "ascii" else "─"
@@ -102,6 +101,11 @@ class GraphScreen(StillScreen):
         self._is_stale = False
         """Whether there is something newer to read."""
 
+    @property
+    def is_moving(self) -> bool:
+        """Whether a dot is under way, or something waits to be read."""
+        return self._clock is not None
+
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield self._picture
@@ -113,6 +117,7 @@ class GraphScreen(StillScreen):
         self._rows("heading").show([row((f"listening to {self._title} ...", "dim"))])
         self._rows("keys").show([GRAPH_KEYS])
         self.query_one(Input).cursor_blink = False
+        self._ask_for_name(False)
         self._behind.listen(self._listening)
 
     def on_unmount(self) -> None:
@@ -236,17 +241,25 @@ class GraphScreen(StillScreen):
         self._scrolled = 0
         self.call_after_refresh(self._show_all)
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
+        return action != "narrow" or self.focused is None
+
     def action_narrow(self) -> None:
-        self.add_class("-narrowing")
-        self.query_one(Input).focus()
+        self._ask_for_name(True)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         self._narrowed = event.value
         self._anew()
 
     def on_input_submitted(self) -> None:
-        self.remove_class("-narrowing")
-        self.set_focus(None)
+        self._ask_for_name(False)
+
+    def _ask_for_name(self, asked: bool) -> None:
+        """The field in place of the keys, or the keys. At once: the next letters may be here already."""
+        field = self.query_one(Input)
+        field.display, self._rows("keys").display = asked, not asked
+        self.set_focus(field if asked else None)
 
     def action_everything(self) -> None:
         self._everything = not self._everything
@@ -279,9 +292,9 @@ class GraphScreen(StillScreen):
 
     def action_back(self) -> None:
         """One thing at a time: out of the field, the details, the narrowing, the screen."""
-        if self.has_class("-narrowing"):
+        if self.focused is not None:
             self.query_one(Input).value = ""
-            self.on_input_submitted()
+            self._ask_for_name(False)
         elif self._shows_details:
             self.action_details()
         elif self._narrowed:

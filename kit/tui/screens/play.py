@@ -13,7 +13,6 @@ from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.look import Look
-from kit.tui.screens.graph import GraphScreen
 from kit.tui.screens.picker import Choice, Picker
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
@@ -76,6 +75,8 @@ class PlayScreen(WatchScreen):
         self.behind.drive_with(controller)
 
     def action_nodes(self) -> None:
+        from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
+
         if self.view is not None:
             self.app.push_screen(GraphScreen(self._look, self.behind, self.place_name))
 

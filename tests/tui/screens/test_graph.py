@@ -1,0 +1,289 @@
+"""The graph screen over a graph that the test drives: what is chosen, found, hidden, opened; and what it costs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+
+from kit.msg.geometry_msgs import Twist
+from kit.msg.sensor_msgs import LaserScan
+from kit.msg.std_srvs import Trigger
+from kit.ros.graph import Graph
+from kit.ros.qos import qos_profile_sensor_data
+from kit.tui.look import Look
+from kit.tui.screens.graph import CALM, FRAME, GraphScreen
+from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+
+MS = 1_000_000
+
+
+class Behind:
+    """A world in the test's own thread: a robot, a driver that hears it, and one that asks for too much."""
+
+    def __init__(self) -> None:
+        self.graph = Graph(log_sink=lambda record: None)
+        self.paused = False
+        self.listener: Callable[[Any], object] | None = None
+        robot, driver = self.graph.create_node("robot"), self.graph.create_node("driver")
+        self.scan = robot.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+        robot.create_subscription(Twist, "cmd_vel", lambda command: None, 10)
+        robot.create_service(Trigger, "ring", lambda request, response: response)
+        driver.create_subscription(LaserScan, "scan", lambda scan: None, qos_profile_sensor_data)
+        self.cmd_vel = driver.create_publisher(Twist, "cmd_vel", 10)
+        self.ring = driver.create_client(Trigger, "ring")
+        self.graph.run_due()
+
+    def listen(self, listener: Callable[[Any], object] | None) -> None:
+        self.listener = listener
+        self.show()
+
+    def wish(self, wish: Callable[[Any], object]) -> None:
+        wish(self.session)
+
+    def set_paused(self, paused: bool) -> None:
+        self.paused = paused
+        self.show()
+
+    def step(self) -> None:
+        self.tick()
+
+    @property
+    def session(self) -> Any:
+        return SimpleNamespace(graph=self.graph, runner=SimpleNamespace(paused=self.paused))
+
+    def show(self) -> None:
+        if self.listener is not None:
+            self.listener(self.session)
+
+    def tick(self, speed: float = 0.5) -> None:
+        """A tenth of a second in which everybody says something."""
+        self.graph.advance(self.graph.now_ns + 100 * MS)
+        self.scan.publish(LaserScan(ranges=[1.0, 2.0]))
+        command = Twist()
+        command.linear.x = speed
+        self.cmd_vel.publish(command)
+        self.graph.run_due()
+        self.show()
+
+
+Scene = Callable[[GraphScreen, Behind, Pilot[None]], Awaitable[None]]
+
+
+def play(scene: Scene, *, glyphs: str = "braille", size: tuple[int, int] = (80, 24)) -> None:
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalWishes(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+
+    async def run() -> None:
+        app: App[None] = App()
+        async with app.run_test(size=size) as pilot:
+            behind = Behind()
+            screen = GraphScreen(Look.of(terminal), behind, "test")  # type: ignore[arg-type]  # all it uses
+            await app.push_screen(screen)
+            await settled(screen)
+            await scene(screen, behind, pilot)
+
+    asyncio.run(run())
+
+
+async def settled(screen: GraphScreen) -> None:
+    """Waits until nothing moves any more and all is said."""
+    async with asyncio.timeout(10):
+        await asyncio.sleep(0.05)
+        while screen.is_moving:
+            await asyncio.sleep(0.02)
+    await asyncio.sleep(0.05)
+
+
+def rows(screen: GraphScreen) -> list[str]:
+    return [
+        "".join(segment.text for segment in strip).rstrip()
+        for strip in screen.app.screen._compositor.render_strips()
+    ]
+
+
+def text(screen: GraphScreen) -> str:
+    return "\n".join(rows(screen))
+
+
+def test_the_screen_at_eighty_columns() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        for _ in range(5):
+            behind.tick()
+        await settled(screen)
+        await asyncio.sleep(CALM)
+        behind.show()
+        await settled(screen)
+        assert rows(screen)[:4] == [
+            "test  2 nodes  2 topics  1 service  14 hidden",
+            " /robot ━━━━━━━━━━━━━━━━━10 Hz━▶ [/scan]━━━━━━━━━━━━━━━━━━━━▶  /driver",
+            " /driver ─────────┬──────10 Hz─▶  /cmd_vel ────────────────┬▶  /robot",
+            "                  └╌╌╌╌╌╌╌╌╌╌╌╌▶  /ring() ╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌┘",
+        ]
+        assert rows(screen)[-6:] == [
+            "── /scan  sensor_msgs/msg/LaserScan ────────────────────────────────────────────",
+            "from /robot  to /driver",
+            "header: {stamp: {sec: 0, nanosec: 0}, frame_id: ''}",
+            "angle_min: 0.0",
+            "angle_max: 0.0",
+            "arrows choose Enter message / narrow a all t tidy p pause . step ? help Esc back",
+        ]
+
+    play(scene)
+
+
+def test_a_choice_shows_its_newest_message() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        await pilot.press("down")
+        assert "/cmd_vel  geometry_msgs/msg/Twist" in text(screen)
+        assert "no message yet" in text(screen)
+        behind.show()
+        behind.tick(0.25)
+        await settled(screen)
+        assert "linear: {x: 0.25, y: 0.0, z: 0.0}" in text(screen)
+        await pilot.press("enter")
+        await settled(screen)
+        assert "  x: 0.25" in text(screen)
+        assert "RELIABLE VOLATILE depth 10" in text(screen)
+        assert "/scan" not in text(screen)
+        await pilot.press("escape")
+        await settled(screen)
+        assert "/scan" in text(screen)
+
+    play(scene)
+
+
+def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        behind.tick()
+        await pilot.pause()
+        seen = set()
+        async with asyncio.timeout(10):
+            while screen.is_moving:
+                seen.add(text(screen).count("●"))
+                await asyncio.sleep(FRAME / 4)
+        assert max(seen) == 2
+        assert "●" not in text(screen)
+
+    play(scene)
+
+
+def test_a_mismatch_is_chosen_first_and_explained() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        await pilot.press("escape")
+        demanding = behind.graph.create_node("demanding")
+        demanding.create_subscription(LaserScan, "scan", lambda scan: None, 10)
+        screen = GraphScreen(screen.look, behind, "test")  # type: ignore[arg-type]  # all it uses
+        await pilot.app.push_screen(screen)
+        await settled(screen)
+        assert "1 broken line" in rows(screen)[0]
+        assert "✗" in text(screen)
+        assert "[/scan]" in text(screen)
+        words = " ".join(text(screen).split())
+        assert (
+            "nothing arrives: RELIABILITY: /robot offers BEST_EFFORT, /demanding asks for RELIABLE" in words
+        )
+
+    play(scene)
+
+
+def test_joining_and_leaving_move_nothing_that_was_there() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        before = rows(screen)[1:4]
+        joined = behind.graph.create_node("joined")
+        joined.create_publisher(Twist, "more", 10)
+        behind.show()
+        await asyncio.sleep(CALM)
+        behind.show()
+        await settled(screen)
+        assert "/joined" in text(screen)
+        assert rows(screen)[1:4] == before
+        joined.destroy_node()
+        behind.show()
+        await asyncio.sleep(CALM)
+        behind.show()
+        await settled(screen)
+        assert "/joined" not in text(screen)
+        assert rows(screen)[1:4] == before
+
+    play(scene)
+
+
+def test_narrowing_and_all() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        assert "/rosout" not in text(screen)
+        await pilot.press("a")
+        assert "/rosout" in text(screen)
+        assert "get_parameters()" in text(screen)
+        await pilot.press("a", "slash", "s", "c", "a")
+        assert "only: sca" in rows(screen)[0]
+        assert "/cmd_vel" not in text(screen)
+        assert "/scan" in text(screen)
+        await pilot.press("enter")
+        assert "Esc back" in rows(screen)[-1]
+        await pilot.press("escape")
+        assert "/cmd_vel" in text(screen)
+        await pilot.press("slash", "x", "x", "escape")
+        assert "only" not in rows(screen)[0]
+        assert screen.is_active
+
+    play(scene)
+
+
+def test_a_step_while_paused_shows_what_was_said_in_it() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        await pilot.press("p")
+        assert behind.paused
+        await asyncio.sleep(CALM)
+        await settled(screen)
+        assert rows(screen)[0].endswith("paused")
+        assert not screen.is_moving
+        await pilot.press("full_stop")
+        assert screen.is_moving
+        assert behind.graph.now_ns == 100 * MS
+
+    play(scene)
+
+
+def test_closed_it_listens_no_more() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        assert behind.graph.watchers
+        await pilot.press("escape")
+        await pilot.pause()
+        assert not behind.graph.watchers
+        assert behind.listener is None
+
+    play(scene)
+
+
+def test_help_explains_the_picture() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        await pilot.pause()
+        assert "any key leaves" in text(screen)
+
+    play(scene)
+
+
+def test_in_plain_characters() -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        for _ in range(3):
+            behind.tick()
+        await asyncio.sleep(FRAME)
+        assert text(screen).isascii()
+
+    play(scene, glyphs="ascii")
+
+
+@pytest.mark.parametrize("size", [(60, 18), (40, 10), (20, 5), (200, 60)])
+def test_any_size_will_do(size: tuple[int, int]) -> None:
+    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+        behind.tick()
+        await settled(screen)
+        assert len(rows(screen)) == size[1]
+
+    play(scene, size=size)
