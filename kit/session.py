@@ -32,7 +32,8 @@ LOG_LINE: Final = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d.]+\] \[([
 class Session:
     """Everything of one drive. Close it when done, or use it as a context manager.
 
-    ``watched``: somebody looks, so lasers look too, whether a node listens or not.
+    ``watched``: somebody looks, so lasers look too, whether a node listens or not. ``graph``: one that others
+    are in already; without it the session makes its own.
     """
 
     def __init__(
@@ -43,10 +44,12 @@ class Session:
         step_size: float = 0.01,
         limits: Limits = DESK,
         watched: bool = False,
+        graph: Graph | None = None,
     ) -> None:
         self.place = place
         self.messages: deque[LogRecord] = deque(maxlen=KEPT_MESSAGES)
-        self.graph = Graph(log_sink=self.messages.append)
+        self.graph = Graph() if graph is None else graph
+        self.graph.log.sink = self.messages.append
         simulation = Simulation(
             place.world, seed=seed, step_size=step_size, wanted=None if watched else self._has_listener
         )
@@ -114,11 +117,12 @@ class Session:
                 self.runner.accept(end.topic, Twist())
 
     def _print(self, line: str) -> None:
-        """A line that the controller printed, as one of the session's messages."""
+        self.note(line, self.controller.name if self.controller else "")
+
+    def note(self, line: str, program: str) -> None:
+        """A line that a program printed, as one of the session's messages."""
         found = LOG_LINE.fullmatch(line)
-        severity, name, text = (
-            found.groups() if found else ("INFO", self.controller.name if self.controller else "", line)
-        )
+        severity, name, text = found.groups() if found else ("INFO", program, line)
         self.messages.append(
             LogRecord(self.runner.simulation.time_ns, LoggingSeverity[severity], name, text, "", "", 0)
         )

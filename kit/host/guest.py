@@ -94,6 +94,11 @@ class Guest:
         return self._child.failure
 
     @property
+    def pid(self) -> int:
+        """Of the process above the student's, which ends when that ends."""
+        return self._child.pid
+
+    @property
     def level(self) -> Level:
         """How far the process is locked in."""
         return self._child.level

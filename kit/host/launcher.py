@@ -126,6 +126,11 @@ class Child:
         self.close()
 
     @property
+    def pid(self) -> int:
+        """Of the process above the child."""
+        return self._process.pid
+
+    @property
     def level(self) -> Level:
         """How far the child is locked in. It said so before it got the student's code."""
         return self._level

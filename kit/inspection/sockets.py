@@ -20,6 +20,9 @@ LONGEST_PATH: Final = 100
 
 SUFFIX: Final = ".sock"
 
+WORLD_VARIABLE: Final = "KIT_WORLD"
+"""Environment variable with the name of the world that is meant if none is named."""
+
 
 class NoWorld(LookupError):
     """No world is running that could be meant; the message says what there is, or how to start one."""

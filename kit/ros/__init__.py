@@ -22,4 +22,6 @@ def names_folder() -> Path:
 
 def stand_ins_folder() -> Path:
     """The folder of packages that stand in for what packages of Flatland's time import and is not installed."""
+    from pathlib import Path
+
     return Path(__file__).parent / "stand_ins"

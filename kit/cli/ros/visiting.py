@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 import click
 
 from kit.cli import options
-from kit.inspection.sockets import NoWorld, find_world, sockets_folder
+from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
 from kit.inspection.visit import Visit, WorldGone
 from kit.workspace import open_workspace
 
@@ -43,7 +43,12 @@ def visit_world(world: str | None, workspace: Path | None) -> Iterator[Visit]:
 def visiting(function: Callable[..., Any]) -> Callable[..., Any]:
     """Makes a verb of a function whose first argument is a visit."""
 
-    @click.option("--world", metavar="NAME", help="Which world, if several run; by default the newest.")
+    @click.option(
+        "--world",
+        metavar="NAME",
+        envvar=WORLD_VARIABLE,
+        help="Which world, if several run; by default $KIT_WORLD, else the newest.",
+    )
     @options.workspace
     @click.option("-s", "--use-sim-time", is_flag=True, hidden=True)
     @click.option("--no-daemon", is_flag=True, hidden=True)

@@ -1,0 +1,74 @@
+"""What a launch file asks of Flatland's server: which world, how fast, in what steps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from kit.launch.problems import CannotStart
+from kit.launch.requests import Start
+from kit.ros.arguments import parse_ros_arguments
+from kit.ros.exceptions import InvalidRosArguments
+
+NODE: Final = "flatland_server"
+
+
+@dataclass(frozen=True, slots=True)
+class WorldWanted:
+    """The parameters of ``flatland_server``, with its own defaults."""
+
+    path: Path
+    update_rate: float = 200.0
+    """Ticks a second of wall clock [Hz]."""
+    step_size: float = 0.005
+    """Simulated time of a tick [s]."""
+    show_viz: bool = False
+    where: str = ""
+    """Where it was asked for."""
+
+    @property
+    def factor(self) -> float:
+        """Simulated seconds per second."""
+        return self.update_rate * self.step_size
+
+
+def world_wanted(request: Start) -> WorldWanted:
+    """What the request's arguments say. Raises CannotStart."""
+    try:
+        given = parse_ros_arguments(request.command).parameters_of(NODE, "/")
+    except InvalidRosArguments as problem:
+        raise CannotStart(f"{request.where}flatland_server: {problem}") from None
+    values = {name: parameter.value for name, parameter in given.items()}
+    if "world_path" not in values:
+        raise CannotStart(
+            f"{request.where}flatland_server: the parameter 'world_path' is missing: "
+            "parameters=[{'world_path': 'FILE.yaml'}]"
+        )
+    usual = WorldWanted(Path())
+    return WorldWanted(
+        (request.cwd or Path.cwd()) / str(values["world_path"]),
+        _above_zero(request, values, "update_rate", usual.update_rate),
+        _above_zero(request, values, "step_size", usual.step_size),
+        _truth(request, values, "show_viz", usual.show_viz),
+        request.where,
+    )
+
+
+def _above_zero(request: Start, values: dict[str, Any], name: str, usual: float) -> float:
+    value = values.get(name, usual)
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if isinstance(value, bool) or not (math.isfinite(number) and number > 0):
+        raise CannotStart(f"{request.where}flatland_server: '{name}' must be a number above 0, not {value!r}")
+    return number
+
+
+def _truth(request: Start, values: dict[str, Any], name: str, usual: bool) -> bool:
+    value = values.get(name, usual)
+    if not isinstance(value, bool):
+        raise CannotStart(f"{request.where}flatland_server: '{name}' must be true or false, not {value!r}")
+    return value
