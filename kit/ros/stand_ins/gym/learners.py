@@ -1,0 +1,54 @@
+"""stable-baselines3's check of an environment, for the environments of that time."""
+
+import sys
+from importlib.machinery import PathFinder
+
+from kit.ros.stand_ins_log import say
+
+CHECKER = "stable_baselines3.common.env_checker"
+
+
+def adapt_checker():
+    """Has ``check_env`` look at an old environment the way a learner will see it."""
+    sys.meta_path.insert(0, _CheckerFinder())
+
+
+class _CheckerFinder:
+    """Lets the checker's module be found and loaded as ever, and then replaces one function. A finder and a loader."""
+
+    def __init__(self):
+        self._loader = None
+
+    def find_spec(self, name, path=None, target=None):
+        if name != CHECKER:
+            return None
+        sys.meta_path.remove(self)
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None:
+            self._loader, spec.loader = spec.loader, self
+        return spec
+
+    def create_module(self, spec):
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module):
+        module.__spec__.loader = module.__loader__ = self._loader
+        self._loader.exec_module(module)
+        module.check_env = _checking(module.check_env)
+
+
+def _checking(check):
+    def check_env(env, *arguments, **options):
+        """As stable-baselines3's; what it finds in an old environment is a warning, as most of it came later."""
+        import gym
+        import shimmy
+
+        if not isinstance(env, gym.Env):
+            return check(env, *arguments, **options)
+        try:
+            return check(shimmy.GymV21CompatibilityV0(env=env), *arguments, **options)
+        except AssertionError as problem:
+            say(f"today's check_env objects, the one of that time did not: {problem}", warning=True)
+            return None
+
+    return check_env

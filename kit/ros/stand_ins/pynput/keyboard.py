@@ -1,0 +1,59 @@
+"""The part of pynput that packages of Flatland's time import."""
+
+from enum import Enum
+
+from kit.ros.context import get_default_context
+from kit.ros.stand_ins_log import say
+
+Key = Enum(
+    "Key",
+    "alt alt_l alt_r backspace caps_lock cmd ctrl ctrl_l ctrl_r delete down end enter esc home insert left "
+    "page_down page_up right shift shift_l shift_r space tab up",
+)
+
+
+class KeyCode:
+    """A key by its character."""
+
+    def __init__(self, vk=None, char=None):
+        self.vk, self.char = vk, char
+
+    @classmethod
+    def from_char(cls, char):
+        return cls(char=char)
+
+    def __eq__(self, other):
+        return isinstance(other, KeyCode) and other.char == self.char
+
+    def __hash__(self):
+        return hash(self.char)
+
+
+class Listener:
+    """Hears nothing, and says so."""
+
+    def __init__(self, on_press=None, on_release=None, **_):
+        self.running = False
+
+    def start(self):
+        self.running = True
+        say(
+            "pynput is not installed, and there is no desktop whose keys it could read: this listener hears nothing. "
+            "What is pressed in the kit is published on /teleopkeys by the kit itself",
+            warning=True,
+        )
+
+    def stop(self):
+        self.running = False
+
+    def join(self, timeout=None):
+        """Waits for the end of the program."""
+        context = get_default_context()
+        context.graph.wait(lambda: not self.running or not context.ok(), what="Listener.join()")
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self.stop()

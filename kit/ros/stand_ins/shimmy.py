@@ -1,0 +1,45 @@
+"""An environment of gym's as one of gymnasium's: what stable-baselines3 looks for when it is given an old one."""
+
+import gymnasium
+
+
+class GymV21CompatibilityV0(gymnasium.Env):
+    """Wraps ``env``: gym 0.21's ``reset`` and ``step`` behind gymnasium's."""
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, env_id=None, make_kwargs=None, env=None, render_mode=None):
+        if env is None:
+            raise ImportError("gym is not installed, so there is no environment to make by its name")
+        self.gym_env = env
+        self.action_space = env.action_space
+        self.observation_space = env.observation_space
+        self.render_mode = render_mode
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        if seed is not None and hasattr(self.gym_env, "seed"):
+            self.gym_env.seed(seed)
+        return self.gym_env.reset(), {}
+
+    def step(self, action):
+        observation, reward, done, info = self.gym_env.step(action)
+        truncated = bool(info.get("TimeLimit.truncated", False))
+        return observation, float(reward), bool(done) and not truncated, truncated, info
+
+    def render(self):
+        return self.gym_env.render()
+
+    def close(self):
+        self.gym_env.close()
+
+
+class GymV26CompatibilityV0(GymV21CompatibilityV0):
+    """The same for gym 0.26, whose ``reset`` and ``step`` are gymnasium's already."""
+
+    def reset(self, *, seed=None, options=None):
+        gymnasium.Env.reset(self, seed=seed)
+        return self.gym_env.reset(seed=seed, options=options)
+
+    def step(self, action):
+        return self.gym_env.step(action)
