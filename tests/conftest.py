@@ -3,6 +3,7 @@ is busy."""
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,10 @@ from hypothesis import settings
 # The same examples on every run; and how long one takes says more about the machine than about the code.
 settings.register_profile("kit", deadline=None, derandomize=True)
 settings.load_profile("kit")
+
+# A shell's background job is started deaf to Ctrl-C, and so would be every program that a test starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 
 
 @pytest.fixture(autouse=True)
