@@ -181,7 +181,7 @@ KIT_PPO_WHEELCHAIRS = Preset(
         n_epochs=4,
         ent_coef=Falling(0.01, 0.001),  # sampled moves leave the 0.05 m that side by side allows
     ),
-    UntilSure(every=460_800, goal=0.97, screening=40, confirming=200),
+    UntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.97),
     steps=8_000_000,  # with noisy starts half of it leaves the straight at 0.93
     worlds=225,  # twenty-five of each case
     learning_rate=Falling(1e-3, 3e-5),

@@ -19,6 +19,8 @@ class Count:
 
     reached: int
     episodes: int
+    adjacency: float = 0.0
+    """Mean share of steps that two robots were side by side."""
 
     @property
     def share(self) -> float:
@@ -55,8 +57,8 @@ def worst(counts: Counts) -> float:
 class Memory:
     """What a strategy must remember from one look to the next; it goes into every checkpoint."""
 
-    best: tuple[float, float] | None = None
-    """Of the policy kept: what its worst case is likely not below, and its accuracy."""
+    best: tuple[float, ...] | None = None
+    """How good the policy kept is; the greater, the better."""
     best_low: float = 0.0
     """What that policy's accuracy is not below, as far as its test tells."""
     best_steps: int = 0
@@ -101,9 +103,16 @@ def _likely(counts: Counts) -> float:
     return min((at_least(count.reached, count.episodes) for count in counts.values()), default=0.0)
 
 
-def _remembered(counts: Counts, steps: int, memory: Memory) -> tuple[Memory, bool]:
+def _mark(counts: Counts, enough: float = 1.0) -> tuple[float, ...]:
+    """How good a policy is. The worst case counts first, up to ``enough``; then how much two robots are side by side;
+    then all episodes."""
+    beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
+    return min(_likely(counts), enough), beside, accuracy(counts)
+
+
+def _remembered(counts: Counts, steps: int, memory: Memory, enough: float = 1.0) -> tuple[Memory, bool]:
     """The memory with this test in it, and whether this policy is the best so far. Ties go to the newer one."""
-    mark = _likely(counts), accuracy(counts)
+    mark = _mark(counts, enough)
     if memory.best is not None and mark < memory.best:
         return memory, False
     low = _pooled(counts).low
@@ -129,8 +138,7 @@ class TrainThenTest:
 
     def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
         counts = test(self.episodes)
-        mark = _likely(counts), accuracy(counts)
-        return Verdict(counts, replace(memory, best=mark, best_steps=steps), keep=True)
+        return Verdict(counts, replace(memory, best=_mark(counts), best_steps=steps), keep=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +179,10 @@ class UntilSure:
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
     patience: int = 3
     """So often it goes back at most: else a learner could be held for ever where it cannot get better."""
+    to_the_end: bool = False
+    """Train on all the same: where two robots drive, success comes first and side by side last."""
+    enough: float = 1.0
+    """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
     greedy: bool = True
 
     def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
@@ -179,12 +191,12 @@ class UntilSure:
             counts = test(self.confirming * test.cases)
             memory = replace(memory, confirmations=memory.confirmations + 1)
             low = self._surely(counts, memory.confirmations)
-            if low >= self.goal:
+            if low >= self.goal and not self.to_the_end:
                 memory, _ = _remembered(counts, steps, replace(memory, best=None))
                 return Verdict(
                     counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
                 )
-        remembered, keep = _remembered(counts, steps, memory)
+        remembered, keep = _remembered(counts, steps, memory, self.enough)
         if not keep and self._forgotten(counts, memory):
             return Verdict(
                 *(counts, replace(memory, returns=memory.returns + 1), False),

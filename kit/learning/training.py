@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import errno
 import json
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,7 +20,7 @@ from kit.host.failure import GuestError
 from kit.learning.algorithms import Algorithm, find_algorithm
 from kit.learning.batch import BatchEnv, RewardError
 from kit.learning.choice import TaskChoice
-from kit.learning.evaluation import Examiner, Result, seed_for
+from kit.learning.evaluation import CaseResult, Examiner, Result, seed_for
 from kit.learning.events import Ended, Event, EventWriter, Noted, Progress, Started, Tested
 from kit.learning.extra import require_learner, versions
 from kit.learning.learner import Halt, Learner
@@ -316,7 +317,11 @@ class _Test:
         seed = seed_for(self._seed, "test", self.looks)
         self.looks += 1
         self.result = self._examiner.test(self._policy, each, seed, greedy=self._greedy)
-        return {case.case: Count(case.reached, case.episodes) for case in self.result.cases}
+        return {case.case: _count(case) for case in self.result.cases}
+
+
+def _count(case: CaseResult) -> Count:
+    return Count(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
 
 
 def _tested(steps: int, seconds: float, verdict: Verdict, test: _Test) -> Tested:

@@ -1,0 +1,231 @@
+"""What training reaches and what it costs: ``python tests/benchmarks/learning.py PART ...`` (needs the extra ``learn``).
+
+Parts: throughput, student, turn, turn-seed, hallway, hallway-axle, left-out, crosstable, wheelchairs, forgetting; all
+of them without an argument. ``--seeds N``: how many seeds instead of the part's own number. Seeds begin at 1000: none
+of them was looked at while the presets were made. Everything is greedy unless it says otherwise, and tested on fresh
+episodes after training. Training time is wall time of one process with the strategy's tests in it, and without the
+start of the process and the final test.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from kit.learning.algorithms import ALGORITHMS
+from kit.learning.choice import TaskChoice
+from kit.learning.crosstable import crosstable, groups_of, rows_of
+from kit.learning.evaluation import Examiner, Result
+from kit.learning.events import Ended, Tested
+from kit.learning.presets import KIT_PPO_TURN
+from kit.learning.runs import Run, RunConfig, new_run
+from kit.learning.student import StudentReward
+from kit.learning.tally import Episode
+from kit.learning.telling import shares_of
+from kit.learning.training import make_learner, train
+
+FIRST_SEED = 1000
+FINAL_TEST = 987_654_321
+
+REWARD = """
+def reward(reached, collided, timed_out, move):
+    if collided:
+        return -2.0
+    if reached:
+        return 5.0
+    return -3.0 if timed_out else 0.015 * (move == 1)
+"""
+
+
+@dataclass(frozen=True)
+class Trained:
+    """A run at its end, and the final test."""
+
+    run: Run
+    ended: Ended
+    result: Result
+
+    @property
+    def row(self) -> str:
+        worst = self.result.worst
+        return (
+            f"{self.ended.steps:>9,} steps {self.ended.seconds:6.1f} s  mean {self.result.mean:.3f}  "
+            f"worst {worst.share:.3f} ({worst.case})"
+        )
+
+
+def trained(config: RunConfig, folder: Path, episodes: int, test_on: TaskChoice | None = None) -> Trained:
+    run = new_run(folder, config)
+    ended = train(run)
+    policy = run.policy()
+    task = (test_on or policy.trained_on).resolve()
+    return Trained(run, ended, Examiner(task).test(policy, episodes, FINAL_TEST))
+
+
+def several(config: RunConfig, folder: Path, seeds: int, episodes: int) -> list[Trained]:
+    found = []
+    for seed in range(FIRST_SEED, FIRST_SEED + seeds):
+        found.append(trained(replace(config, seed=seed), folder, episodes))
+        print(f"  seed {seed}: {found[-1].row}", flush=True)
+    print(f"  median training time {median(each.ended.seconds for each in found):.1f} s")
+    return found
+
+
+def turn(folder: Path, seeds: int) -> None:
+    """All reach 0.95 in each direction over 1,000 fresh episodes; median training time under 5 s."""
+    found = several(RunConfig(TaskChoice("turn")), folder, seeds or 10, 1000)
+    good = sum(each.result.worst.share >= 0.95 for each in found)
+    print(f"  {good} of {len(found)} reach 0.95 in each direction")
+
+
+def turn_seed(folder: Path, seeds: int) -> None:
+    """Table 5.2 (35,000, 20,000 and 45,000 steps to 0.8, 0.8, 1.0), as it goes; up to 100,000 steps."""
+    config = RunConfig(TaskChoice("turn-seed"), preset="seed", steps=100_000)
+    found = several(config, folder, seeds or 10, 500)
+    passed = [each for each in found if "accuracy" in each.ended.reason]
+    print(f"  {len(passed)} of {len(found)} passed a test of 20 episodes with 0.8")
+    good = sum(each.result.worst.share >= 0.8 for each in passed)
+    print(f"  {good} of these reach 0.8 in each direction over 500 fresh episodes")
+    one_way = sum(0.3 <= each.result.mean <= 0.7 for each in found)
+    print(f"  {one_way} of {len(found)} stand at the plateau of one direction (mean of 0.3 to 0.7)")
+
+
+def hallway(folder: Path, seeds: int) -> None:
+    """Mean at least 0.99 and worst case at least 0.97 over 500 fresh episodes each, 5 of 5 seeds, under 90 s."""
+    _hallway(RunConfig(TaskChoice("hallway")), folder, seeds or 5)
+
+
+def hallway_axle(folder: Path, seeds: int) -> None:
+    """The harder variant: the middle of the axle must come near the target."""
+    _hallway(RunConfig(TaskChoice("hallway", measured_to="axle")), folder, seeds or 1)
+
+
+def _hallway(config: RunConfig, folder: Path, seeds: int) -> None:
+    found = several(config, folder, seeds, 500)
+    good = sum(each.result.mean >= 0.99 and each.result.worst.share >= 0.97 for each in found)
+    print(f"  {good} of {len(found)} with mean 0.99 and worst 0.97")
+    print("\n".join(f"    {row}" for row in found[0].result.rows()))
+
+
+def left_out(folder: Path, seeds: int) -> None:
+    """Trained without three cases, tested on these three: still 0.9."""
+    unseen = ("right_door", "two_doors", "curve_left_180")
+    every = TaskChoice("hallway")
+    seen = tuple(case.name for _, case in every.resolve().courses() if case.name not in unseen)
+    for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
+        config = RunConfig(replace(every, on=seen), seed=seed)
+        found = trained(config, folder, 500, test_on=replace(every, on=unseen))
+        print(f"  seed {seed}: {found.row}", flush=True)
+        print("\n".join(f"    {row}" for row in found.result.rows()))
+
+
+def table(folder: Path, seeds: int) -> None:
+    """Table 3.5: every column's mean above the dissertation's."""
+    config = RunConfig(TaskChoice("hallway"), seed=FIRST_SEED)
+    columns = crosstable(
+        folder / "table", config, groups_of(config), tell=lambda text: print(f"  {text}", flush=True)
+    )
+    print("\n".join(f"  {row}" for row in rows_of(columns)))
+
+
+def wheelchairs(folder: Path, seeds: int) -> None:
+    """Success 0.96 in every case, adjacency 0.90 on the straight and 0.80 on turns and curves, with start noise."""
+    for each in several(RunConfig(TaskChoice("wheelchairs")), folder, seeds or 1, 500):
+        print("\n".join(f"    {row}" for row in each.result.rows()))
+
+
+def forgetting(folder: Path, seeds: int) -> None:
+    """Boltzmann DQN with the dissertation's network, trained on and on: tests go up, and down again."""
+    for on in (("straight",), ("90_turns",)):
+        choice = TaskChoice("hallway-seed", on)
+        for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
+            config = RunConfig(choice, "boltzmann-dqn", "seed", seed, steps=100_000, keep_training=True)
+            run = new_run(folder, config)
+            ended = train(run)
+            tests = [
+                sum(shares_of(each).values()) / len(each.cases)
+                for each in run.events()
+                if isinstance(each, Tested)
+            ]
+            print(f"  {choice.title}, seed {seed}, {ended.seconds:.0f} s; accuracy after each 10,000 steps:")
+            print("    " + " ".join(f"{share:.2f}" for share in tests))
+            print(f"    best {max(tests):.2f}, last {tests[-1]:.2f}", flush=True)
+
+
+class _Onlooker:
+    def between(self) -> None: ...
+
+    def saw(self, episode: Episode) -> None: ...
+
+
+def _rate(reward: StudentReward | None = None) -> float:
+    choice = TaskChoice("turn")
+    preset = replace(
+        KIT_PPO_TURN, worlds=256, settings=replace(KIT_PPO_TURN.settings, n_steps=32, batch_size=2048)
+    )
+    learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=0, reward=reward)
+    learner.learn(16_384, _Onlooker())
+    began, before = time.perf_counter(), learner.steps
+    learner.learn(before + 200_000, _Onlooker())
+    return (learner.steps - before) / (time.perf_counter() - began)
+
+
+def throughput(folder: Path, seeds: int) -> None:
+    """stable-baselines3's PPO on the batch engine: at least 50,000 steps a second."""
+    rates = [_rate() for _ in range(3)]
+    print(f"  {median(rates):,.0f} steps/s (of {', '.join(f'{rate:,.0f}' for rate in rates)})")
+
+
+def student(folder: Path, seeds: int) -> None:
+    """A student's reward in Python: at least a third of the built-in one's throughput, turn about."""
+    file = folder / "my_reward.py"
+    file.write_text(REWARD)
+    ratios = []
+    for _ in range(3):
+        own = _rate()
+        with StudentReward(file) as reward:
+            theirs = _rate(reward)
+        ratios.append(theirs / own)
+        print(f"  built in {own:,.0f} steps/s, a student's {theirs:,.0f}: {theirs / own:.2f}", flush=True)
+    print(f"  median ratio {median(ratios):.2f}")
+
+
+PARTS: dict[str, Callable[[Path, int], None]] = {
+    "throughput": throughput,
+    "student": student,
+    "turn": turn,
+    "turn-seed": turn_seed,
+    "hallway": hallway,
+    "hallway-axle": hallway_axle,
+    "left-out": left_out,
+    "crosstable": table,
+    "wheelchairs": wheelchairs,
+    "forgetting": forgetting,
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("parts", nargs="*", metavar="PART")
+    parser.add_argument("--seeds", type=int, default=0)
+    wanted = parser.parse_args()
+    if unknown := set(wanted.parts) - set(PARTS):
+        parser.error(f"there is no part {', '.join(unknown)}; there are {', '.join(PARTS)}")
+    for name in wanted.parts or PARTS:
+        print(f"{name}: {PARTS[name].__doc__}", flush=True)
+        with TemporaryDirectory() as folder:
+            PARTS[name](Path(folder), wanted.seeds)
+
+
+if __name__ == "__main__":
+    main()
