@@ -10,6 +10,7 @@ from textual.screen import Screen
 from kit.tui.input.driver import KeyDriver
 from kit.tui.look import Look
 from kit.tui.terminal import TerminalDecision
+from kit.tui.text_rows import ASCII_ONLY
 
 
 class KitApp(App[None]):
@@ -17,12 +18,16 @@ class KitApp(App[None]):
 
     TITLE = "kit"
     ENABLE_COMMAND_PALETTE = False
-    CSS = "Screen { background: transparent; }"
+    CSS = """
+    Screen { background: transparent; }
+    KitApp.-ascii Page > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
+    """
 
     def __init__(self, terminal: TerminalDecision) -> None:
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.look = Look.of(terminal)
         self.theme = terminal.theme
+        self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None
 
     def begin(self, screen: Screen[Any]) -> None:

@@ -24,6 +24,26 @@ STYLES: Final = {
 }
 """The few ways a text can look. Each bold or reversed, so that none means anything by its colour alone."""
 
+ASCII_ONLY: Final = "-ascii"
+"""The class of an app whose terminal has no other characters than ASCII's."""
+
+_ASCII: Final = str.maketrans(
+    {
+        "←": "<",
+        "→": ">",
+        "↑": "^",
+        "↓": "v",
+        "°": "deg",
+        "─": "-",
+        "━": "=",
+        "│": "|",
+        "▶": ">",
+        "●": "*",
+        "…": "..",
+        "·": ".",
+    }
+)
+
 Part = tuple[str, str]
 """A text and the name of its style."""
 
@@ -72,5 +92,7 @@ class TextRows(Widget):
 
     def render_line(self, y: int) -> Strip:
         parts = self._rows[y] if y < len(self._rows) else ()
+        if self.app.has_class(ASCII_ONLY):
+            parts = tuple((text.translate(_ASCII), style) for text, style in parts)
         strip = Strip([Segment(text, STYLES[style]) for text, style in parts if text])
         return strip.adjust_cell_length(self.size.width, STYLES[PLAIN])

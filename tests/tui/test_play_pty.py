@@ -222,3 +222,11 @@ def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path:
     terminal.until(lambda: ROBOT.search(terminal.text), "the maze")
     terminal.send(b"\x03")
     assert terminal.wait() == 0
+
+
+def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
+    terminal = kit("play", "--glyphs", "ascii")
+    terminal.until(lambda: re.search("[<>^v]", terminal.text), "the robot")
+    terminal.send(b"?")
+    terminal.until(lambda: "any key leaves" in terminal.text, "the help")
+    assert terminal.text.isascii()
