@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from types import TracebackType
-from typing import Final
+from typing import Final, Self
 
 from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
@@ -66,7 +66,7 @@ class Session:
             on_print=self._print,
         )
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

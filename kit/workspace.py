@@ -28,6 +28,11 @@ class Workspace:
         return self.folder / "worlds"
 
     @property
+    def packages(self) -> Path:
+        """ROS 2 packages."""
+        return self.folder / "packages"
+
+    @property
     def recordings(self) -> Path:
         return self.folder / "recordings"
 
@@ -48,7 +53,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
     workspace = Workspace(folder.expanduser().absolute())
     if make:
         try:
-            for part in (workspace.controllers, workspace.worlds, workspace.recordings, workspace.runs):
+            for part in (workspace.controllers, workspace.packages, workspace.worlds, workspace.recordings, workspace.runs):
                 part.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise WorkspaceError(

@@ -20,6 +20,11 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "launch": (
+        "kit.cli.launch",
+        "Carry out a ROS 2 launch file, with the package for Flatland around it as it is.",
+    ),
+    "pkg": ("kit.cli.pkg", "Make a ROS 2 package that `kit launch` and a robot run, or list packages."),
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
     "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
     "runs": ("kit.cli.runs", "List the training runs; pause, go on, stop."),

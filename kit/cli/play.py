@@ -56,11 +56,15 @@ def command(
         play_plainly(place, case, controller, seed, desk.controllers, terminal.plain.reason)
         return
     os.environ.update(terminal.environment())
+    from kit.inspection.sockets import sockets_folder
     from kit.tui.app import KitApp
     from kit.tui.screens.play import PlayScreen
 
     app = KitApp(terminal)
-    app.begin(PlayScreen(app.look, place, controller, case=case, folder=desk.controllers, seed=seed))
+    doors = sockets_folder(desk.folder)
+    app.begin(
+        PlayScreen(app.look, place, controller, case=case, folder=desk.controllers, seed=seed, doors=doors)
+    )
     app.run()
     if app.return_code:
         raise SystemExit(app.return_code)

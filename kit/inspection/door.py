@@ -21,6 +21,15 @@ MOST_VISITORS: Final = 32
 NAME: Final = "door"
 
 
+def open_door(graph: Graph, folder: Path, world: str, wake: Callable[[], object]) -> Door | None:
+    """A door, or a line in the graph's log that says why there can be none: a world runs without one too."""
+    try:
+        return Door(graph, folder, world, wake=wake)
+    except OSError as problem:
+        graph.log.warning(NAME, f"other terminals cannot look in: {folder}: {problem.strerror or problem}")
+        return None
+
+
 class Door:
     """Lets visitors into a graph. A guest of whoever ticks: its ``exchange`` is called in each tick.
 

@@ -16,6 +16,9 @@ from kit.pacing import Pacing
 from kit.showing import Showing, View
 
 if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
+    from pathlib import Path
+
+    from kit.inspection.door import Door
     from kit.live import LiveRun
     from kit.places import Place
     from kit.runner import Runner
@@ -31,11 +34,19 @@ class Running:
     """At most one session at a time. ``on_view`` and ``on_trouble`` are called in other threads."""
 
     def __init__(
-        self, *, on_view: Callable[[View], None], on_trouble: Callable[[str], None], seed: int = 0
+        self,
+        *,
+        on_view: Callable[[View], None],
+        on_trouble: Callable[[str], None],
+        seed: int = 0,
+        doors: Path | None = None,
     ) -> None:
+        """``doors``: the folder of sockets through which other terminals look in; None: none does."""
         self._on_view = on_view
         self._on_trouble = on_trouble
         self._seed = seed
+        self._doors = doors
+        self._door: Door | None = None
         self._session: Session | None = None
         self._live: LiveRun | None = None
         self._showing: Showing | None = None
@@ -64,6 +75,15 @@ class Running:
             if prepare is not None:
                 prepare(session)
             self._replace(session)
+
+        self._jobs.put(job)
+
+    def open_session(self, make: Callable[[], Session], factor: Callable[[Session], float]) -> None:
+        """Opens a world that makes its session by itself, at a speed of its own."""
+
+        def job() -> None:
+            session = make()
+            self._replace(session, factor(session))
 
         self._jobs.put(job)
 
@@ -111,21 +131,38 @@ class Running:
             except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
                 self._on_trouble(str(error))
 
-    def _replace(self, session: Session) -> None:
+    def _replace(self, session: Session, factor: float | None = None) -> None:
         from kit.live import LiveRun
 
-        factor = self.pacing.factor
+        runner = session.runner
+        factor = self.pacing.factor if factor is None else factor
         self._drop()
         self._session, self._showing = session, Showing(session)
-        self._live = LiveRun(session.runner, factor=factor, on_change=self._changed)
-        session.runner.on_rate = lambda rate: self.set_factor(rate * session.runner.simulation.step_size)
-        self._live.__enter__()
+        self._live = live = LiveRun(runner, factor=factor, on_change=self._changed)
+        runner.on_rate = lambda rate: self.set_factor(rate * runner.simulation.step_size)
+        if self._doors is not None:
+            from kit.inspection.door import open_door
+
+            name = (
+                session.place.title if session.place.name.endswith((".yaml", ".yml")) else session.place.name
+            )
+
+            def wake() -> None:
+                if runner.paused:  # nobody ticks: a visitor's words have to be looked at
+                    live.post(_nothing)
+
+            self._door = open_door(session.graph, self._doors, name, wake)
+            if self._door is not None:
+                runner.guests.append(self._door)
+        live.__enter__()
 
     def _drop(self) -> None:
-        live, session = self._live, self._session
-        self._live = self._session = self._showing = None
+        live, session, door = self._live, self._session, self._door
+        self._live = self._session = self._showing = self._door = None
         if live is not None:
             live.stop()
+        if door is not None:
+            door.close()
         if session is not None:
             session.close()
 
@@ -144,3 +181,7 @@ class Running:
             self._on_view(showing.view())
             if (listener := self._listener) is not None:
                 listener(session)
+
+
+def _nothing(runner: Runner) -> None:
+    """A job that only has the world look around."""

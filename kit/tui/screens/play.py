@@ -40,9 +40,17 @@ class PlayScreen(WatchScreen):
     ]
 
     def __init__(
-        self, look: Look, place: str, controller: str, *, case: str | None = None, folder: Path, seed: int = 0
+        self,
+        look: Look,
+        place: str,
+        controller: str,
+        *,
+        case: str | None = None,
+        folder: Path,
+        seed: int = 0,
+        doors: Path | None = None,
     ) -> None:
-        super().__init__(look, case or place, seed=seed)
+        super().__init__(look, case or place, seed=seed, doors=doors)
         self._look = look
         self._folder = folder
         self._find = partial(_find_place, place, case)

@@ -22,6 +22,8 @@ from kit.tui.text_rows import Row, TextRows, row
 from kit.tui.world_view import WorldView
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kit.session import Session
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
@@ -80,7 +82,8 @@ class WatchScreen(StillScreen, DriveScreen):
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
-    def __init__(self, look: Look, place_name: str, *, seed: int = 0) -> None:
+    def __init__(self, look: Look, place_name: str, *, seed: int = 0, doors: Path | None = None) -> None:
+        """``doors``: where other terminals find the world; see ``kit.inspection``."""
         super().__init__(look.terminal)
         self.place_name = place_name
         self.world = WorldView(look.encoder, look.palette)
@@ -89,6 +92,7 @@ class WatchScreen(StillScreen, DriveScreen):
         self._announced = False
         self._beams = False
         self._seed = seed
+        self._doors = doors
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -104,7 +108,12 @@ class WatchScreen(StillScreen, DriveScreen):
     def on_mount(self) -> None:
         self._rows("keys").show([self.keys])
         self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
-        self.behind = Running(on_view=self._view_arrived, on_trouble=self._trouble_arrived, seed=self._seed)
+        self.behind = Running(
+            on_view=self._view_arrived,
+            on_trouble=self._trouble_arrived,
+            seed=self._seed,
+            doors=self._doors,
+        )
         self.open_world()
         self.set_interval(LOOK_INTERVAL, self._look_around)
 

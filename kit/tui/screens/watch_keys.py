@@ -45,6 +45,28 @@ PLAY_KEYS: Final = key_line(
 )
 PLAY_HELP: Final = key_page(_DRIVE, _TIME, _CHOICE, _PICTURE)
 
+LAUNCH_KEYS: Final = key_line(
+    ("←↑↓→", "keys"),
+    ("p", "pause"),
+    (".", "step"),
+    ("123", "speed"),
+    ("n", "nodes"),
+    ("r", "reset"),
+    ("+ -", "zoom"),
+    ("?", "help"),
+    ("^C", "leave"),
+)
+LAUNCH_HELP: Final = key_page(
+    (
+        ("arrows, W A S D", "for programs that listen to /teleopkeys"),
+        ("x", "how keys count: automatic, latch, repeat"),
+        ("Q E F Space Esc", "likewise, on /teleopkeys"),
+        ("n", "nodes and topics: who says what to whom"),
+    ),
+    _TIME,
+    _PICTURE,
+)
+
 REPLAY_KEYS: Final = key_line(
     ("p", "pause"),
     (".", "step"),

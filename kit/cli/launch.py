@@ -1,0 +1,194 @@
+"""``kit launch``: a ROS 2 package for Flatland, as it is."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.launch.finding import LaunchTarget
+    from kit.launch.launching import Line
+    from kit.workspace import Workspace
+
+INTERRUPTED = 128 + signal.SIGINT
+
+
+@click.command()
+@click.argument("where", metavar="FOLDER|FILE|PACKAGE")
+@click.argument("words", nargs=-1, metavar="[FILE.launch.py] [NAME:=VALUE ...]")
+@click.option(
+    "-s",
+    "--show-args",
+    "--show-arguments",
+    "show_args",
+    is_flag=True,
+    help="The arguments it takes; starts nothing.",
+)
+@click.option("--plain", is_flag=True, help="Only what is said, line by line, without the world's picture.")
+@click.option(
+    "--steps", type=click.IntRange(1), help="So many ticks of the world, as fast as they go; no picture."
+)
+@click.option("--until", type=click.FloatRange(0, min_open=True), help="So many simulated seconds; likewise.")
+@click.option(
+    "--speed",
+    type=click.FloatRange(0, min_open=True),
+    help="Simulated seconds per second, whatever the launch file says.",
+)
+@options.seed
+@options.workspace
+@options.glyphs
+@options.color
+def command(
+    where: str,
+    words: Sequence[str],
+    show_args: bool,
+    plain: bool,
+    steps: int | None,
+    until: float | None,
+    speed: float | None,
+    seed: int,
+    workspace: Path | None,
+    glyphs: str | None,
+    color: str | None,
+) -> None:
+    """Carry out a ROS 2 launch file, with the package around it as it is: nothing is built or changed.
+
+    The kit's world stands in for flatland_server, its screen for RViz. Each node runs in a process of its own.
+    Other terminals can look in with `kit ros`.
+
+    \b
+    kit launch ~/ros2_ws/src/my_package
+    kit launch my_package/launch/world.launch.py update_rate:=200 show_viz:=false
+    kit launch my_package --show-args
+
+    Exit code: 0 all went well; 1 a program failed; 2 something is missing or wrong; 130 ended by Ctrl-C.
+    """
+    from kit.launch.finding import find_launch
+    from kit.ros.packages import PackageError
+    from kit.workspace import WorkspaceError, open_workspace
+
+    try:
+        desk = open_workspace(workspace)
+        file, arguments = _sorted_out(words)
+        target = find_launch(where, file, [desk.packages])
+    except (PackageError, WorkspaceError) as problem:
+        options.fail(str(problem))
+    if show_args:
+        _show_arguments(target)
+        return
+    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
+    if terminal.plain.value or steps is not None or until is not None:
+        _run_plainly(target, arguments, desk, seed, steps, until, speed)
+        return
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+    from kit.tui.screens.launched import LaunchScreen
+
+    app = KitApp(terminal)
+    screen = LaunchScreen(app.look, target, arguments, desk=desk, seed=seed, speed=speed)
+    app.begin(screen)
+    app.run()
+    if screen.has_no_world:
+        _run_plainly(target, arguments, desk, seed, steps, until, speed)
+        return
+    if screen.refusal is not None:
+        options.fail(screen.refusal)
+    for line in screen.failures:
+        click.echo(line, err=True)
+    if app.return_code or screen.failures:
+        raise SystemExit(app.return_code or 1)
+
+
+def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
+    """The launch file's name, if there is one, and the arguments."""
+    arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
+    rest = [word for word in words if ":=" not in word]
+    if len(rest) > 1 or "" in arguments:
+        options.fail(
+            f"Arguments look like NAME:=VALUE, without spaces; these do not: {' '.join(rest[1:] or words)}"
+        )
+    return (rest[0] if rest else None), arguments
+
+
+def _show_arguments(target: LaunchTarget) -> None:
+    from kit.host.failure import GuestError
+    from kit.launch.launch_file import declared_arguments
+
+    try:
+        declared = declared_arguments(target.file, target.folder, target.search)
+    except GuestError as error:
+        options.fail(str(error.failure))
+    click.echo("Arguments (pass arguments as '<name>:=<value>'):")
+    for argument in declared:
+        choices = "" if argument.choices is None else f" valid choices are: {list(argument.choices)}"
+        click.echo(f"\n    '{argument.name}':{choices}\n        {argument.description}")
+        if argument.default is not None:
+            click.echo(f"        (default: {argument.default})")
+    if not declared:
+        click.echo("\n  No arguments.")
+
+
+def _run_plainly(
+    target: LaunchTarget,
+    arguments: Mapping[str, str],
+    desk: Workspace,
+    seed: int,
+    steps: int | None,
+    until: float | None,
+    speed: float | None,
+) -> None:
+    from kit.host.failure import GuestError
+    from kit.inspection.door import Door
+    from kit.inspection.sockets import sockets_folder
+    from kit.launch.launching import Launch
+    from kit.launch.plain import run_plainly
+    from kit.launch.problems import CannotStart
+    from kit.ros.graph import Graph
+    from kit.world.problems import WorldError
+
+    name = target.file.name.partition(".")[0]
+    launch = Launch(
+        target,
+        Graph(),
+        arguments=arguments,
+        seed=seed,
+        workspace=desk.folder,
+        name=f"{name}-{os.getpid()}",
+        say=_say,
+    )
+    try:
+        run_plainly(
+            launch,
+            seed=seed,
+            ticks=steps,
+            until_s=until,
+            factor=speed,
+            company=lambda graph: Door(graph, sockets_folder(desk.folder), name),
+            log=lambda record: click.echo(str(record), err=True),
+        )
+    except GuestError as error:
+        options.fail(str(error.failure))
+    except (CannotStart, WorldError, OSError) as problem:
+        options.fail(str(problem))
+    except KeyboardInterrupt:
+        raise SystemExit(INTERRUPTED) from None
+    if launch.failures:
+        raise SystemExit(1)
+
+
+def _say(line: Line) -> None:
+    click.echo(str(line), err=line.stream == "err")
+
+
+def _leave(number: int, _: object) -> NoReturn:
+    """Asked to end: everything that was started ends too, on the way out."""
+    raise SystemExit(128 + number)

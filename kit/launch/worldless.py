@@ -1,0 +1,23 @@
+"""Programs that talk with each other without a world: time goes on, and everybody has a turn."""
+
+from __future__ import annotations
+
+from kit.ros.graph import Graph
+from kit.runner import MAX_ROUNDS, Guest
+
+
+class Worldless:
+    """A graph and its guests, ticked as a runner ticks them."""
+
+    def __init__(self, graph: Graph, step_size: float = 0.01) -> None:
+        self.graph = graph
+        self.step_size = step_size
+        self.guests: list[Guest] = []
+
+    def tick(self) -> None:
+        """All that is due now; then time goes on by a step."""
+        for _ in range(MAX_ROUNDS):
+            self.graph.run_due()
+            if not sum(guest.exchange() for guest in self.guests):  # every one of them, so no any()
+                break
+        self.graph.advance(self.graph.now_ns + round(self.step_size * 1e9))

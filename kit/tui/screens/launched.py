@@ -1,0 +1,131 @@
+"""Watch what a launch file has started: its world, and what its programs say."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from textual.binding import Binding, BindingType
+from textual.message import Message
+
+from kit.inspection.sockets import sockets_folder
+from kit.tui.input.drive import DriveState
+from kit.tui.look import Look
+from kit.tui.screens.watch import WatchScreen
+from kit.tui.screens.watch_keys import LAUNCH_HELP, LAUNCH_KEYS
+
+if TYPE_CHECKING:
+    from kit.launch.finding import LaunchTarget
+    from kit.launch.launching import Launch, Line
+    from kit.launch.session import LaunchedSession
+    from kit.session import Session
+    from kit.workspace import Workspace
+
+
+class Refused(Message):
+    """The launch cannot be carried out."""
+
+
+class LaunchScreen(WatchScreen):
+    """The launch file's programs drive; keys reach those that listen to them."""
+
+    keys = LAUNCH_KEYS
+    help = LAUNCH_HELP
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("n", "nodes", "nodes"),
+        Binding("x", "next_drive_mode", show=False),
+    ]
+
+    def __init__(
+        self,
+        look: Look,
+        target: LaunchTarget,
+        arguments: Mapping[str, str],
+        *,
+        desk: Workspace,
+        seed: int = 0,
+        speed: float | None = None,
+    ) -> None:
+        self._name = target.file.name.partition(".")[0]
+        super().__init__(look, self._name, seed=seed, doors=sockets_folder(desk.folder))
+        self._look = look
+        self._target, self._arguments, self._desk, self._speed = target, arguments, desk, speed
+        self._launch: Launch | None = None
+        self._session: LaunchedSession | None = None
+        self._early: list[Line] = []
+        self._strength = 1.0
+        self.refusal: str | None = None
+        """Why the launch could not be carried out."""
+        self.has_no_world = False
+        """Whether the launch file starts no world, so that there is nothing to see."""
+
+    @property
+    def failures(self) -> list[str]:
+        """What has gone wrong with the launch's programs."""
+        return [] if self._launch is None else self._launch.failures
+
+    def open_world(self) -> None:
+        self.behind.open_session(self._open, self._factor)
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        strength = max(state.held.values(), default=1.0)
+        if messages or strength != self._strength:
+            self._strength = strength
+            self.behind.wish(lambda session: session.keys.publish(messages, strength))
+
+    def on_refused(self) -> None:
+        self.app.exit()
+
+    def action_nodes(self) -> None:
+        from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
+
+        if self.view is not None:
+            self.app.push_screen(GraphScreen(self._look, self.behind, self.place_name))
+
+    # In the helper's thread
+
+    def _open(self) -> Session:
+        from kit.host.failure import GuestError
+        from kit.launch.launching import Launch
+        from kit.launch.problems import CannotStart
+        from kit.launch.session import LaunchedSession
+        from kit.ros.graph import Graph
+        from kit.world.problems import WorldError
+
+        self._launch = launch = Launch(
+            self._target,
+            Graph(),
+            arguments=self._arguments,
+            seed=self._seed,
+            workspace=self._desk.folder,
+            name=f"{self._name}-{os.getpid()}",
+            say=self._said,
+        )
+        try:
+            launch.begin()
+            self.has_no_world = launch.world is None
+            if not self.has_no_world:
+                self._session = session = LaunchedSession(launch, seed=self._seed, watched=True)
+                for line in self._early:
+                    self._said(line)
+                launch.start()
+                return session
+        except GuestError as error:
+            self.refusal = str(error.failure)
+        except (CannotStart, WorldError, OSError) as problem:
+            self.refusal = str(problem)
+        launch.close()
+        self.post_message(Refused())
+        raise LookupError(self.refusal or "This launch file starts no world.")
+
+    def _factor(self, session: Session) -> float:
+        assert self._launch is not None
+        assert self._launch.world is not None
+        return self._speed or self._launch.world.factor
+
+    def _said(self, line: Line) -> None:
+        if self._session is None:
+            self._early.append(line)
+        else:
+            self._session.note(line.text, line.program)
