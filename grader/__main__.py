@@ -12,6 +12,8 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "check": ("grader.verbs.check", "Judge one submission: a verdict per criterion, and what to do next."),
     "new": ("grader.verbs.new", "Make an assignment's folder, to start from."),
     "self-test": ("grader.verbs.self_test", "Try an assignment out on its own solution and wrong solutions."),
+    "report": ("grader.verbs.report", "Write a result in another format."),
+    "ci": ("grader.verbs.ci", "Print a workflow file for GitHub or GitLab."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``grader --help``."""
 

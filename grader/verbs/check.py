@@ -117,4 +117,7 @@ def _worst(grading: Grading, replay: Path | None) -> str:
     if replay is not None and isinstance(worst, Drive):
         save(worst.recording, replay.absolute())
         ways = f"Watch it move: kit replay {replay}\n"
-    return f"\nThe worst episode, {worst.label} ({worst.outcome}):\n{shown}\n{ways}"
+    title = f"The worst episode, {worst.label} ({worst.outcome})"
+    if not isinstance(worst, Drive):
+        title = "What a robot does that has learnt this reward perfectly"
+    return f"\n{title}:\n{shown}\n{ways}"

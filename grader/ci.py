@@ -1,0 +1,98 @@
+"""Workflow files for a repository whose pushes are graded.
+
+The job that runs students' code has a read-only token and no secrets; what it found is published by a second job. For
+a grade that counts, the workflow and the assignment belong into the teacher's repository, not into the student's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+GITHUB: Final = """\
+# Made by `grader ci github`. Grades {submit} on every push.
+name: Grade
+on: [push, workflow_dispatch]
+permissions:
+  contents: read          # student code runs below: no token that could write
+jobs:
+  grade:
+    runs-on: ubuntu-24.04
+    timeout-minutes: 15
+    outputs:
+      result: ${{{{ steps.classroom.outputs.result }}}}
+    steps:
+      - uses: actions/checkout@v4
+        with:
+          persist-credentials: false
+      - uses: actions/setup-python@v5
+        with:
+          python-version: "3.12"
+      - run: python -m pip install --quiet robot-learning-kit
+      - name: Grade
+        id: classroom
+        shell: bash
+        run: |
+          status=0
+          python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student \\
+            --output "$RUNNER_TEMP/result.json" || status=$?
+          if [ ! -s "$RUNNER_TEMP/result.json" ]; then exit "$status"; fi
+          python -P -m grader report "$RUNNER_TEMP/result.json" --format markdown >> "$GITHUB_STEP_SUMMARY"
+          python -P -m grader report "$RUNNER_TEMP/result.json" --format junit --output "$RUNNER_TEMP/junit.xml"
+          python -P -m grader report "$RUNNER_TEMP/result.json" --format classroom --output "$RUNNER_TEMP/classroom.json"
+          echo "result=$(base64 -w0 < "$RUNNER_TEMP/classroom.json")" >> "$GITHUB_OUTPUT"
+          python -P -m grader report "$RUNNER_TEMP/result.json"
+          exit "$status"
+      - uses: actions/upload-artifact@v4
+        if: always()
+        with:
+          name: grade
+          path: |
+            ${{{{ runner.temp }}}}/result.json
+            ${{{{ runner.temp }}}}/junit.xml
+  report:
+    needs: grade
+    if: always() && needs.grade.outputs.result
+    runs-on: ubuntu-24.04
+    permissions:
+      checks: write
+    steps:
+      - uses: classroom-resources/autograding-grading-reporter@v1
+        env:
+          GRADE_RESULTS: ${{{{ needs.grade.outputs.result }}}}
+        with:
+          runners: grade
+"""
+
+GITLAB: Final = """\
+# Made by `grader ci gitlab`. Grades {submit} on every push.
+grade:
+  image: python:3.12
+  timeout: 15 minutes
+  variables:
+    GIT_DEPTH: "1"
+  script:
+    - python -m pip install --quiet robot-learning-kit
+    - >-
+      python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student --output result.json
+      || status=$?
+    - python -P -m grader report result.json --format junit --output junit.xml
+    - python -P -m grader report result.json
+    - exit ${{status:-0}}
+  artifacts:
+    when: always
+    paths: [result.json]
+    reports:
+      junit: junit.xml
+"""
+
+WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {"github": (".github/workflows/grade.yml", GITHUB), "gitlab": (".gitlab-ci.yml", GITLAB)}
+)
+"""Where each workflow file belongs, and its text."""
+
+
+def workflow(service: str, *, submit: str, assignment: str) -> str:
+    """The workflow file of a service. Names must be plain: they stand in a shell's double quotes."""
+    return WORKFLOWS[service][1].format(submit=submit, assignment=assignment)

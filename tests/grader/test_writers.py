@@ -1,0 +1,134 @@
+"""Every report says the same, and none carries out what a student wrote."""
+
+from __future__ import annotations
+
+import json
+from xml.etree import ElementTree
+
+import pytest
+
+from grader.result import Result, Status, Test, Visibility
+from grader.writers import FORMATS, cleaning, writer
+
+NASTY = {
+    "workflow command": "::set-output name=result::x",
+    "workflow command, later line": "fine\n   ::notice title=Autograding report::{}",
+    "workflow command, colons left over": ":::add-mask::::x",
+    "old command": "see ##[error]no",
+    "azure command": "##vso[task.setvariable variable=x]y",
+    "escape": "\x1b[2J\x1b]0;title\x07",
+    "8-bit escape": "\x9b2J",
+    "html": "<script>alert(1)</script><img src=x onerror=y>",
+    "link": "[click](javascript:alert(1)) ![](http://x/y.png)",
+    "mention": "@everyone @teacher",
+    "fence": "```\n# out of the block\n```",
+    "table": "a | b |\n| --- | --- |",
+    "formula": '=HYPERLINK("http://x","y")',
+    "right to left": "\u202egnp.exe",
+    "nul": "a\x00b\ufffe\uffff",
+    "lone surrogate": "\ud800",
+    "cdata": "]]> &amp; <!-- -->",
+}
+
+
+def result(text: str, status: Status = Status.FAIL) -> Result:
+    nasty = Test(
+        "reached", text, status, 1.0, 2.0, rationale=text, hints=(text, text), expected=text, actual=text, log=text
+    )
+    hidden = Test("h", "Hidden one", Status.FAIL, 0.0, 1.0, Visibility.HIDDEN, rationale="s3cret", log="s3cret")
+    return Result("reach", "v", "abc", "0.1", "public", 1, "linux", (nasty, hidden), (text,))
+
+
+@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
+@pytest.mark.parametrize("form", FORMATS)
+def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
+    report = writer(form)(result(text))
+    report.encode("utf-8")
+    for line in report.splitlines():
+        assert "::" not in line
+        assert "##[" not in line
+        assert "##vso[" not in line
+    assert all(sign.isprintable() or sign == "\n" for sign in report)
+    assert "\\u001b" not in report
+    assert "\\u202e" not in report
+
+
+@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
+def test_xml_and_json_can_be_read_again(text: str) -> None:
+    root = ElementTree.fromstring(writer("junit")(result(text)))
+    assert root.attrib["failures"] == "2"
+    for form in ("json", "gradescope", "classroom", "prairielearn", "check50"):
+        json.loads(writer(form)(result(text)))
+    assert Result.from_dict(json.loads(writer("json")(result(text)))).points == 1.0
+
+
+@pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
+def test_markdown_stays_text(text: str) -> None:
+    report = writer("markdown")(result(text))
+    assert "<" not in report.replace("&lt;", "")
+    assert "@" not in report
+    assert "](" not in report.replace("\\]\\(", "")
+    rows = [line for line in report.splitlines() if line.startswith("| ") and "---" not in line]
+    assert len(rows) == 3
+    assert all(row.replace("\\|", "").count("|") == 4 for row in rows)
+
+
+def test_a_block_of_code_cannot_be_left() -> None:
+    block = cleaning.fenced("``` ````\nx")
+    fence = block.splitlines()[0].removesuffix("text")
+    assert len(fence) == 5
+    assert block.count(fence) == 2
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x"])
+def test_a_spreadsheet_computes_nothing(text: str) -> None:
+    assert not cleaning.cell(text).startswith(("=", "+", "-", "@", "|", "%"))
+
+
+def test_cut_text_says_so() -> None:
+    assert cleaning.plain("x" * 5000).endswith("(shortened)")
+
+
+@pytest.mark.parametrize("form", ["classroom", "prairielearn", "check50", "markdown"])
+def test_reports_for_students_hide_what_is_hidden(form: str) -> None:
+    report = writer(form)(result("no"))
+    assert "s3cret" not in report
+    assert "Hidden one" in report
+
+
+def test_gradescope_gets_the_visibility_and_not_a_broken_grade() -> None:
+    content = json.loads(writer("gradescope")(result("no")))
+    assert [test["visibility"] for test in content["tests"]] == ["visible", "hidden"]
+    assert content["score"] == sum(test["score"] for test in content["tests"]) == 1.0
+    broken = json.loads(writer("gradescope")(result("no", Status.GRADER_ERROR)))
+    assert "score" not in broken
+    assert "tests" not in broken
+
+
+def test_classroom_always_gets_tests_and_a_maximum() -> None:
+    for status, expected in ((Status.PASS, "fail"), (Status.GRADER_ERROR, "error")):
+        content = json.loads(writer("classroom")(result("no", status)))
+        assert (content["status"], content["max_score"]) == (expected, 3)
+        assert isinstance(content["tests"], list)
+
+
+def test_prairielearn_does_not_grade_what_did_not_run() -> None:
+    stopped = Test("a", "A", Status.STUDENT_ERROR, 0.0, 1.0, rationale="work.py:3: SyntaxError")
+    later = Test("b", "B", Status.SKIPPED, 0.0, 1.0, depends_on="a")
+    content = json.loads(writer("prairielearn")(Result("r", "v", "s", "g", "public", 1, "p", (stopped, later))))
+    assert content["gradable"] is False
+    assert content["format_errors"] == ["work.py:3: SyntaxError"]
+    assert json.loads(writer("prairielearn")(result("no")))["score"] == pytest.approx(1 / 3)
+
+
+def test_check50_tells_failed_from_unknown() -> None:
+    assert [test["passed"] for test in json.loads(writer("check50")(result("no")))["results"]] == [False, False]
+    broken = json.loads(writer("check50")(result("no", Status.GRADER_ERROR)))["results"]
+    assert broken[0]["passed"] is None
+
+
+def test_junit_tells_a_failure_from_an_error() -> None:
+    root = ElementTree.fromstring(writer("junit")(result("no", Status.GRADER_ERROR)))
+    assert (root.attrib["failures"], root.attrib["errors"]) == ("1", "1")
+    names = [case.attrib["name"] for case in root.iter("testcase")]
+    assert len(set(names)) == len(names)
