@@ -34,7 +34,8 @@ def lines_allowed(source: Path) -> int:
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_module_fits_in_a_head(source: Path) -> None:
     assert len(source.read_text().splitlines()) <= lines_allowed(source)
-    assert source.stem not in EMPTY_NAMES
+    if not {"names", "stand_ins"}.intersection(source.parts):  # those are called as ROS and gym call theirs
+        assert source.stem not in EMPTY_NAMES
 
 
 def test_all_jitted_code_is_in_one_file() -> None:
