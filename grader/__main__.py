@@ -14,8 +14,12 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "self-test": ("grader.verbs.self_test", "Try an assignment out on its own solution and wrong solutions."),
     "report": ("grader.verbs.report", "Write a result in another format."),
     "ci": ("grader.verbs.ci", "Print a workflow file for GitHub or GitLab."),
+    "cohort": ("grader.verbs.cohort", "Grade a folder of submissions; go on where it was interrupted."),
+    "work": ("grader.verbs.work", "Work off a share of a cohort's queue, on another machine."),
+    "worker": ("grader.verbs.worker", ""),
+    "gradebook": ("grader.verbs.gradebook", "Print a cohort's gradebook: late rules, and what has changed."),
 }
-"""Every verb: the module that holds its ``command``, and its line in ``grader --help``."""
+"""Every verb: the module that holds its ``command``, and its line in ``grader --help``; none if it is not for people."""
 
 
 class LazyGroup(click.Group):
@@ -43,7 +47,7 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items()])
+            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items() if text])
 
 
 @click.group(

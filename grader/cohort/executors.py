@@ -1,0 +1,73 @@
+"""Who works the queue off: processes here, a SLURM job array, or a Dask cluster. All leave results in the folder."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+from grader.cohort.queue import Queue
+from grader.cohort.work import Pool, work
+from kit.workspace import write_atomically
+
+SCRIPT: Final = "slurm.sh"
+
+
+class CannotRun(Exception):
+    """This machine has not what an executor needs; the message says what to do."""
+
+
+def locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
+    """In processes on this machine."""
+    Pool(queue, keys, jobs, on_done).run()
+
+
+def slurm_script(queue: Queue, shards: int) -> str:
+    """An array job of ``shards`` tasks, each of which works off its share of the queue."""
+    command = shlex.join([sys.executable, "-P", "-m", "grader", "work", str(queue.folder.absolute())])
+    return f"""#!/bin/sh
+#SBATCH --job-name=grader
+#SBATCH --array=0-{shards - 1}
+#SBATCH --cpus-per-task=2
+#SBATCH --mem=4G
+#SBATCH --time=04:00:00
+#SBATCH --output={shlex.quote(str(queue.folder.absolute()))}/slurm-%a.log
+exec {command} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
+"""
+
+
+def by_slurm(queue: Queue, shards: int) -> str:
+    """Submits the array job and waits until it is over; what sbatch said. Raises CannotRun."""
+    script = queue.folder / SCRIPT
+    write_atomically(script, slurm_script(queue, shards).encode())
+    sbatch = shutil.which("sbatch")
+    if sbatch is None:
+        raise CannotRun(f"There is no sbatch here. On the cluster's front end run: sbatch {script}")
+    done = subprocess.run([sbatch, "--wait", str(script)], capture_output=True, text=True, check=False)
+    if done.returncode != 0 and queue.waiting():
+        raise CannotRun(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
+    return done.stdout.strip()
+
+
+def by_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
+    """On a Dask cluster whose machines all see the queue folder. Only keys travel. Raises CannotRun."""
+    try:
+        from distributed import Client, as_completed
+    except ImportError:
+        raise CannotRun("Dask is not installed: pip install 'robot-learning-kit[cluster]'.") from None
+    with Client(address) as client:
+        futures = client.map(
+            work_key, [str(queue.folder.absolute())] * len(keys), keys, pure=False, retries=1
+        )
+        for future in as_completed(futures):
+            on_done(future.result())
+
+
+def work_key(folder: str, key: str) -> str:
+    """One job, by names alone."""
+    work(Queue(Path(folder)), key)
+    return key

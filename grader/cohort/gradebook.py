@@ -1,0 +1,127 @@
+"""The gradebook: a row per submission, from the results alone; the same results, the same bytes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from typing import Any, Final
+
+from grader.cohort.late import LatePolicy
+from grader.cohort.queue import Queue
+from grader.result import Status, Verdict, amount
+from grader.writers.cleaning import cell, one_line
+
+REFUSED: Final = "refused"
+WAITING: Final = "waiting"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What one submission earned."""
+
+    name: str
+    verdict: str
+    """``pass``, ``fail``, ``broken``, ``refused`` or ``waiting``."""
+    points: float | None
+    """Before lateness; None where there is no grade."""
+    max_points: float
+    kept: float
+    """The share that is kept in spite of lateness."""
+    final: float | None
+    tests: Mapping[str, float]
+    statuses: Mapping[str, str]
+    note: str
+    submission: str
+
+
+def rows(
+    queue: Queue, policy: LatePolicy | None = None, times: Mapping[str, datetime] | None = None
+) -> tuple[Row, ...]:
+    """In the order of names."""
+    return tuple(sorted(_rows(queue, policy, times or {}), key=lambda row: row.name))
+
+
+def _rows(queue: Queue, policy: LatePolicy | None, times: Mapping[str, datetime]) -> Iterator[Row]:
+    most = round(queue.assignment().max_points, 6)
+    for entry in queue.entries():
+        at = times.get(entry.name)
+        kept = policy.kept(at) if policy is not None and at is not None else 1.0
+        if entry.key is None:
+            yield Row(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
+            continue
+        result = queue.result(entry.key)
+        if result is None:
+            yield Row(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
+            continue
+        points = result.points
+        yield Row(
+            entry.name,
+            result.verdict.value,
+            points,
+            most,
+            kept,
+            None if points is None else round(points * kept, 6),
+            {test.id: test.points for test in result.tests},
+            {test.id: test.status.value for test in result.tests},
+            one_line(next((test.rationale for test in result.tests if test.status is not Status.PASS), "")),
+            result.submission,
+        )
+
+
+def as_json(table: Sequence[Row]) -> str:
+    return json.dumps([asdict(row) for row in table], indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+
+def as_csv(table: Sequence[Row]) -> str:
+    """For a spreadsheet, in which no cell is a formula."""
+    criteria = sorted({identity for row in table for identity in row.tests})
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        ["name", "verdict", "final", "points", "max_points", "kept", *map(cell, criteria), "note"]
+    )
+    for row in table:
+        tests = [_number(row.tests.get(identity)) for identity in criteria]
+        sums = [_number(row.final), _number(row.points), amount(row.max_points), amount(row.kept)]
+        writer.writerow([cell(row.name), row.verdict, *sums, *tests, cell(row.note)])
+    return out.getvalue()
+
+
+def _number(points: float | None) -> str:
+    return "" if points is None else amount(points)
+
+
+def read_json(text: str) -> tuple[Row, ...]:
+    """What ``as_json`` made. Raises ValueError."""
+    try:
+        return tuple(Row(**each) for each in json.loads(text))
+    except (TypeError, ValueError):
+        raise ValueError("not a gradebook in JSON") from None
+
+
+def changes(before: Sequence[Row], after: Sequence[Row]) -> Iterator[str]:
+    """What another grading changed, a line each: to be read before it is published."""
+    old, new = {row.name: row for row in before}, {row.name: row for row in after}
+    for name in sorted(old.keys() | new.keys()):
+        was, now = old.get(name), new.get(name)
+        if was is None or now is None:
+            yield f"{one_line(name)}: {'new' if was is None else 'gone'}"
+        elif (was.final, was.verdict, dict(was.statuses)) != (now.final, now.verdict, dict(now.statuses)):
+            tests = [
+                f"{each} {was.statuses.get(each, '-')} -> {now.statuses.get(each, '-')}"
+                for each in sorted(was.statuses.keys() | now.statuses.keys())
+                if was.statuses.get(each) != now.statuses.get(each)
+            ]
+            detail = f" ({', '.join(tests)})" if tests else ""
+            yield f"{one_line(name)}: {_number(was.final) or 'none'} -> {_number(now.final) or 'none'}{detail}"
+
+
+def summary(table: Sequence[Row]) -> str:
+    """One line: how many of each."""
+    kinds = [Verdict.PASS.value, Verdict.FAIL.value, Verdict.BROKEN.value, REFUSED, WAITING]
+    counts: dict[str, Any] = {kind: sum(row.verdict == kind for row in table) for kind in kinds}
+    return ", ".join(f"{count} {kind}" for kind, count in counts.items() if count) or "nobody"

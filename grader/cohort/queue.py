@@ -1,0 +1,165 @@
+"""The queue folder: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from grader.archives import Refused, is_archive
+from grader.assignment import Assignment
+from grader.grading import grader_version
+from grader.reading import read
+from grader.result import SCHEMA, Result
+from grader.session import Terms
+from grader.submission import WORTHLESS, Submission, take
+from kit.host.confine import Level
+from kit.workspace import write_atomically
+
+MANIFEST: Final = "manifest.json"
+
+
+class QueueError(Exception):
+    """The queue folder cannot be used; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One submission of the cohort."""
+
+    name: str
+    key: str | None
+    """Of its job; None where it was refused."""
+    refused: str = ""
+    """Why it cannot be graded, for the student."""
+
+
+@dataclass(frozen=True, slots=True)
+class Queue:
+    """A queue folder."""
+
+    folder: Path
+
+    @property
+    def assignment_folder(self) -> Path:
+        return self.folder / "assignment"
+
+    def job(self, key: str) -> Path:
+        return self.folder / "jobs" / f"{key}.json"
+
+    def result_file(self, key: str) -> Path:
+        return self.folder / "results" / f"{key}.json"
+
+    def assignment(self) -> Assignment:
+        """As it was when the queue was made. Raises WorldError."""
+        return read(self.assignment_folder)
+
+    def manifest(self) -> dict[str, Any]:
+        try:
+            content: dict[str, Any] = json.loads((self.folder / MANIFEST).read_bytes())
+        except (OSError, ValueError):
+            raise QueueError(f"{self.folder}: no queue of the grader; `grader cohort` makes one.") from None
+        return content
+
+    def terms(self) -> Terms:
+        content = self.manifest()
+        return Terms(Level(content["level"]), bool(content["secret"]), may_fall=False)
+
+    def entries(self) -> tuple[Entry, ...]:
+        return tuple(Entry(**each) for each in self.manifest()["entries"])
+
+    def result(self, key: str) -> Result | None:
+        """None if there is none yet, or none that can be read: then it is graded again."""
+        try:
+            return Result.from_dict(json.loads(self.result_file(key).read_bytes()))
+        except (OSError, KeyError, TypeError, ValueError):
+            return None
+
+    def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
+        """The keys without a result, of those that belong to shard ``i`` of ``n``."""
+        keys = sorted({entry.key for entry in self.entries() if entry.key is not None})
+        number, count = shard
+        return tuple(key for key in keys if int(key, 16) % count == number and self.result(key) is None)
+
+    def submission(self, key: str) -> Submission:
+        content = json.loads(self.job(key).read_bytes())
+        files = {name: base64.b64decode(data) for name, data in content["files"].items()}
+        return Submission(content["name"], content["main"], files)
+
+    def keep(self, key: str, result: Result) -> None:
+        write_atomically(
+            self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
+        )
+
+
+def key_of(submission: Submission, assignment: Assignment, terms: Terms) -> str:
+    """What decides a result, as one name."""
+    level = assignment.level if terms.level is None else terms.level
+    parts = (submission.digest, assignment.version, grader_version(), SCHEMA, terms.secret, int(level))
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def prepare(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) -> tuple[Entry, ...]:
+    """Makes or renews the queue for all submissions in the folder ``cohort``. Results that fit are kept.
+
+    Raises QueueError, OSError.
+    """
+    for part in ("jobs", "results"):
+        (queue.folder / part).mkdir(parents=True, exist_ok=True)
+    _copy_assignment(queue, assignment)
+    entries = tuple(_entries(queue, cohort, assignment, terms))
+    level = assignment.level if terms.level is None else terms.level
+    content = {
+        "assignment": assignment.id,
+        "assignment_version": assignment.version,
+        "grader_version": grader_version(),
+        "secret": terms.secret,
+        "level": int(level),
+        "entries": [{"name": each.name, "key": each.key, "refused": each.refused} for each in entries],
+    }
+    write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
+    return entries
+
+
+def _entries(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) -> Iterator[Entry]:
+    names: set[str] = set()
+    for path in sorted(cohort.iterdir()):
+        if path.name.startswith(".") or path.name in WORTHLESS:
+            continue
+        name = (
+            path.name
+            if path.is_dir()
+            else (path.name.partition(".")[0] if is_archive(path.name) else path.stem)
+        )
+        if name in names:
+            name = path.name
+        names.add(name)
+        try:
+            submission = take(path, assignment.submit)
+        except Refused as refused:
+            yield Entry(name, None, str(refused))
+            continue
+        key = key_of(submission, assignment, terms)
+        if not queue.job(key).exists():
+            files = {each: base64.b64encode(data).decode() for each, data in sorted(submission.files.items())}
+            job = {"name": name, "main": submission.main, "files": files}
+            write_atomically(queue.job(key), json.dumps(job).encode())
+        yield Entry(name, key)
+
+
+def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
+    """The assignment as it is now, beside the jobs; a whole copy or none."""
+    target = queue.assignment_folder
+    if target.exists():
+        if read(target).version == assignment.version:
+            return
+        shutil.rmtree(target)
+    coming = queue.folder / "assignment.coming"
+    shutil.rmtree(coming, ignore_errors=True)
+    shutil.copytree(assignment.folder, coming)
+    coming.rename(target)

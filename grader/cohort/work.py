@@ -1,0 +1,141 @@
+"""Working off jobs: one at a time in this process, or many in processes that may die without harm."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import IO, Final
+
+from grader.assignment import Assignment
+from grader.cohort.queue import Queue
+from grader.grading import grader_version
+from grader.result import Result, Status, Test, Verdict
+from grader.session import grade
+
+DONE: Final = "done"
+TRIES: Final = 2
+"""How often a job is tried whose grader breaks. What fails for the student's sake is never tried again."""
+
+
+@cache
+def _assignment(folder: Path, version: str) -> Assignment:
+    return Queue(folder).assignment()
+
+
+def work(queue: Queue, key: str) -> Result:
+    """Grades one job and keeps its result."""
+    manifest = queue.manifest()
+    assignment = _assignment(queue.folder, manifest["assignment_version"])
+    submission, terms = queue.submission(key), queue.terms()
+    result = grade(assignment, submission, terms)
+    for _ in range(TRIES - 1):
+        if result.verdict is not Verdict.BROKEN:
+            break
+        result = grade(assignment, submission, terms)
+    queue.keep(key, result)
+    return result
+
+
+def serve(queue: Queue, asked: IO[str], told: IO[str]) -> None:
+    """A worker's life: a key on each line in, the same key on a line out when its result is kept."""
+    for line in asked:
+        key = line.strip()
+        work(queue, key)
+        told.write(f"{DONE} {key}\n")
+        told.flush()
+
+
+class Pool:
+    """``jobs`` worker processes. A worker that dies takes its job's try with it, and no more."""
+
+    def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
+        self._queue = queue
+        self._waiting = deque(keys)
+        self._jobs = min(jobs, len(keys))
+        self._on_done = on_done
+        self._lock = threading.Lock()
+        self._problems: list[Exception] = []
+
+    def run(self) -> None:
+        """Until every key has a result. Raises OSError if results cannot be kept."""
+        threads = [threading.Thread(target=self._feed) for _ in range(self._jobs)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        if self._problems:
+            raise self._problems[0]
+
+    def _feed(self) -> None:
+        """Keeps one worker busy."""
+        worker: subprocess.Popen[str] | None = None
+        try:
+            while (key := self._next()) is not None:
+                for attempt in range(TRIES):
+                    worker = worker or self._start()
+                    if self._is_done(worker, key):
+                        break
+                    worker.kill()
+                    worker.wait()
+                    worker = None
+                    if attempt == TRIES - 1:
+                        self._queue.keep(key, _incident(self._queue, key))
+                with self._lock:
+                    self._on_done(key)
+        except Exception as error:  # noqa: BLE001  # a thread's errors are raised where it was started
+            self._problems.append(error)
+        finally:
+            if worker is not None and worker.stdin is not None:
+                worker.stdin.close()
+                worker.wait()
+
+    def _next(self) -> str | None:
+        with self._lock:
+            return self._waiting.popleft() if self._waiting and not self._problems else None
+
+    def _start(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, "-P", "-m", "grader", "worker", str(self._queue.folder.absolute())],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    @staticmethod
+    def _is_done(worker: subprocess.Popen[str], key: str) -> bool:
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        try:
+            worker.stdin.write(f"{key}\n")
+            worker.stdin.flush()
+        except BrokenPipeError:
+            return False
+        return worker.stdout.readline() == f"{DONE} {key}\n"
+
+
+def _incident(queue: Queue, key: str) -> Result:
+    """The grader died, more than once: no grade, and somebody has to look."""
+    assignment, submission, terms = queue.assignment(), queue.submission(key), queue.terms()
+    tests = tuple(
+        replace(
+            Test(each.id, each.title, Status.GRADER_ERROR, 0.0, each.points, each.visibility),
+            rationale="The grader died while it graded this. Nothing is lost; your teacher is told.",
+        )
+        for each in assignment.criteria
+    )
+    return Result(
+        assignment.id,
+        assignment.version,
+        submission.digest,
+        grader_version(),
+        "public+secret" if terms.secret else "public",
+        int(terms.level or 0),
+        sys.platform,
+        tests,
+    )
