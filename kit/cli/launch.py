@@ -155,7 +155,7 @@ def _run_plainly(
     from kit.ros.graph import Graph
     from kit.world.problems import WorldError
 
-    name = target.file.name.partition(".")[0]
+    name = target.name
     launch = Launch(
         target,
         Graph(),

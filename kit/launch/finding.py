@@ -19,6 +19,11 @@ class LaunchTarget:
     search: tuple[Path, ...]
     """Folders in which packages are looked for, in this order."""
 
+    @property
+    def name(self) -> str:
+        """What the launch is called: ``maze`` of ``maze.launch.py``."""
+        return self.file.name.partition(".")[0]
+
 
 def find_launch(where: str, file: str | None, more: Iterable[Path]) -> LaunchTarget:
     """The launch file that ``kit launch WHERE [FILE]`` means. ``more``: where else packages are looked for.

@@ -32,9 +32,13 @@ class Line:
     """``random_walk-2``, or ``launch``."""
     text: str
     stream: Literal["out", "err"] = "out"
+    severity: str | None = None
+    """Of what the launch says of a program or of itself; None: the program's own words."""
 
     def __str__(self) -> str:
-        return f"[{self.program}] {self.text}"
+        if self.severity is None:
+            return f"[{self.program}] {self.text}"
+        return f"[{self.severity}] [{self.program}]: {self.text}"
 
 
 @dataclass(slots=True)
@@ -131,6 +135,7 @@ class Launch:
     def interrupt(self, reason: str) -> None:
         """The user wants the end: the launch file may react, then everything is ended."""
         if not self.is_over:
+            self._tell(f"ended by the user: {reason}")
             self._ask([["interrupted", reason]])
             self._end_all()
 
@@ -190,7 +195,7 @@ class Launch:
             process = start(request, self._means)
             self._running[request.number] = _Running(request, process)
             self._happened.append(["started", request.number, process.pid])
-            self._say(Line("INFO", f"[{request.name}]: process started with pid [{process.pid}]"))
+            self._tell(f"process started with pid [{process.pid}]", name=request.name)
 
     def _note_end(self, number: int, running: _Running, ended: Ended) -> None:
         pid, name = running.process.pid, running.request.name
@@ -198,9 +203,9 @@ class Launch:
         del self._running[number]
         self._happened.append(["exited", number, pid, ended.code])
         if ended.code == 0:
-            self._say(Line("INFO", f"[{name}]: process has finished cleanly [pid {pid}]"))
+            self._tell(f"process has finished cleanly [pid {pid}]", name=name)
             return
-        self._say(Line("ERROR", f"[{name}]: process has died [pid {pid}, exit code {ended.code}]", "err"))
+        self._tell(f"process has died [pid {pid}, exit code {ended.code}]", "ERROR", name=name)
         reason = ended.reason or f"exit code {ended.code}"
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
@@ -228,8 +233,8 @@ class Launch:
         for text, stream in running.process.take_lines():
             self._say(Line(running.request.name, text, stream))
 
-    def _tell(self, text: str, severity: str = "INFO") -> None:
-        self._say(Line(severity, f"[launch]: {text}", "err" if severity in ("ERROR", "FATAL") else "out"))
+    def _tell(self, text: str, severity: str = "INFO", *, name: str = "launch") -> None:
+        self._say(Line(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity))
 
     def _fail(self, text: str) -> None:
         self.failures.append(text)

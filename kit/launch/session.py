@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from kit.launch.launching import Launch
@@ -16,8 +17,9 @@ class LaunchedSession(Session):
         wanted = launch.world
         assert wanted is not None, "a launch without a world"
         file = wanted.path.absolute()
+        place = place_in_file(file, _root(file, launch.target.folder))
         super().__init__(
-            place_in_file(file, _root(file, launch.target.folder)),
+            replace(place, title=launch.target.name),
             seed=seed,
             step_size=wanted.step_size,
             watched=watched,

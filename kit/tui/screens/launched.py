@@ -47,7 +47,7 @@ class LaunchScreen(WatchScreen):
         seed: int = 0,
         speed: float | None = None,
     ) -> None:
-        self._name = target.file.name.partition(".")[0]
+        self._name = target.name
         super().__init__(look, self._name, seed=seed, doors=sockets_folder(desk.folder))
         self._look = look
         self._target, self._arguments, self._desk, self._speed = target, arguments, desk, speed
