@@ -15,11 +15,16 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.play",
         "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does).",
     ),
+    "drive": ("kit.cli.play", "The same as `play`: `kit drive pair_turn --controller fields`."),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
     "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
     "world": ("kit.cli.world", "Check a world: its errors, who collides with whom, which laser sees whom."),
     "layers": ("kit.cli.layers", "Plan a world's collision layers: the provably smallest set."),
+    "fields": (
+        "kit.cli.fields",
+        "Potential fields: show a map's, test who follows them, the dissertation's tables beside ours.",
+    ),
     "launch": (
         "kit.cli.launch",
         "Carry out a ROS 2 launch file, with the package for Flatland around it as it is.",

@@ -53,7 +53,7 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
 
     import numpy as np
 
-    from kit.learning.events import Tested
+    from kit.learning.events import Examined
     from kit.learning.runs import find_run
     from kit.learning.telling import shares_of
     from kit.picture.curve import Axes, Curve, draw_curves
@@ -64,7 +64,7 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
         tests = [
             event
             for event in find_run(learning_options.runs_folder(workspace), name).events()
-            if isinstance(event, Tested)
+            if isinstance(event, Examined)
         ]
         means = [float(np.mean([*shares_of(test).values()])) for test in tests]
         drawn.append(Curve(name, np.array([float(test.steps) for test in tests]), np.array(means)))

@@ -95,9 +95,10 @@ def _reading(function: Callable[..., None]) -> Callable[..., None]:
     return decorated
 
 
-@click.group()
-def command() -> None:
-    """Plan collision layers for Flatland worlds.
+@click.group(invoke_without_command=True)
+@click.pass_context
+def command(context: click.Context) -> None:
+    """Plan collision layers for Flatland worlds. Without a verb, on a full screen: build a case and go through it.
 
     In Flatland two things collide when they share a layer, and a laser sees what is in a layer it watches. A world
     has 16 layers. This finds the fewest that do what you ask, proves that there cannot be fewer, and writes them
@@ -110,6 +111,17 @@ def command() -> None:
       kit layers plan my.world.yaml --patch  what would change in your files
       kit layers check my.world.yaml         for CI: exit code 3 if fewer would do
     """
+    if context.invoked_subcommand is None:
+        terminal = options.terminal()
+        if terminal.plain.value:
+            click.echo(context.get_help())
+            return
+        from kit.cli.layers_screen import show_on_screen
+        from kit.layers.examples import EXAMPLES
+        from kit.layers.tasks import open_task
+
+        first = next(iter(EXAMPLES))
+        show_on_screen(open_task(first), first, terminal)
 
 
 @command.command()
@@ -234,6 +246,7 @@ def check(
 @command.command()
 @click.argument("target", metavar="FILE_OR_NAME")
 @click.option("--pictures", is_flag=True, help="Draw the graph at every step, with the struck edges.")
+@click.option("--screen", "on_screen", is_flag=True, help="Go through it on a full screen.")
 @click.option(
     "--glyphs",
     type=click.Choice(("auto", "braille", "ascii")),
@@ -245,6 +258,7 @@ def check(
 def explain(
     target: str,
     pictures: bool,
+    on_screen: bool,
     glyphs: str,
     reading: _Reading,
 ) -> None:
@@ -264,6 +278,10 @@ def explain(
 
     with _mistakes():
         task = reading.open(target)
+        if on_screen:
+            from kit.cli.layers_screen import show_on_screen
+
+            show_on_screen(task, Path(target).name)
         run = greedy(task.case)
         shown.echo(words.wrapped(task.case.title))
         shown.echo(plain(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
@@ -281,11 +299,13 @@ def explain(
 
 @command.command()
 @click.argument("name", required=False)
-def example(name: str | None) -> None:
+@click.option("--screen", "on_screen", is_flag=True, help="Go through it on a full screen.")
+def example(name: str | None, on_screen: bool) -> None:
     """Print one of the cases to learn from as a requirements file; without a NAME, list them.
 
     \b
       kit layers example slides-lasers > slides.yaml
+      kit layers example slides-lasers --screen
     """
     from kit.layers.examples import EXAMPLES
     from kit.layers.reading import written
@@ -294,6 +314,11 @@ def example(name: str | None) -> None:
     if name is None:
         shown.echo(table([(key, case.title) for key, case in EXAMPLES.items()]))
         shown.echo(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
+    elif name in EXAMPLES and on_screen:
+        from kit.cli.layers_screen import show_on_screen
+        from kit.layers.tasks import open_task
+
+        show_on_screen(open_task(name), name)
     elif name in EXAMPLES:
         click.echo(written(EXAMPLES[name]), nl=False)
     else:

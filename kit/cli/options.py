@@ -50,12 +50,19 @@ seed: Decorator = click.option(
     show_default=True,
     help="Of all noise and chance: the same seed, the same run.",
 )
-controller: Decorator = click.option(
-    "--controller",
-    default="random_walk",
-    show_default=True,
-    help="A controller by name, or a Python file with a ROS 2 node.",
-)
+
+
+def controller_of(default: str) -> Decorator:
+    """Who drives, unless somebody else is named."""
+    return click.option(
+        "--controller",
+        default=default,
+        show_default=True,
+        help="A controller by name, or a Python file with a ROS 2 node.",
+    )
+
+
+controller: Decorator = controller_of("random_walk")
 case: Decorator = click.option(
     "--case", help="Which start and target of a map with several; `kit maps` lists them."
 )

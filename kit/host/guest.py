@@ -104,6 +104,11 @@ class Guest:
         return self._child.level
 
     @property
+    def wake_ns(self) -> int | None:
+        """When it wants to go on by itself; None: only when something is said."""
+        return self._wake_ns
+
+    @property
     def is_running(self) -> bool:
         return self._joined and self.failure is None and not self.has_ended
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import select
 import socket
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cached_property
@@ -30,6 +32,10 @@ FAREWELL_S: Final = 2.0
 
 class WorldGone(Exception):
     """The world has ended, or has shown the visitor out."""
+
+
+class NoAnswer(Exception):
+    """A service has not answered in time. The visit is over with that."""
 
 
 class Visit:
@@ -85,11 +91,20 @@ class Visit:
             node.destroy_publisher(publisher)
         return node
 
-    def call(self, srv_type: type[Service], name: str, request: Message) -> Any:
-        """Asks a service and waits for its response."""
+    def call(
+        self, srv_type: type[Service], name: str, request: Message, *, patience_s: float | None = None
+    ) -> Any:
+        """Asks a service and waits for its response. Raises NoAnswer after ``patience_s`` of wall clock."""
         client = self.node.create_client(srv_type, name)
         future = client.call_async(request)
-        self.spin(self.node, future.done, future)
+        if patience_s is not None:
+            self._talk.deadline = time.monotonic() + patience_s
+        try:
+            self.spin(self.node, future.done, future)
+        except TimeoutError:
+            raise NoAnswer(f"{name} has not answered within {patience_s:g} s") from None
+        finally:
+            self._talk.deadline = None
         self.node.destroy_client(client)
         return future.result()
 
@@ -122,6 +137,8 @@ class _Talk:
         self._line = Line(connection)
         self._seq = 0
         self.is_our_turn = False
+        self.deadline: float | None = None
+        """Until when the world must have said something [monotonic s]; None: no matter when."""
 
     def answer(self, kind: str, *content: Json) -> None:
         self.is_our_turn = False
@@ -131,6 +148,11 @@ class _Talk:
             raise WorldGone("The world has ended.") from None
 
     def next_question(self) -> list[Json]:
+        """Raises WorldGone, and TimeoutError at the deadline."""
+        if self.deadline is not None:
+            left = max(0.0, self.deadline - time.monotonic())
+            if not select.select([self._connection], [], [], left)[0]:
+                raise TimeoutError
         try:
             kind, self._seq, *content = self._line.receive()
         except (EOFError, OSError):

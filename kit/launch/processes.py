@@ -52,6 +52,10 @@ class Process(Protocol):
     def wait_until_started(self) -> None:
         """Until it is in the graph, or has failed to be."""
 
+    @property
+    def wake_ns(self) -> int | None:
+        """When it wants to go on by itself [the graph's time]; None: only when something is said."""
+
     def exchange(self) -> bool:
         """As a runner's guest."""
 
@@ -97,6 +101,10 @@ class GuestProcess:
             lines.append(Printed(f"({printed.dropped} bytes more were printed and are left out)", "err"))
         return lines
 
+    @property
+    def wake_ns(self) -> int | None:
+        return self._guest.wake_ns
+
     def exchange(self) -> bool:
         return self._has_joined and self._guest.exchange()
 
@@ -125,6 +133,10 @@ class OwnNode:
 
     def wait_until_started(self) -> None:
         """It is there at once."""
+
+    @property
+    def wake_ns(self) -> int | None:
+        return None
 
     def exchange(self) -> bool:
         return False
@@ -184,6 +196,10 @@ class CommandProcess:
 
     def wait_until_started(self) -> None:
         """It is there at once."""
+
+    @property
+    def wake_ns(self) -> int | None:
+        return None
 
     def exchange(self) -> bool:
         return False

@@ -308,9 +308,9 @@ def _way_to_read(
 
 @contextmanager
 def _opened(folder: Path) -> Iterator[Reader]:
+    if not (folder / "metadata.yaml").is_file():
+        raise BagError(f"{folder}: not a bag: a bag is a folder with a metadata.yaml in it.")
     try:
-        if not (folder / "metadata.yaml").is_file():
-            raise BagError(f"{folder}: not a bag: a bag is a folder with a metadata.yaml in it.")
         reader = Reader(folder)
         reader.open()
     except (OSError, ReaderError) as problem:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import click
 import yaml
@@ -14,6 +14,7 @@ from kit.cli.ros.visiting import refuse, visiting
 from kit.inspection.graph_text import absolute, node_names
 from kit.inspection.parameter_text import description, nested, type_text, value_text
 from kit.inspection.visit import Visit
+from kit.msg.message import Message, Service
 from kit.msg.rcl_interfaces import (
     DescribeParameters,
     GetParameters,
@@ -28,6 +29,9 @@ from kit.ros.naming import validate_full_topic_name
 from kit.ros.parameter import Parameter as TypedParameter
 from kit.ros.parameter import parameter_value_to_python
 from kit.ros.parameter_files import get_parameter_value, read_parameter_file
+
+PATIENCE_S: Final = 5.0
+"""How long a node may take to answer."""
 
 hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden nodes too.")
 
@@ -83,7 +87,7 @@ def get(visit: Visit, name: str, parameter: str, hide_type: bool, hidden: bool) 
     """
     node = _existing(visit, name, hidden=hidden)
     request = GetParameters.Request(names=[parameter])
-    values = visit.call(GetParameters, f"{node}/get_parameters", request).values
+    values = _ask(visit, GetParameters, node, "get_parameters", request).values
     if not values:
         refuse("Parameter not set")
     click.echo(value_text(values[0], hide_type=hide_type))
@@ -137,7 +141,7 @@ def dump(visit: Visit, name: str, hidden: bool) -> None:
     """All parameters of a node, as a file that `load` and `--params-file` take."""
     node = _existing(visit, name, hidden=hidden)
     names = _names(visit, node)
-    values = visit.call(GetParameters, f"{node}/get_parameters", GetParameters.Request(names=names)).values
+    values = _ask(visit, GetParameters, node, "get_parameters", GetParameters.Request(names=names)).values
     tree = nested(zip(names, map(parameter_value_to_python, values), strict=True))
     click.echo(yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False))
 
@@ -188,19 +192,23 @@ def _existing(visit: Visit, name: str, *, hidden: bool) -> str:
     return node
 
 
+def _ask(visit: Visit, cls: type[Service], node: str, service: str, request: Message) -> Any:
+    return visit.call(cls, f"{node}/{service}", request, patience_s=PATIENCE_S)
+
+
 def _names(visit: Visit, node: str, prefixes: Sequence[str] = ()) -> list[str]:
     request = ListParameters.Request(prefixes=list(prefixes))
-    return sorted(visit.call(ListParameters, f"{node}/list_parameters", request).result.names)
+    return sorted(_ask(visit, ListParameters, node, "list_parameters", request).result.names)
 
 
 def _describe(visit: Visit, node: str, names: Sequence[str]) -> list[Any]:
     request = DescribeParameters.Request(names=list(names))
-    return list(visit.call(DescribeParameters, f"{node}/describe_parameters", request).descriptors)
+    return list(_ask(visit, DescribeParameters, node, "describe_parameters", request).descriptors)
 
 
 def _set(visit: Visit, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
     request = SetParameters.Request(parameters=list(wanted))
-    return list(visit.call(SetParameters, f"{node}/set_parameters", request).results)
+    return list(_ask(visit, SetParameters, node, "set_parameters", request).results)
 
 
 def _say(result: SetParametersResult, done: str, failed: str) -> None:

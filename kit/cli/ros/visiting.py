@@ -13,7 +13,7 @@ import click
 
 from kit.cli import options
 from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
-from kit.inspection.visit import Visit, WorldGone
+from kit.inspection.visit import NoAnswer, Visit, WorldGone
 from kit.workspace import open_workspace
 
 NOT_DONE = 1
@@ -34,7 +34,7 @@ def visit_world(world: str | None, workspace: Path | None) -> Iterator[Visit]:
             yield visit
     except NoWorld as problem:
         options.fail(str(problem))
-    except WorldGone as problem:
+    except (WorldGone, NoAnswer) as problem:
         refuse(str(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
@@ -50,7 +50,7 @@ def visiting(function: Callable[..., Any]) -> Callable[..., Any]:
         help="Which world, if several run; by default $KIT_WORLD, else the newest.",
     )
     @options.workspace
-    @click.option("-s", "--use-sim-time", is_flag=True, hidden=True)
+    @click.option("--use-sim-time", is_flag=True, hidden=True)
     @click.option("--no-daemon", is_flag=True, hidden=True)
     @click.option("--spin-time", type=float, hidden=True)
     @wraps(function)

@@ -1,0 +1,178 @@
+"""``kit ros bag``: recordings that ROS 2's tools open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kit.cli import options
+from kit.cli.options import Storage
+from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.visit import Visit
+
+if TYPE_CHECKING:
+    from kit.ros.bags import Bag
+    from kit.ros.node import Node
+    from kit.ros.publisher import Publisher
+
+
+@click.group()
+def command() -> None:
+    """Bags: what was said on topics, and when, in the world's time."""
+
+
+@command.command()
+@click.argument("topics", nargs=-1)
+@click.option("-a", "--all", "every", is_flag=True, help="All topics, also those that come later.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The new folder; by default rosbag2_ and the date and time.",
+)
+@options.storage
+@visiting
+def record(visit: Visit, topics: Sequence[str], every: bool, output: Path | None, storage: Storage) -> None:
+    """Record topics of the running world, until Ctrl-C.
+
+    \b
+    kit ros bag record -a -o my_drive
+    kit ros bag record /static_laser /cmd_vel
+    """
+    from kit.ros.bags import RECORDER, BagError, BagRecorder
+
+    if every == bool(topics):
+        refuse("Name the topics to record, or all of them with -a.")
+    options.explain_storage(storage)
+    folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
+    chosen = None if every else [name if name.startswith("/") else f"/{name}" for name in topics]
+    node = visit.make_node(RECORDER)
+    say = node.get_logger().info
+    known: set[str] = set()
+
+    try:
+        recorder = BagRecorder(visit.graph, folder, topics=chosen, storage=storage, node=node)
+
+        def has_stopped() -> bool:
+            recorder.exchange()
+            for name in sorted(set(recorder.topics) - known):
+                say(f"Subscribed to topic '{name}'")
+                known.add(name)
+            return recorder.failure is not None
+
+        with recorder:
+            has_stopped()
+            for name in recorder.missing:
+                say(f"Nobody publishes '{name}' yet; waiting for it")
+            say("Recording... Ctrl-C ends it")
+            try:
+                visit.graph.wait(has_stopped)
+            finally:
+                say(f"{recorder.count} messages in {folder}")
+    except BagError as problem:
+        refuse(str(problem))
+
+
+@command.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("-v", "--verbose", is_flag=True, hidden=True)
+def info(folder: Path, verbose: bool) -> None:
+    """What a bag holds. Needs no running world."""
+    from kit.inspection.bag_text import bag_info
+
+    click.echo(bag_info(_read(folder)))
+
+
+@command.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "-r", "--rate", type=click.FloatRange(0, min_open=True), default=1.0, show_default=True, help="How fast."
+)
+@click.option("-l", "--loop", is_flag=True, help="Again and again.")
+@click.option("-p", "--start-paused", is_flag=True, help="Begin when Enter is pressed.")
+@click.option("--topics", multiple=True, help="Only this topic; may be given several times.")
+@click.option("-m", "--remap", multiple=True, metavar="FROM:=TO", help="Another name for a topic.")
+@click.option("--clock", type=float, is_flag=False, flag_value=40.0, hidden=True)
+@visiting
+def play(
+    visit: Visit,
+    folder: Path,
+    rate: float,
+    loop: bool,
+    start_paused: bool,
+    topics: Sequence[str],
+    remap: Sequence[str],
+    clock: float | None,
+) -> None:
+    """Say again in the running world what a bag holds, at the same intervals of the world's time.
+
+    \b
+    kit ros bag play my_drive --topics /cmd_vel
+    """
+    from kit.ros.bags import BagError, read_messages
+
+    bag = _read(folder)
+    names = dict(entry.split(":=", 1) for entry in remap if ":=" in entry)
+    if len(names) != len(remap):
+        refuse("--remap needs FROM:=TO, such as --remap /cmd_vel:=/left/cmd_vel")
+    if clock is not None:
+        click.echo(
+            "--clock is not heeded: the world has its own clock, and everybody in it goes by that.", err=True
+        )
+    if loop and bag.duration_ns == 0:
+        refuse(f"{folder}: nothing to repeat: all its messages are of one instant")
+    node, graph = visit.make_node("rosbag2_player"), visit.graph
+    say = node.get_logger().info
+    publishers = _publishers(node, bag, topics, names)
+    if start_paused:
+        click.pause("Press Enter to begin.")
+    say(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
+
+    def skipped(topic: str, type_of: str) -> None:
+        say(f"'{topic}' is left out: the kit does not have its type, {type_of}")
+
+    try:
+        while True:
+            began_ns = graph.now_ns
+            for time_ns, topic, message in read_messages(folder, topics or None, skipped=skipped):
+                graph.wait(lambda: False, began_ns + int((time_ns - bag.start_ns) / rate))
+                publishers[topic].publish(message)
+            if not loop:
+                return
+            graph.wait(lambda: False, began_ns + int(bag.duration_ns / rate))
+    except BagError as problem:
+        refuse(str(problem))
+
+
+def _read(folder: Path) -> Bag:
+    from kit.ros.bags import BagError, read_bag
+
+    try:
+        return read_bag(folder)
+    except BagError as problem:
+        refuse(str(problem))
+
+
+def _publishers(
+    node: Node, bag: Bag, topics: Sequence[str], names: dict[str, str]
+) -> dict[str, Publisher[Any]]:
+    from kit.msg.interfaces import UnknownInterface, find_message
+
+    strange = sorted(set(topics) - {topic.name for topic in bag.topics})
+    if strange:
+        refuse(
+            f"{bag.folder}: there is no {', '.join(strange)} in it; there are: {', '.join(t.name for t in bag.topics)}"
+        )
+    made = {}
+    for topic in bag.topics:
+        if not topics or topic.name in topics:
+            try:
+                cls = find_message(topic.type)
+            except UnknownInterface:
+                continue  # told when it is read
+            made[topic.name] = node.create_publisher(cls, names.get(topic.name, topic.name), topic.qos)
+    return made

@@ -1,0 +1,81 @@
+"""``kit ros run``: one program, beside the running world."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from kit.cli import options
+from kit.cli.ros.visiting import INTERRUPTED, refuse
+from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
+from kit.inspection.visit import Visit, WorldGone
+
+
+@click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
+@click.option(
+    "--world",
+    metavar="NAME",
+    envvar=WORLD_VARIABLE,
+    help="Which world, if several run; by default the newest.",
+)
+@options.seed
+@options.workspace
+@click.argument("package", metavar="PACKAGE|FILE.py")
+@click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[EXECUTABLE] [ARGUMENTS ...]")
+def command(world: str | None, seed: int, workspace: Path | None, package: str, words: Sequence[str]) -> None:
+    """Run a package's program, or a Python file with a node, beside the world of another terminal.
+
+    Where no world runs it runs by itself, in real time, and the next one joins it.
+
+    \b
+    kit ros run my_package my_node --ros-args -p speed:=0.2
+    kit ros run my_node.py
+    """
+    from kit.launch.problems import CannotStart
+    from kit.launch.processes import Printed
+    from kit.launch.requests import Start
+    from kit.launch.single import Single
+    from kit.workspace import open_workspace
+
+    desk = open_workspace(workspace, make=False)
+    search = (Path.cwd(), Path.cwd() / "src", desk.packages)
+    if package.endswith(".py"):
+        request = Start(
+            1, Path(package).stem, None, None, ("python3", package, *words), False, _here(), None, ""
+        )
+    elif words:
+        request = Start(1, words[0], package, words[0], tuple(words[1:]), False, _here(), None, "")
+    else:
+        options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
+    single = Single(request, search, seed=seed, workspace=desk.folder)
+    sockets = sockets_folder(desk.folder)
+
+    def say(line: Printed) -> None:
+        click.echo(line.text, err=line.stream == "err")
+
+    try:
+        try:
+            found = find_world(sockets, world)
+        except NoWorld:
+            if world is not None:
+                raise
+            ended = single.run_alone(sockets, say)
+        else:
+            with Visit(found) as visit:
+                ended = single.run_beside(visit, say)
+    except (CannotStart, NoWorld, OSError) as problem:
+        options.fail(str(problem))
+    except WorldGone as problem:
+        refuse(str(problem))
+    except KeyboardInterrupt:
+        raise SystemExit(INTERRUPTED) from None
+    if ended.reason:
+        click.echo(ended.reason, err=True)
+    raise SystemExit(ended.code)
+
+
+def _here() -> dict[str, str]:
+    return dict(os.environ)
