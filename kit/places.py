@@ -34,6 +34,19 @@ class Place:
         )
 
     @property
+    def partners(self) -> tuple[str, ...]:
+        """Who drives from start to target: the robot, and where the case is one for two, or there is none, the
+        second driver too."""
+        alone = self.case is not None and self.case.partner_start is None
+        return self.drivers[: 1 if alone else 2]
+
+    @property
+    def starts(self) -> tuple[Pose, ...]:
+        """Where the partners stand at first."""
+        poses = {model.name: model.pose for model in self.world.models}
+        return tuple(poses[name] for name in self.partners)
+
+    @property
     def start(self) -> Pose | None:
         """Where the robot stands at first."""
         return next((model.pose for model in self.world.models if model.name == self.robot), None)

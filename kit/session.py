@@ -6,6 +6,7 @@ whoever ticks the runner: a face posts its wishes to the world's thread.
 
 from __future__ import annotations
 
+import json
 import re
 from collections import deque
 from types import TracebackType
@@ -139,9 +140,18 @@ class Session:
         return self.graph.subscription_count(topic) > 0
 
     def _arguments(self) -> list[str]:
-        """What every controller is told of the place: its robot's name, and where home is."""
-        start = self.place.start
-        if start is None or self.place.robot is None:
+        """What every controller is told of the place: its robot's name and where home is; which world it is in,
+        who drives there, and where to."""
+        place, start = self.place, self.place.start
+        if start is None or place.robot is None:
             return []
-        home = f"[{start.x!r}, {start.y!r}, {start.theta!r}]"
-        return ["--ros-args", "-p", f"home:={home}", "-p", f"model:={self.place.robot}"]
+        told = {
+            "home": f"[{start.x!r}, {start.y!r}, {start.theta!r}]",
+            "model": place.robot,
+            "models": json.dumps(place.partners),
+            "world": json.dumps(str(place.world.file.absolute())),
+        }
+        if place.case is not None:
+            x, y = place.case.target
+            told |= {"target": f"[{x!r}, {y!r}]", "target_radius": repr(float(place.case.target_radius))}
+        return ["--ros-args", *(word for name, value in told.items() for word in ("-p", f"{name}:={value}"))]

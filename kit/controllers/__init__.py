@@ -29,7 +29,8 @@ def title_of(file: Path) -> str:
 
 def shipped() -> tuple[ControllerFile, ...]:
     """The kit's own controllers, the two that the kit opens with first, then the worked examples."""
-    names = [FOLDER / "random_walk.py", FOLDER / "teleop.py", *sorted((FOLDER / "examples").glob("*.py"))]
+    own = (FOLDER / f"{name}.py" for name in ("random_walk", "teleop", "fields", "abreast"))
+    names = [*own, *sorted((FOLDER / "examples").glob("*.py"))]
     return tuple(ControllerFile(file.stem, file, title_of(file)) for file in names)
 
 

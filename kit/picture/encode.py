@@ -24,6 +24,8 @@ class Symbols:
     """Arrows of the first robot, the second, ..., then from the first again."""
     field: str
     """Arrows of a field."""
+    strong: str
+    """Arrows where it is strong."""
     faint: str
     """A place where the field is next to nothing."""
     target: str
@@ -32,8 +34,12 @@ class Symbols:
     """Strokes that show a robot's heading where a line of dots would be too coarse to."""
 
 
-ARROWS = Symbols(robots=("►◥▲◤◄◣▼◢", "▷◹△◸◁◺▽◿"), field="→↗↑↖←↙↓↘", faint="·", target="◎", contact="×")
-LETTERS = Symbols(robots=(">^<v",), field=">^<v", faint="'", target="*", contact="X", noses="-/|\\-/|\\")
+ARROWS = Symbols(
+    robots=("►◥▲◤◄◣▼◢", "▷◹△◸◁◺▽◿"), field="→↗↑↖←↙↓↘", strong="⇒⇗⇑⇖⇐⇙⇓⇘", faint="·", target="◎", contact="×"
+)
+LETTERS = Symbols(
+    robots=(">^<v",), field=">^<v", strong="}A{V", faint="'", target="*", contact="X", noses="-/|\\-/|\\"
+)
 
 
 class Encoder(Protocol):

@@ -19,6 +19,9 @@ SMALLEST_OUTLINE = 1.5
 FAINT = 0.02
 """A field weaker than this share of its strongest is drawn without a direction."""
 
+STRONG = 0.5
+"""One stronger than this is drawn with heavier arrows."""
+
 Cell = tuple[int, int]
 """Row and column."""
 
@@ -57,7 +60,8 @@ class Stamps:
         for x, y, dx, dy, strength in arrows.tolist():
             glyph = self._symbols.faint
             if strength > FAINT * strongest:
-                glyph = _direction(self._symbols.field, math.atan2(dy, dx))
+                glyphs = self._symbols.strong if strength > STRONG else self._symbols.field
+                glyph = _direction(glyphs, math.atan2(dy, dx))
             self._put(self._cell(x, y), glyph, Role.FIELD, over=Role.FIELD)
 
     def _put_contact(self, x: float, y: float, middles: Sequence[tuple[float, float]]) -> None:

@@ -76,7 +76,7 @@ def test_without_colours_a_hit_still_looks_like_no_wall(name: str, other: Role) 
 @pytest.mark.parametrize("name", ENCODERS)
 def test_every_symbol_is_one_character_wide_and_says_which_way(name: str) -> None:
     symbols = ENCODERS[name](False).symbols
-    for arrows in (*symbols.robots, symbols.field):
+    for arrows in (*symbols.robots, symbols.field, symbols.strong):
         assert len(arrows) in (4, 8)
         assert len(set(arrows)) == len(arrows)
     assert len({symbols.target, symbols.contact, symbols.faint}) == 3

@@ -1,0 +1,279 @@
+"""``kit fields``: charges on a map, the field they make, and how the two robots that follow it fare."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from kit.cli import options
+from kit.controllers import find
+
+if TYPE_CHECKING:
+    from kit.fields.course import Course
+    from kit.places import Place
+    from kit.study.pairs import Printed, Summary
+
+FAILED: Final = 1
+"""Exit code of ``test``: not every run reached the target."""
+
+PICTURE: Final = (78, 30)
+"""Columns and rows of a picture in plain text."""
+
+BOTH: Final = ("fields", "abreast")
+
+_RUNS = click.option(
+    "--runs", type=click.IntRange(1, 1000), default=20, show_default=True, help="Of each case."
+)
+_JSON = click.option("--json", "as_json", is_flag=True, help="For machines.")
+
+
+@click.group()
+def command() -> None:
+    """Potential fields, and two robots as one.
+
+    \b
+    kit fields show pair_turn_180       the field, its traps; change an intensity and watch
+    kit fields test pair_turn_180       how the controllers fare, run by run
+    kit fields table                    the dissertation's Tables 4.6 and 5.3 beside ours
+
+    Charges stand in charges.yaml beside a map's world.yaml; a map without one gets them from its walls.
+    """
+
+
+@command.command()
+@click.argument("place", default="pair_turn_180", metavar="[MAP or WORLD.yaml]")
+@options.case
+@options.controller_of("fields")
+@click.option("--plain", is_flag=True, help="The field, the charges and the traps as text.")
+@click.option("--derived", is_flag=True, help="Charges from the walls, even where some are drawn by hand.")
+@options.seed
+@options.workspace
+@options.glyphs
+@options.color
+def show(
+    place: str,
+    case: str | None,
+    controller: str,
+    plain: bool,
+    derived: bool,
+    seed: int,
+    workspace: Path | None,
+    glyphs: str | None,
+    color: str | None,
+) -> None:
+    """Show the field of a map: arrows over the floor, charges, traps, what acts on each robot.
+
+    On the full screen, `i` chooses an intensity, `[` and `]` change it, `f` shows the planner's field instead.
+    """
+    from kit.desk import open_desk
+    from kit.workspace import WorkspaceError
+
+    with _mistakes_explained():
+        try:
+            desk = open_desk(workspace)
+        except WorkspaceError as error:
+            options.fail(str(error))
+        there = _place(place, case)
+        course = _course(there, derived)
+        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+        find(controller, desk.controllers)
+    if terminal.plain.value:
+        for line in _described(there, course):
+            click.echo(line)
+        return
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+    from kit.tui.screens.fields import FieldsScreen
+
+    app = KitApp(terminal)
+    app.begin(
+        FieldsScreen(
+            app.look, place, controller, case=case, folder=desk.controllers, seed=seed, derived=derived
+        )
+    )
+    app.run()
+    raise SystemExit(app.return_code or 0)
+
+
+@command.command()
+@click.argument("place", metavar="MAP")
+@options.case
+@click.option(
+    "--controller",
+    "controllers",
+    multiple=True,
+    default=BOTH,
+    show_default=True,
+    help="Who drives: a controller's name or file; may be given several times.",
+)
+@_RUNS
+@options.seed
+@_JSON
+def test(
+    place: str, case: str | None, controllers: tuple[str, ...], runs: int, seed: int, as_json: bool
+) -> None:
+    """Run the cases of a map without a screen, and print how well the robots did.
+
+    Starts differ a little from run to run. Exit code: 0 every run of every controller reached the target, 1 not,
+    2 something named does not exist or is wrong.
+    """
+    from kit.study.pairs import repeat
+    from kit.world.catalogue import find_map
+
+    found = []
+    with _mistakes_explained():
+        drivers = [find(each) for each in controllers]
+        cases = [case] if case is not None else [each.name for each in find_map(place).cases]
+        for name in cases:
+            there = _place(place, name)
+            for driver in drivers:
+                found.append(repeat(there, driver, runs=runs, seed=seed))
+                if not as_json:
+                    _print_test(found[-1], first=len(found) == 1)
+    if as_json:
+        click.echo(json.dumps([asdict(each) for each in found], indent=2))
+    if any(each.accuracy < 1.0 for each in found):
+        raise SystemExit(FAILED)
+
+
+@command.command()
+@_RUNS
+@options.seed
+@_JSON
+def table(runs: int, seed: int, as_json: bool) -> None:
+    """Print Tables 4.6 (columns APF) and 5.3 of the dissertation, and beside them what runs here give.
+
+    `fields` is the dissertation's controller, `abreast` the kit's. Adjacency is the share of the time the two
+    were side by side: by geometry (its equations 4.2 to 4.6, repaired), and as four rays tell (4.7 to 4.9), which
+    the lasers' noise limits to 0.96.
+    """
+    from kit.study.pairs import TABLE_46, rows
+
+    drivers = tuple(find(name) for name in BOTH)
+    if not as_json:
+        click.echo(f"{'':<16}  dissertation  {'fields':^20}  {'abreast':^20}")
+        click.echo(
+            f"{'':<16}  {'acc':>5} {'adj':>6}  {'acc':>6} {'adj':>6} {'rays':>6}  {'acc':>6} {'adj':>6} {'rays':>6}"
+        )
+        click.echo("Table 4.6")
+    printed: list[tuple[Printed, tuple[Summary, ...]]] = []
+    failures: list[str] = []
+    with _mistakes_explained():
+        for number, (row, ours) in enumerate(rows(runs, seed, drivers)):
+            printed.append((row, ours))
+            failures += [
+                f"{row.title}, {each.controller}: {count} of {each.runs} {why}"
+                for each in ours
+                for count, why in each.failures
+            ]
+            if as_json:
+                continue
+            if number == len(TABLE_46):
+                click.echo("Table 5.3, the map of tutorial 3")
+            click.echo(_table_row(row, ours))
+    if as_json:
+        facts = [asdict(row) | {each.controller: asdict(each) for each in ours} for row, ours in printed]
+        click.echo(json.dumps(facts, indent=2))
+        return
+    for line in failures:
+        click.echo(line)
+
+
+def _table_row(row: Printed, ours: tuple[Summary, ...]) -> str:
+    theirs = f"{_number(row.accuracy):>5} {_number(row.adjacency):>6}"
+    cells = "  ".join(f"{each.accuracy:6.2f} {each.by_geometry:6.2f} {each.by_rays:6.2f}" for each in ours)
+    return f"  {row.title:<14}  {theirs}  {cells}"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _print_test(summary: Summary, *, first: bool) -> None:
+    if first:
+        click.echo(
+            f"{'case':<20} {'controller':<10} {'runs':>4} {'acc':>5} {'adj':>5} {'rays':>5} {'graded':>6} "
+            f"{'path m':>6} {'time s':>6} {'wall m':>6} {'jerk':>6}"
+        )
+    each = summary
+    click.echo(
+        f"{each.case:<20} {each.controller:<10} {each.runs:>4} {each.accuracy:>5.2f} {each.by_geometry:>5.2f} "
+        f"{each.by_rays:>5.2f} {each.graded:>6.2f} {each.path_m:>6.2f} {each.time_s:>6.1f} "
+        f"{each.nearest_wall_m:>6.2f} {each.jerk:>6.2f}"
+    )
+    for count, failure in each.failures:
+        click.echo(f"  {count} of {each.runs} {failure}")
+
+
+def _described(place: Place, course: Course) -> Iterator[str]:
+    """The field in characters and in words."""
+    from kit.fields.course import middle_of
+    from kit.fields.planner import Unreachable
+    from kit.picture.camera import Camera
+    from kit.picture.encode import Ascii
+    from kit.picture.field import FieldPicture, with_field
+    from kit.picture.painter import Painter
+    from kit.session import Session
+    from kit.showing import Showing
+
+    picture = FieldPicture(course)
+    traps = picture.traps()
+    with Session(place) as session:
+        scene = Showing(session).view().scene
+    camera = Camera.fit(scene.bounds, *PICTURE)
+    yield from (
+        Painter(Ascii()).paint(with_field(scene, picture, camera, picture.forces, traps), camera).rows()
+    )
+    layout = course.layout
+    yield f"charges: {layout.source or 'derived from the walls'}"
+    yield "intensities: " + ", ".join(
+        f"{name} {value:g}" for name, value in asdict(layout.intensities).items()
+    )
+    for difference in course.hand_drawn_differences():
+        yield f"unlike the walls: {difference}"
+    for trap in traps:
+        yield f"trap (!) at ({trap.x:.2f}, {trap.y:.2f}): {trap.share:.0%} of the floor leads there"
+    start = middle_of(place.starts)
+    verdict = "lead to the target" if course.flow.reaches(*start) else "do not lead to the target"
+    yield f"from the start, the forces {verdict}"
+    try:
+        yield f"the planner's ride takes {course.ride(place.starts).seconds:.1f} s"
+    except Unreachable as reason:
+        yield str(reason)
+
+
+def _course(place: Place, derived: bool) -> Course:
+    from kit.fields.course import Course
+
+    if place.case is None:
+        raise LookupError(
+            f"{place.name} has no target, so its field has none either: take a map of the catalogue; "
+            "`kit maps` lists them."
+        )
+    return Course.open(
+        place.world.file, place.partners, place.case.target, place.case.target_radius, derived=derived
+    )
+
+
+def _place(name: str, case: str | None) -> Place:
+    from kit.places import find_place
+
+    return find_place(name, case)
+
+
+@contextmanager
+def _mistakes_explained() -> Iterator[None]:
+    """A mistake of the user's ends the verb with its message."""
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except (LookupError, ValueError, WorldError, OSError) as error:
+        options.fail(str(error))

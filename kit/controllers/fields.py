@@ -1,0 +1,65 @@
+"""Potential fields: two robots as one system among charges, as in the dissertation (4.1.3, tutorial 3); or one.
+
+Walls push, the target pulls, and where the forces cancel it stays for ever: it says beforehand whether they will.
+The intensities are parameters, to be changed while it drives.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
+
+from kit.controllers.odometry import CourseNode, spin
+from kit.fields.course import Course, middle_of
+from kit.fields.layout import Intensities
+from kit.fields.pair import Command, decide
+from kit.geometry import Pose
+
+
+class Fields(CourseNode):
+    def __init__(self) -> None:
+        super().__init__("fields")
+        self._foreseen = False
+        if self.course is not None:
+            usual = self.course.layout.intensities
+            for name in Intensities.__dataclass_fields__:
+                given = self.declare_parameter(f"intensity.{name}", getattr(usual, name)).value
+                self._change(name, float(given))
+        self.add_on_set_parameters_callback(self._on_parameters)
+
+    def step(self, course: Course, poses: Sequence[Pose]) -> Sequence[Command]:
+        if not self._foreseen:
+            self._foreseen = True
+            self._foresee(course, poses)
+        return decide(poses, course.target, course.layout).commands
+
+    def _foresee(self, course: Course, poses: Sequence[Pose]) -> None:
+        start = middle_of(poses)
+        end = course.flow.end(*start)
+        if end is not None and not course.flow.reaches(*start):
+            self.get_logger().warning(
+                f"The forces lead into a trap at ({end[0]:.2f}, {end[1]:.2f}): there walls push as strongly as "
+                "the target pulls."
+            )
+
+    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            kind, _, name = parameter.name.partition(".")
+            if kind == "intensity" and name in Intensities.__dataclass_fields__:
+                self._change(name, float(parameter.value))
+        return SetParametersResult(successful=True)
+
+    def _change(self, name: str, intensity: float) -> None:
+        if self.course is not None:
+            layout = self.course.layout
+            changed = replace(layout.intensities, **{name: intensity})
+            self.course = replace(self.course, layout=layout.with_intensities(changed))
+
+
+def main(args: list[str] | None = None) -> None:
+    spin(Fields, args)
+
+
+if __name__ == "__main__":
+    main()

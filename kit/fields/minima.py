@@ -1,0 +1,108 @@
+"""Where a force field leads: to the target, or into a trap where forces cancel and nothing gets out again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.fields.floor import Floats, Floor
+from kit.fields.layout import Layout
+
+STRIDE: Final = 3
+"""Cells to a step, so that sixteen directions and more are told apart."""
+DOUBLINGS: Final = 14
+"""Steps are followed 2 ** DOUBLINGS times: across any map."""
+TOGETHER: Final = 0.2
+"""Ends nearer than this [m] are one trap: around its bottom steps go to and fro."""
+
+
+class Trap(NamedTuple):
+    """A local minimum of the potential: the field leads to it from all around."""
+
+    x: float
+    y: float
+    share: float
+    """0 to 1: of the floor, how much leads here."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flow:
+    """Where one ends who follows the forces, from every cell of the floor."""
+
+    floor: Floor
+    ends: NDArray[np.int64]
+    """(rows, columns): the number of the cell; -1 off the floor."""
+    target: tuple[float, float]
+    radius: float
+
+    @classmethod
+    def of(cls, layout: Layout, floor: Floor, target: tuple[float, float], radius: float = 0.25) -> Flow:
+        """``radius`` [m]: how near to the target counts as there."""
+        return cls.following(layout.forces(floor.middles, target), floor, target, radius)
+
+    @classmethod
+    def following(
+        cls, forces: Floats, floor: Floor, target: tuple[float, float], radius: float = 0.25
+    ) -> Flow:
+        """The same for any forces (rows, columns, 2) at the floor's cells.
+
+        Every cell points to the one a step along its force; pointing twice as far again and again leads to the end.
+        """
+        rows, columns = floor.shape
+        here = np.arange(rows * columns).reshape(rows, columns)
+        strength = np.hypot(forces[..., 0], forces[..., 1])
+        step = np.rint(STRIDE * forces / np.where(strength > 0, strength, 1.0)[..., None]).astype(int)
+        row = np.clip(here // columns + step[..., 1], 0, rows - 1)
+        column = np.clip(here % columns + step[..., 0], 0, columns - 1)
+        after = row * columns + column
+        away = np.hypot(floor.middles[..., 0] - target[0], floor.middles[..., 1] - target[1])
+        stays = ~floor.inside | ~floor.inside[row, column] | (away <= radius)
+        ends = np.where(stays, here, after).ravel()
+        for _ in range(DOUBLINGS):
+            ends = ends[ends]
+        return cls(floor, np.where(floor.inside, ends.reshape(rows, columns), -1), target, radius)
+
+    def end(self, x: float, y: float) -> tuple[float, float] | None:
+        """Where the forces lead from a place; None off the floor."""
+        number = int(self.ends[self.floor.cell_at(x, y)])
+        return None if number < 0 else self.floor.middle(divmod(number, self.floor.shape[1]))
+
+    def reaches(self, x: float, y: float) -> bool:
+        """Whether they lead to the target."""
+        end = self.end(x, y)
+        return end is not None and math.dist(end, self.target) <= self.radius + self.floor.cell
+
+    def traps(self, least: float = 0.01) -> tuple[Trap, ...]:
+        """Where else they lead, the widest trap first; without those that hold less than a share of ``least``."""
+        numbers, counts = np.unique(self.ends[self.ends >= 0], return_counts=True)
+        columns = self.floor.shape[1]
+        places = np.array([self.floor.middle(divmod(number, columns)) for number in numbers.tolist()])
+        shares = counts / max(1, counts.sum())
+        if not len(places):
+            return ()
+        elsewhere = np.hypot(*(places - self.target).T) > self.radius + self.floor.cell
+        return tuple(
+            sorted(
+                (trap for trap in _gathered(places[elsewhere], shares[elsewhere]) if trap.share >= least),
+                key=lambda trap: -trap.share,
+            )
+        )
+
+
+def _gathered(places: Floats, shares: Sequence[float] | Floats) -> list[Trap]:
+    """Ends that lie together as one, at the middle of those that most leads to."""
+    rest = list(range(len(places)))
+    traps = []
+    while rest:
+        first = max(rest, key=lambda number: shares[number])
+        near = [number for number in rest if math.dist(places[number], places[first]) <= TOGETHER]
+        weights = np.array([shares[number] for number in near])
+        x, y = (weights[:, None] * places[near]).sum(axis=0) / weights.sum()
+        traps.append(Trap(float(x), float(y), float(weights.sum())))
+        rest = [number for number in rest if number not in near]
+    return traps

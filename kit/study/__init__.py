@@ -1,0 +1,1 @@
+"""Floor 6: the dissertation's experiments, as runs that anyone can repeat."""

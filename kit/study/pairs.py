@@ -1,0 +1,306 @@
+"""Two wheelchairs by classical means: the potential fields of Tables 4.6 and 5.3, and what beats them."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+
+from kit.controllers import ControllerFile
+from kit.fields import adjacency
+from kit.fields.course import Course, middle_of
+from kit.geometry import Pose
+from kit.picture.scene import Body
+from kit.picture.text import nearest_wall
+from kit.places import Place
+from kit.session import Session
+from kit.sim.simulation import Simulation
+
+SAMPLE: Final = 10
+"""Ticks from one look at the robots to the next: ten looks a second, as often as they look themselves."""
+LONGEST_S: Final = 180.0
+STUCK_S: Final = 20.0
+STUCK_M: Final = 0.05
+"""Robots whose middle is no farther [m] from where it was so long [s] ago are stuck."""
+NUDGE: Final = (0.02, 0.02, 0.05)
+"""Starts differ by up to so much [m, m, rad] from one run to the next; those of the first run are exact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One run."""
+
+    end: str
+    """How it ended: ``reached`` (every robot's hull within the target's radius), ``collided``, ``stuck``, ``late``, ``failed``."""
+    why: str
+    time_s: float
+    by_geometry: float
+    """Share of the time the robots were side by side: equations 4.2 to 4.6, repaired."""
+    by_rays: float
+    """The same as four rays tell: equations 4.7 to 4.9."""
+    graded: float
+    """How nearly, 0 to 1, on average."""
+    path_m: float
+    """The mean of the robots'."""
+    nearest_wall_m: float
+    """The smallest distance between a hull and a wall."""
+    jerk: float
+    """Root mean square of the robots' forward jerk [m/s^3], from speeds ten times a second."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Several runs of one case with one controller: means, but for what says otherwise."""
+
+    case: str
+    controller: str
+    runs: int
+    accuracy: float
+    by_geometry: float
+    by_rays: float
+    graded: float
+    path_m: float
+    time_s: float
+    nearest_wall_m: float
+    """The smallest of all."""
+    jerk: float
+    failures: tuple[tuple[int, str], ...]
+    """For each way to fail: how many runs failed so, and how the first of them did."""
+
+    @classmethod
+    def of(cls, case: str, controller: str, outcomes: list[Outcome]) -> Summary:
+        def mean(name: str) -> float:
+            return float(np.mean([getattr(outcome, name) for outcome in outcomes]))
+
+        failed: dict[str, list[Outcome]] = {}
+        for each in outcomes:
+            if each.end != "reached":
+                failed.setdefault(each.end, []).append(each)
+        return cls(
+            case,
+            controller,
+            len(outcomes),
+            accuracy=sum(each.end == "reached" for each in outcomes) / len(outcomes),
+            by_geometry=mean("by_geometry"),
+            by_rays=mean("by_rays"),
+            graded=mean("graded"),
+            path_m=mean("path_m"),
+            time_s=mean("time_s"),
+            nearest_wall_m=min(each.nearest_wall_m for each in outcomes),
+            jerk=mean("jerk"),
+            failures=tuple((len(some), f"{end}: {some[0].why}") for end, some in failed.items()),
+        )
+
+
+def repeat(
+    place: Place,
+    controller: ControllerFile,
+    *,
+    runs: int,
+    seed: int = 0,
+    on_run: Callable[[int, Outcome], None] = lambda number, outcome: None,
+) -> Summary:
+    """``runs`` runs, each with another start nearby and other noise. Raises what ``try_once`` raises."""
+    outcomes = []
+    for number in range(runs):
+        outcomes.append(try_once(nudged(place, seed, number), controller, seed=seed + number))
+        on_run(number, outcomes[-1])
+    name = place.case.name if place.case is not None else place.name
+    return Summary.of(name, controller.name, outcomes)
+
+
+def nudged(place: Place, seed: int, number: int) -> Place:
+    """The place with its robots a little beside where they start; exactly there in run 0."""
+    generator = np.random.default_rng((seed, number))
+    shift = {name: generator.uniform(-1, 1, 3) * NUDGE * (number > 0) for name in place.partners}
+    models = tuple(
+        replace(model, pose=Pose(*(np.array(model.pose) + shift[model.name]).tolist()))
+        if model.name in shift
+        else model
+        for model in place.world.models
+    )
+    return replace(place, world=replace(place.world, models=models))
+
+
+def try_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> Outcome:
+    """One run to its end. Raises LookupError for a place without a target, WorldError for a wrong layout."""
+    if place.case is None:
+        raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
+    case = place.case
+    course = Course.open(place.world.file, place.partners, case.target, case.target_radius)
+    with Session(place, seed=seed, watched=True) as session:
+        log = _Log(place)
+        session.runner.observers.append(log)
+        session.drive_with(controller)
+        session.wait_until_driven()
+        while log.end is None and session.failure is None:
+            session.runner.tick()
+        session.look_around()
+        return log.outcome(log.end or "failed", _why(log, session, course))
+
+
+def _why(log: _Log, session: Session, course: Course) -> str:
+    """Why a run did not reach the target; empty if it did."""
+    refusals = [record.text for record in session.messages if record.text.startswith("Not driving")]
+    return {
+        None: str(session.failure),
+        "stuck": " ".join(refusals) or _trap(course, log.middle),
+        "collided": log.touched,
+        "late": f"still on the way after {LONGEST_S:.0f} s",
+        "reached": "",
+    }[log.end]
+
+
+def _trap(course: Course, middle: tuple[float, float]) -> str:
+    traps = course.flow.traps()
+    near = min(traps, key=lambda trap: math.dist(trap[:2], middle), default=None)
+    place = f"no progress at ({middle[0]:.2f}, {middle[1]:.2f})"
+    if near is None or math.dist(near[:2], middle) > 0.3:
+        return place
+    return (
+        f"{place}, in the field's trap at ({near.x:.2f}, {near.y:.2f}), where walls push as strongly as the target "
+        f"pulls; {near.share:.0%} of the floor leads there"
+    )
+
+
+class _Log:
+    """Watches a run, as one of the runner's observers, until it is over."""
+
+    def __init__(self, place: Place) -> None:
+        assert place.case is not None
+        self._case = place.case
+        self._names = place.partners
+        walls = [layer.walls.segments for layer in place.world.layers if layer.walls is not None]
+        self._walls = np.concatenate([np.empty((0, 4)), *walls])
+        self._poses: list[list[Pose]] = []
+        self._sides: list[tuple[bool, bool, float]] = []
+        self._nearest = math.inf
+        self._recent: deque[tuple[float, float]] = deque(maxlen=round(STUCK_S * 10))
+        self.end: str | None = None
+        self.touched = ""
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Of the robots, when last seen."""
+        return self._recent[-1]
+
+    def accepted(self, topic: str, message: Any) -> None:
+        """Only what comes of it counts."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        if self.end is not None:
+            return
+        if any(simulation.touches(name) for name in self._names):
+            self.end, self.touched = "collided", self._contact(simulation)
+        if simulation.tick % SAMPLE:
+            return
+        poses = [simulation.pose(name) for name in self._names]
+        self._poses.append(poses)
+        self._recent.append(middle_of(poses))
+        if len(poses) == 2:
+            self._sides.append(self._beside(simulation, *poses))
+        self._nearest = min(self._nearest, self._wall_distance(simulation))
+        reach = [simulation.hull_distance(name, self._case.target) for name in self._names]
+        if max(reach) <= self._case.target_radius:
+            self.end = self.end or "reached"
+        elif len(self._recent) == self._recent.maxlen and math.dist(self._recent[0], self.middle) < STUCK_M:
+            self.end = self.end or "stuck"
+        elif simulation.time_ns / 1e9 >= LONGEST_S:
+            self.end = self.end or "late"
+
+    def outcome(self, end: str, why: str) -> Outcome:
+        poses = np.array(self._poses, dtype=float).reshape(-1, len(self._names), 3)
+        steps = np.diff(poses[..., :2], axis=0)
+        ahead = np.stack((np.cos(poses[:-1, :, 2]), np.sin(poses[:-1, :, 2])), axis=-1)
+        speeds = (steps * ahead).sum(axis=-1) * 10
+        jerk = np.diff(np.concatenate((np.zeros((1, len(self._names))), speeds)), 2, axis=0) * 100
+        sides = np.array(self._sides, dtype=float).reshape(-1, 3)
+        shares = sides.mean(axis=0) if len(sides) else np.full(3, math.nan)
+        return Outcome(
+            end,
+            why,
+            len(poses) / 10,
+            by_geometry=float(shares[0]),
+            by_rays=float(shares[1]),
+            graded=float(shares[2]),
+            path_m=float(np.hypot(steps[..., 0], steps[..., 1]).sum() / len(self._names)),
+            nearest_wall_m=self._nearest,
+            jerk=float(np.sqrt((jerk**2).mean())) if len(jerk) else 0.0,
+        )
+
+    def _beside(self, simulation: Simulation, left: Pose, right: Pose) -> tuple[bool, bool, float]:
+        views = {view.model: view.ranges for view in simulation.scan_views()}
+        rays = [
+            views[name][list(which)]
+            for name, which in zip(self._names, adjacency.SIDE_RAYS, strict=True)
+            if name in views and len(views[name]) == 91
+        ]
+        by_rays = len(rays) == 2 and bool(adjacency.by_rays(*rays))
+        return bool(adjacency.by_geometry(left, right)), by_rays, float(adjacency.graded(left, right))
+
+    def _wall_distance(self, simulation: Simulation) -> float:
+        hulls: dict[str, list[Any]] = {name: [] for name in self._names}
+        for outline in simulation.outlines():
+            if outline.model in hulls and not outline.radius:
+                hulls[outline.model].append(np.array(outline.points))
+        return min(
+            nearest_wall(Body(name, simulation.pose(name), tuple(hulls[name])), self._walls)[0]
+            for name in hulls
+        )
+
+    def _contact(self, simulation: Simulation) -> str:
+        for contact in simulation.state().contacts:
+            for one, other in ((contact.entity_a, contact.entity_b), (contact.entity_b, contact.entity_a)):
+                if one in self._names and contact.points:
+                    x, y = contact.points[0]
+                    what = f"the {other} one" if other in self._names else "a wall"
+                    return f"the {one} one touched {what} at ({x:.2f}, {y:.2f})"
+        return "something was touched"
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """What the dissertation has for a case; None where it left it out."""
+
+    title: str
+    map: str
+    case: str
+    accuracy: float | None
+    adjacency: float | None
+
+
+TABLE_46: Final = (
+    Printed("straight", "pair_straight", "pair_straight", 1.0, 1.0),
+    Printed("turn left 90", "pair_turn_90", "pair_turn_left_90", 1.0, 0.54),
+    Printed("turn right 90", "pair_turn_90", "pair_turn_right_90", 1.0, 0.62),
+    Printed("curve left 90", "pair_curve_90", "pair_curve_left_90", None, None),
+    Printed("curve right 90", "pair_curve_90", "pair_curve_right_90", None, None),
+    Printed("turn left 180", "pair_turn_180", "pair_turn_left_180", 0.0, 0.04),
+    Printed("turn right 180", "pair_turn_180", "pair_turn_right_180", 0.0, 0.07),
+    Printed("curve left 180", "pair_curve_180", "pair_curve_left_180", None, None),
+    Printed("curve right 180", "pair_curve_180", "pair_curve_right_180", None, None),
+)
+"""The columns APF of Table 4.6."""
+
+TABLE_53: Final = (
+    Printed("right turn", "pair_turn", "pair_turn_a_to_b", 1.0, 0.62),
+    Printed("left turn", "pair_turn", "pair_turn_b_to_a", 1.0, 0.54),
+)
+
+
+def rows(
+    runs: int, seed: int, controllers: tuple[ControllerFile, ...]
+) -> Iterator[tuple[Printed, tuple[Summary, ...]]]:
+    """Both tables, row by row, as they are done."""
+    from kit.places import find_place
+
+    for printed in (*TABLE_46, *TABLE_53):
+        place = find_place(printed.map, printed.case)
+        yield printed, tuple(repeat(place, each, runs=runs, seed=seed) for each in controllers)
