@@ -1,0 +1,221 @@
+"""A way to the target that keeps clear of walls: least cost over the free floor, then bent as little as can be.
+
+The least cost from every cell to the target is a navigation function (Rimon and Koditschek's term; here Dijkstra's
+algorithm, Numerische Mathematik 1, 1959): unlike a sum of charges it has no minimum but the target.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.fields.floor import FAR, Cell, Floats, Floor
+
+ROOM: Final = 0.15
+"""More room than this [m] on either side costs nothing less."""
+DEAREST: Final = 8.0
+"""What a metre costs, beside a metre with all that room, where there is none."""
+SPACING: Final = 0.03
+"""m between the points of a way."""
+MOST_POINTS: Final = 600
+"""Of a way; longer ones have them farther apart."""
+ROUNDS: Final = 300
+"""Of bending a way straighter."""
+STIFFNESSES: Final = (1500.0, 300.0, 60.0, 8.0)
+"""The stiffest way that fits is taken. So stiff a way turns within (stiffness / 0.05) ** 0.25 points or so."""
+TENSION: Final = 0.2
+PUSH: Final = 0.02
+"""How far walls that are too near push a way in one round [m]."""
+STRAIGHT_START: Final = 3
+"""So many points of a way lie straight ahead of where it starts, if the heading is given."""
+ENDS: Final = 0.3
+"""So near [m] to its ends a way may pass where its width does not fit, if only its length does."""
+
+BESIDE: Final = tuple(
+    (row, column, math.hypot(row, column)) for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column
+)
+
+
+class Unreachable(Exception):
+    """No way leads to the target; the message says why, in the user's terms."""
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """Of what drives."""
+
+    radius: float
+    """Of the disc that holds it in whatever direction it drives [m]."""
+    shortest: float
+    """And of the one it needs at least, to stand at the ends of its way: several side by side are less long than
+    wide [m]."""
+    who: str = "the robot"
+    """What messages call it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways:
+    """The least cost to one target from every cell, for something of some size; inf where no way leads."""
+
+    floor: Floor
+    target: tuple[float, float]
+    size: Size
+    cost: Floats
+    """(rows, columns): metres, dearer ones near walls counted for more."""
+    after: NDArray[np.int32]
+    """(rows, columns): the number of the next cell on the way; the target's is its own."""
+
+    @classmethod
+    def to(cls, floor: Floor, target: tuple[float, float], size: Size, start: tuple[float, float]) -> Ways:
+        """``start``: where it stands now, and so fits."""
+        price = _price(floor, size, (start, target)).tolist()
+        rows, columns = floor.shape
+        cost = [math.inf] * (rows * columns)
+        after = np.full((rows, columns), -1, dtype=np.int32)
+        goal = floor.cell_at(*target)
+        first = goal[0] * columns + goal[1]
+        if price[goal[0]][goal[1]] < math.inf:
+            cost[first] = 0.0
+            after[goal] = first
+        waiting = [(0.0, first)] if cost[first] == 0.0 else []
+        while waiting:
+            so_far, number = heapq.heappop(waiting)
+            if so_far > cost[number]:
+                continue
+            row, column = divmod(number, columns)
+            here = price[row][column]
+            for down, right, length in BESIDE:
+                y, x = row + down, column + right
+                if not (0 <= y < rows and 0 <= x < columns):
+                    continue
+                through = so_far + 0.5 * length * floor.cell * (here + price[y][x])
+                if through < cost[y * columns + x]:
+                    cost[y * columns + x] = through
+                    after[y, x] = number
+                    heapq.heappush(waiting, (through, y * columns + x))
+        return cls(floor, target, size, np.array(cost).reshape(rows, columns), after)
+
+    def directions(self) -> Floats:
+        """(rows, columns, 2): the unit vector from each cell to the next; zero where no way leads on."""
+        rows, columns = self.floor.shape
+        here = np.arange(rows * columns).reshape(rows, columns)
+        there = np.where(self.after >= 0, self.after, here)
+        step = np.stack((there % columns - here % columns, there // columns - here // columns), axis=-1)
+        length = np.hypot(step[..., 0], step[..., 1])[..., None]
+        unit: Floats = step / np.where(length > 0, length, 1.0)
+        return unit
+
+    def check(self, start: tuple[float, float]) -> None:
+        """Raises Unreachable if no way leads from ``start``, and says where it fails."""
+        floor = self.floor
+        for place, name in ((self.target, "The target"), (start, "The start")):
+            if not floor.inside[floor.cell_at(*place)]:
+                raise Unreachable(f"{name} ({place[0]:g}, {place[1]:g}) is inside a wall or off the floor.")
+        if math.isfinite(self.cost[floor.cell_at(*start)]):
+            return
+        widest = floor.widest_way(start, self.target)
+        way = f"from ({start[0]:g}, {start[1]:g}) to the target ({self.target[0]:g}, {self.target[1]:g})"
+        if widest == 0.0:
+            raise Unreachable(f"No way leads {way}: walls close it off.")
+        raise Unreachable(
+            f"No way {way} is wide enough for {self.size.who}, {2 * self.size.radius:.2f} m wide: "
+            f"where it is narrowest, the widest leaves {2 * widest:.2f} m."
+        )
+
+    def way(self, start: tuple[float, float], heading: float | None = None) -> Floats:
+        """(k, 2): a smooth way from ``start`` to the target, evenly spaced; at first along ``heading`` [rad].
+
+        Call ``check`` first.
+        """
+        columns = self.floor.shape[1]
+        cell = self.floor.cell_at(*start)
+        cells: list[Cell] = [cell]
+        while (number := int(self.after[cell])) != cell[0] * columns + cell[1]:
+            cell = divmod(number, columns)
+            cells.append(cell)
+        corners = np.array([start, *(self.floor.middle(each) for each in cells[1:-1]), self.target])
+        spacing = max(SPACING, float(np.hypot(*np.diff(corners, axis=0).T).sum()) / MOST_POINTS)
+        rough = evenly(corners, spacing)
+        if len(rough) <= STRAIGHT_START + 2:
+            return rough
+        fixed = 1
+        if heading is not None:
+            fixed = STRAIGHT_START
+            ahead = start + spacing * np.outer(range(fixed), (math.cos(heading), math.sin(heading)))
+            rough = np.concatenate((ahead, evenly(rough[fixed:], spacing)))
+        for stiffness in STIFFNESSES:
+            way = evenly(self._bent(rough, fixed, stiffness), spacing)
+            if self._fits(way):
+                return way
+        return rough
+
+    def _fits(self, way: Floats) -> bool:
+        """Whether all along the way there is as much room as it was planned with."""
+        near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < ENDS
+        needed = np.where(near_end, self.size.shortest, self.size.radius)
+        return bool((sampled(self.floor, self.floor.clearance, way) >= needed - 0.5 * self.floor.cell).all())
+
+    def _bent(self, rough: Floats, fixed: int, stiffness: float) -> Floats:
+        """The way as an elastic band: stiffness straightens it, walls that are too near push it away.
+
+        Solved as an active contour (Kass, Witkin and Terzopoulos, 1988): implicit in the band's own forces,
+        explicit in the walls'. The first ``fixed`` points and the last one stay.
+        """
+        way = rough.copy()
+        size, free = len(way), slice(fixed, len(way) - 1)
+        first, second = (np.diff(np.eye(size), order, axis=0) for order in (1, 2))
+        own = TENSION * first.T @ first + stiffness * second.T @ second
+        held = np.ones(size, dtype=np.bool_)
+        held[free] = False
+        inverse = np.linalg.inv(np.eye(size)[free, free] + own[free, free])
+        from_held = own[free][:, held] @ way[held]
+        wanted = min(self.size.radius + ROOM, FAR - self.floor.cell)
+        slopes = np.gradient(self.floor.clearance, self.floor.cell)
+        for _ in range(ROUNDS):
+            some = way[free]
+            lack = np.clip(1.0 - sampled(self.floor, self.floor.clearance, some) / wanted, 0.0, 1.0)
+            away = np.column_stack([sampled(self.floor, slope, some) for slope in slopes[::-1]])
+            way[free] = inverse @ (some + PUSH * lack[:, None] * away - from_held)
+        return way
+
+
+def _price(floor: Floor, size: Size, ends: Iterable[tuple[float, float]]) -> Floats:
+    """(rows, columns): what a metre costs there; inf where it does not fit."""
+    lack = np.clip(1.0 - (floor.clearance - size.radius) / ROOM, 0.0, 1.0)
+    price: Floats = 1.0 + (DEAREST - 1.0) * lack**2
+    needed = np.full(floor.shape, size.radius)
+    for end in ends:
+        needed[np.hypot(*np.moveaxis(floor.middles - end, -1, 0)) < ENDS] = size.shortest
+    price[(floor.clearance < np.maximum(needed, 0.75 * floor.cell)) | ~floor.inside] = math.inf
+    return price
+
+
+def sampled(floor: Floor, values: Floats, places: Floats) -> Floats:
+    """(k): a grid's values at places (k, 2), between the four nearest cells."""
+    rows, columns = values.shape
+    u = np.clip((places[:, 0] - floor.corner[0]) / floor.cell, 0.0, columns - 1.001)
+    v = np.clip((places[:, 1] - floor.corner[1]) / floor.cell, 0.0, rows - 1.001)
+    column, row = u.astype(int), v.astype(int)
+    u, v = u - column, v - row
+    below = (1 - u) * values[row, column] + u * values[row, column + 1]
+    above = (1 - u) * values[row + 1, column] + u * values[row + 1, column + 1]
+    found: Floats = (1 - v) * below + v * above
+    return found
+
+
+def evenly(way: Floats, spacing: float) -> Floats:
+    """The same way with points at even distances, about ``spacing`` [m]; its ends stay."""
+    steps = np.hypot(*np.diff(way, axis=0).T)
+    kept = np.concatenate(([True], steps > 1e-9))
+    way, along = way[kept], np.concatenate(([0.0], np.cumsum(steps[steps > 1e-9])))
+    if len(way) < 2:
+        return np.repeat(way[:1], 2, axis=0)
+    count = max(2, round(along[-1] / spacing) + 1)
+    at = np.linspace(0.0, along[-1], count)
+    return np.column_stack([np.interp(at, along, way[:, axis]) for axis in (0, 1)])
