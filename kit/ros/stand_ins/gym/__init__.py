@@ -4,11 +4,14 @@
 stable-baselines3 is given is wrapped on its way there (``shimmy``), so the package's own calls stay as they are.
 """
 
-from kit.ros.stand_ins_log import say
+from __future__ import annotations
+
+from typing import Any, NoReturn
 
 from gym import spaces
 from gym.core import ActionWrapper, Env, ObservationWrapper, RewardWrapper, Wrapper
 from gym.learners import adapt_checker
+from kit.ros.stand_ins_log import say
 
 __version__ = "0.21.0"
 
@@ -19,9 +22,11 @@ say(
 adapt_checker()
 
 
-def make(name, **options):
+def make(name: str, **options: Any) -> NoReturn:
     """gym's registry of ready-made environments is not a part of this."""
-    raise ImportError(f"gym is not installed, so there is no environment {name!r} to make; install gymnasium's")
+    raise ImportError(
+        f"gym is not installed, so there is no {name!r} to make; gymnasium has a successor of most"
+    )
 
 
 __all__ = [

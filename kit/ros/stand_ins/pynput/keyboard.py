@@ -1,6 +1,9 @@
 """The part of pynput that packages of Flatland's time import."""
 
+from __future__ import annotations
+
 from enum import Enum
+from typing import Any
 
 from kit.ros.context import get_default_context
 from kit.ros.stand_ins_log import say
@@ -15,27 +18,27 @@ Key = Enum(
 class KeyCode:
     """A key by its character."""
 
-    def __init__(self, vk=None, char=None):
+    def __init__(self, vk: int | None = None, char: str | None = None) -> None:
         self.vk, self.char = vk, char
 
     @classmethod
-    def from_char(cls, char):
+    def from_char(cls, char: str) -> KeyCode:
         return cls(char=char)
 
-    def __eq__(self, other):
+    def __eq__(self, other: object) -> bool:
         return isinstance(other, KeyCode) and other.char == self.char
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash(self.char)
 
 
 class Listener:
     """Hears nothing, and says so."""
 
-    def __init__(self, on_press=None, on_release=None, **_):
+    def __init__(self, on_press: Any = None, on_release: Any = None, **_: Any) -> None:
         self.running = False
 
-    def start(self):
+    def start(self) -> None:
         self.running = True
         say(
             "pynput is not installed, and there is no desktop whose keys it could read: this listener hears nothing. "
@@ -43,17 +46,17 @@ class Listener:
             warning=True,
         )
 
-    def stop(self):
+    def stop(self) -> None:
         self.running = False
 
-    def join(self, timeout=None):
+    def join(self, timeout: float | None = None) -> None:
         """Waits for the end of the program."""
         context = get_default_context()
         context.graph.wait(lambda: not self.running or not context.ok(), what="Listener.join()")
 
-    def __enter__(self):
+    def __enter__(self) -> Listener:
         self.start()
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.stop()
