@@ -48,7 +48,7 @@ class Progress:
 
 
 @dataclass(frozen=True, slots=True)
-class Tested:
+class Examined:
     """A test of the strategy, on fresh episodes."""
 
     steps: int
@@ -80,13 +80,13 @@ class Ended:
     reason: str
 
 
-Event: TypeAlias = Started | Progress | Tested | Noted | Ended
+Event: TypeAlias = Started | Progress | Examined | Noted | Ended
 
 KINDS: Mapping[str, type[Event]] = MappingProxyType(
     {
         "started": Started,
         "progress": Progress,
-        "tested": Tested,
+        "examined": Examined,
         "noted": Noted,
         "ended": Ended,
     }

@@ -188,14 +188,15 @@ class Player:
     def __init__(self, policy: Policy, n: int, rng: np.random.Generator | None = None) -> None:
         self.policy = policy
         self._rng = rng
-        self._memory: Singles = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
+        self.memory: Singles = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
+        """(n, 2, h)"""
 
     def act(self, observations: Singles, fresh: NDArray[np.bool_] | None = None) -> Integers:
         """(n,) actions, or (n, robots) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
-            self._memory[fresh] = 0.0
-        scores, self._memory = self.policy.brain.scores(
-            np.asarray(observations, dtype=np.float32), self._memory
+            self.memory[fresh] = 0.0
+        scores, self.memory = self.policy.brain.scores(
+            np.asarray(observations, dtype=np.float32), self.memory
         )
         choices = self.policy.choices
         parts = np.split(scores, np.cumsum(choices)[:-1], axis=1)

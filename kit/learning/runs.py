@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from kit.learning.choice import TaskChoice
-from kit.learning.events import Ended, Event, EventReader, Progress, Started, Tested
+from kit.learning.events import Ended, Event, EventReader, Progress, Started, Examined
 from kit.learning.policies import Policy, load_policy
 from kit.workspace import write_atomically
 from kit.world.problems import quoted, suggestion
@@ -79,9 +79,9 @@ class Summary:
     steps: int = 0
     seconds: float = 0.0
     rate: float = 0.0
-    tested: Tested | None = None
+    tested: Examined | None = None
     """The last test."""
-    best: Tested | None = None
+    best: Examined | None = None
     """That of the best policy."""
     reason: str = ""
 
@@ -230,8 +230,8 @@ class Run:
 def summarise(events: tuple[Event, ...], *, alive: bool, order: Order) -> Summary:
     """Where a run with these events stands."""
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
-    tested: Tested | None = None
-    best: Tested | None = None
+    tested: Examined | None = None
+    best: Examined | None = None
     state: State = "interrupted" if events else "new"
     for event in events:
         match event:
@@ -239,7 +239,7 @@ def summarise(events: tuple[Event, ...], *, alive: bool, order: Order) -> Summar
                 state, steps = "interrupted", event.steps
             case Progress():
                 steps, seconds, rate = event.steps, event.seconds, event.rate
-            case Tested():
+            case Examined():
                 tested = event
                 best = event if event.kept else best
             case Ended():

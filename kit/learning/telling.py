@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kit.learning.evaluation import Result
-from kit.learning.events import Ended, Event, Noted, Progress, Started, Tested
+from kit.learning.events import Ended, Event, Noted, Progress, Started, Examined
 from kit.learning.runs import Run, RunError, Summary
 from kit.learning.tally import Outcome
 
@@ -17,7 +17,7 @@ def line_of(event: Event) -> str:
             return f"started at step {event.steps:,}" if event.steps else "started"
         case Progress():
             return _progress(event)
-        case Tested():
+        case Examined():
             return _tested(event)
         case Noted():
             return event.text
@@ -38,7 +38,7 @@ def _progress(event: Progress) -> str:
     return "  ".join(parts)
 
 
-def _tested(event: Tested) -> str:
+def _tested(event: Examined) -> str:
     shares = shares_of(event)
     case = min(shares, key=lambda name: shares[name])
     mean = sum(shares.values()) / len(shares)
@@ -50,7 +50,7 @@ def _tested(event: Tested) -> str:
     )
 
 
-def shares_of(event: Tested) -> dict[str, float]:
+def shares_of(event: Examined) -> dict[str, float]:
     """By case: how many of the episodes reached the target."""
     return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
 

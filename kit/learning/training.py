@@ -21,7 +21,7 @@ from kit.learning.algorithms import Algorithm, find_algorithm
 from kit.learning.batch import BatchEnv, RewardError
 from kit.learning.choice import TaskChoice
 from kit.learning.evaluation import CaseResult, Examiner, Result, seed_for
-from kit.learning.events import Ended, Event, EventWriter, Noted, Progress, Started, Tested
+from kit.learning.events import Ended, Event, EventWriter, Noted, Progress, Started, Examined
 from kit.learning.extra import require_learner, versions
 from kit.learning.learner import Halt, Learner
 from kit.learning.policies import Policy, save_policy
@@ -324,10 +324,10 @@ def _count(case: CaseResult) -> Count:
     return Count(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
 
 
-def _tested(steps: int, seconds: float, verdict: Verdict, test: _Test) -> Tested:
+def _tested(steps: int, seconds: float, verdict: Verdict, test: _Test) -> Examined:
     assert test.result is not None  # every strategy tests
     cases = {case.case: list(case.outcomes) for case in test.result.cases}
-    return Tested(steps, seconds, cases, verdict.keep, test.result.reward, verdict.reason)
+    return Examined(steps, seconds, cases, verdict.keep, test.result.reward, verdict.reason)
 
 
 class _Batch:
