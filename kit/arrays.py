@@ -58,6 +58,7 @@ class Fleet(NamedTuple):
     radius: float
     """No hull reaches farther from its robot's origin [m]."""
     beams: Beams
+    """Whole vectors of rays are faster: those after the lidar's own point nowhere, and meet nothing."""
     reach: float
     """The lidars' [m]."""
     noise: float

@@ -62,52 +62,16 @@ def twist_step(
     return x + vx * dt, y + vy * dt, theta + turn * dt
 
 
-@jit
-def tricycle_twist(speed: float, steering: float, wheelbase: float) -> tuple[float, float]:
-    """Forward [m/s] and turn rate [rad/s] at the rear axle of a front-driven tricycle.
-
-    ``speed``: of the front wheel's rim; ``steering``: its angle. The front wheel's axle and the rear one
-    meet in the centre of the turn (bicycle model).
-    """
-    return speed * math.cos(steering), speed * math.sin(steering) / wheelbase
-
-
-@jit
-def approach(current: float, target: float, limit: float, dt: float) -> float:
-    """``current`` moved towards ``target`` by at most ``limit * dt``; all the way if ``limit`` is 0 (none)."""
-    if limit <= 0.0:
-        return target
-    return current + min(max(target - current, -limit * dt), limit * dt)
-
-
-@jit
-def limited_speed(
-    current: float, target: float, acceleration: float, deceleration: float, top: float, dt: float
-) -> float:
-    """The speed after ``dt`` of a motor asked for ``target``; a limit of 0 is none.
-
-    Gaining speed is limited by ``acceleration``, losing it by ``deceleration``; on the way through zero the
-    step is shared: first it brakes, and what is left of ``dt`` it accelerates.
-    """
-    if top > 0.0:
-        target = min(max(target, -top), top)
-    if current * target >= 0.0:
-        return approach(current, target, deceleration if abs(target) < abs(current) else acceleration, dt)
-    braking = abs(current) / deceleration if deceleration > 0.0 else 0.0
-    if braking >= dt:
-        return approach(current, 0.0, deceleration, dt)
-    return approach(0.0, target, acceleration, dt - braking)
-
-
-# --- rays: distance to the nearest thing so far -----------------------------------------------------------
-# In single precision, relative to the sensor. Branch-free, so that the loops over rays vectorise.
+# --- rays: how near is the nearest thing so far -----------------------------------------------------------
+# In single precision, relative to the sensor. Branch-free, so that the loops over rays vectorise. Nearness is
+# 1 / distance: a ray divides once at the end, instead of once for each segment.
 
 
 @jit
 def ray_segment(
-    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, far: Single
+    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, near: Single
 ) -> Single:
-    """How far the ray ``(cos, sin)`` from the origin runs to the segment a-b, or ``far`` if not nearer.
+    """How near to the origin the ray ``(cos, sin)`` meets the segment a-b, or ``near`` if that is nearer.
 
     It crosses the segment where a and b lie on different sides of it: cross(ray, a) * cross(ray, b) <= 0.
     Two segments that share an end share that product's factor, so no ray slips between them. A ray along
@@ -115,17 +79,17 @@ def ray_segment(
     """
     a = cos * ay - sin * ax
     b = cos * by - sin * bx
-    distance = (ax * by - ay * bx) / (b - a)
-    return distance if (a * b <= 0) & (distance >= 0) & (distance < far) else far
+    nearness = (b - a) * (Single(1) / (ax * by - ay * bx))
+    return nearness if (a * b <= 0) & (nearness > near) else near
 
 
 @jit
-def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, far: Single) -> Single:
+def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, near: Single) -> Single:
     """The same for the circle about ``(x, y)``. A ray that starts inside does not meet it."""
     along = cos * x + sin * y
     across = cos * y - sin * x
-    distance = along - np.sqrt(radius * radius - across * across)  # nan where it misses: no comparison holds
-    return distance if (distance >= 0) & (distance < far) else far
+    nearness = Single(1) / (along - np.sqrt(radius * radius - across * across))  # nan where it misses
+    return nearness if nearness > near else near
 
 
 # --- points, segments, convex polygons --------------------------------------------------------------------
@@ -189,7 +153,9 @@ def segment_meets_polygon(ax: float, ay: float, bx: float, by: float, corners: F
             leaves = min(leaves, -inside / slope)
         elif inside < 0.0:
             return False
-    return enters <= leaves
+        if enters > leaves:
+            return False
+    return True
 
 
 # --- noise: a value for every (key, counter) --------------------------------------------------------------
@@ -217,7 +183,7 @@ def uniform(key: int, counter: int) -> float:
 
 
 @jit
-def normal(key: int, counter: int) -> float:
+def normal(key: int, counter: int) -> Single:
     """Standard normal, from one draw; never beyond 4.9.
 
     The sum of four 16-bit uniforms, bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off
@@ -225,9 +191,10 @@ def normal(key: int, counter: int) -> float:
     """
     bits, low = random_bits(key, counter), Bits(0xFFFF)
     four = (bits & low) + ((bits >> Bits(16)) & low) + ((bits >> Bits(32)) & low) + (bits >> Bits(48))
-    u = float(np.int64(four)) * (1.0 / 65536.0) - 2.0 * 65535.0 / 65536.0
+    u = Single(np.int32(four) - np.int32(131070)) * Single(1.0 / 65536.0)
     u2 = u * u
-    return u * (1.66182467 + u2 * (0.08163078 + u2 * (-0.02656002 + u2 * 0.01351341)))
+    bent = Single(0.08163078) + u2 * (Single(-0.02656002) + u2 * Single(0.01351341))
+    return u * (Single(1.66182467) + u2 * bent)
 
 
 # --- what a lidar sees ------------------------------------------------------------------------------------
@@ -235,9 +202,9 @@ def normal(key: int, counter: int) -> float:
 
 @jit
 def rays_meeting(
-    cos: Singles, sin: Singles, x: Single, y: Single, radius: Single, far: Singles
+    cos: Singles, sin: Singles, x: Single, y: Single, radius: Single, near: Singles
 ) -> tuple[int, int]:
-    """The first and one past the last ray that meets a disc nearer than ``far``; (rays, 0) if there is none.
+    """The first and one past the last ray that meets a disc nearer than ``near``; (rays, 0) if there is none.
 
     The disc is taken a little larger than it is, to make up for single precision.
     """
@@ -247,7 +214,7 @@ def rays_meeting(
     for i in range(rays):
         along = cos[i] * x + sin[i] * y
         across = cos[i] * y - sin[i] * x
-        meets = (abs(across) <= radius) & (along >= -radius) & (along - radius < far[i])
+        meets = (abs(across) <= radius) & (along >= -radius) & ((along - radius) * near[i] < Single(1))
         ray = np.int32(i)
         first = min(first, ray if meets else rays)
         end = max(end, ray + np.int32(1) if meets else np.int32(0))
@@ -256,43 +223,45 @@ def rays_meeting(
 
 @jit
 def meet_segment(
-    cos: Singles, sin: Singles, ax: float, ay: float, bx: float, by: float, ranges: Singles
+    cos: Singles, sin: Singles, ax: float, ay: float, bx: float, by: float, near: Singles
 ) -> None:
-    """Shortens every range to the segment a-b, given relative to the sensor."""
+    """Brings every ray as near as the segment a-b, given relative to the sensor."""
     x1, y1, x2, y2 = Single(ax), Single(ay), Single(bx), Single(by)
-    for i in range(ranges.shape[0]):
-        ranges[i] = ray_segment(cos[i], sin[i], x1, y1, x2, y2, ranges[i])
+    for i in range(near.shape[0]):
+        near[i] = ray_segment(cos[i], sin[i], x1, y1, x2, y2, near[i])
 
 
 @jit
-def meet_walls(x: float, y: float, cos: Singles, sin: Singles, walls: Segments, ranges: Singles) -> None:
-    """Shortens every range to the nearest wall."""
-    for k in range(walls.discs.shape[0]):
-        cx, cy = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-        first, end = 0, ranges.shape[0]
-        if walls.discs.shape[0] > 1:
-            first, end = rays_meeting(cos, sin, cx, cy, Single(walls.discs[k, 2]), ranges)
-        if first >= end:
+def meet_walls(
+    x: float, y: float, cos: Singles, sin: Singles, walls: Segments, first: int, end: int, near: Singles
+) -> None:
+    """Brings every ray as near as the nearest wall of the blocks from ``first`` to before ``end``."""
+    for k in range(first, end):
+        ray, last = 0, near.shape[0]
+        if end - first > 1:
+            disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
+            ray, last = rays_meeting(cos, sin, disc_x, disc_y, Single(walls.discs[k, 2]), near)
+        if ray >= last:
             continue
-        near_cos, near_sin, near = cos[first:end], sin[first:end], ranges[first:end]
+        some_cos, some_sin, some = cos[ray:last], sin[ray:last], near[ray:last]
         for j in range(walls.starts[k], walls.starts[k + 1]):
             ax, ay = walls.ends[j, 0] - x, walls.ends[j, 1] - y
             bx, by = walls.ends[j, 2] - x, walls.ends[j, 3] - y
-            meet_segment(near_cos, near_sin, ax, ay, bx, by, near)
+            meet_segment(some_cos, some_sin, ax, ay, bx, by, some)
 
 
 @jit
 def meet_shapes(
-    x: float, y: float, cos: Singles, sin: Singles, shapes: Shapes, bits: int, ranges: Singles
+    x: float, y: float, cos: Singles, sin: Singles, shapes: Shapes, bits: int, near: Singles
 ) -> None:
-    """Shortens every range to the nearest shape on one of the layers ``bits``, but for those around the sensor."""
+    """Brings every ray as near as the nearest shape on one of the layers ``bits``, but for those around the sensor."""
     for k in range(shapes.circles.shape[0]):
         if shapes.circle_bits[k] & bits == 0:
             continue
         cx, cy = Single(shapes.circles[k, 0] - x), Single(shapes.circles[k, 1] - y)
         radius = Single(shapes.circles[k, 2])
-        for i in range(ranges.shape[0]):
-            ranges[i] = ray_circle(cos[i], sin[i], cx, cy, radius, ranges[i])
+        for i in range(near.shape[0]):
+            near[i] = ray_circle(cos[i], sin[i], cx, cy, radius, near[i])
     for k in range(shapes.polygon_bits.shape[0]):
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
@@ -300,7 +269,7 @@ def meet_shapes(
         a = corners[corners.shape[0] - 1]
         for j in range(corners.shape[0]):
             b = corners[j]
-            meet_segment(cos, sin, a[0] - x, a[1] - y, b[0] - x, b[1] - y, ranges)
+            meet_segment(cos, sin, a[0] - x, a[1] - y, b[0] - x, b[1] - y, near)
             a = b
 
 
@@ -332,20 +301,19 @@ def scan(
     x, y, theta = pose
     cos, sin = np.empty_like(ranges), np.empty_like(ranges)
     turn_beams(theta, beams, cos, sin)
-    far = Single(reach)
-    ranges[:] = far
-    meet_walls(x, y, cos, sin, walls, ranges)
+    least = Single(1.0 / reach)
+    ranges[:] = least
+    meet_walls(x, y, cos, sin, walls, 0, walls.discs.shape[0], ranges)
     meet_shapes(x, y, cos, sin, shapes, bits, ranges)
     for i in range(ranges.shape[0]):
-        if ranges[i] >= far:
-            ranges[i] = np.nan
+        ranges[i] = Single(1) / ranges[i] if ranges[i] > least else Single(np.nan)
 
 
 @jit
 def add_noise(ranges: Singles, deviation: float, key: int, first: int) -> None:
     """Adds normal noise: ray i draws number ``first + i`` of ``key``. NaN stays NaN."""
     for i in range(ranges.shape[0]):
-        ranges[i] += Single(deviation * normal(key, first + i))
+        ranges[i] += Single(deviation) * normal(key, first + i)
 
 
 @jit
@@ -377,13 +345,6 @@ def place_shapes(
 
 
 @jit
-def walls_of(fleet: Fleet, number: int) -> Segments:
-    """The walls of one map."""
-    first, end = fleet.blocks[number], fleet.blocks[number + 1]
-    return Segments(fleet.walls.ends, fleet.walls.starts[first : end + 1], fleet.walls.discs[first:end])
-
-
-@jit
 def placed_hulls(fleet: Fleet) -> Shapes:
     """Room for the hulls of one world, where its robots are."""
     own = fleet.hulls
@@ -392,38 +353,29 @@ def placed_hulls(fleet: Fleet) -> Shapes:
 
 @jit
 def nearest_wall(
-    x: float, y: float, theta: float, hulls: Shapes, bit: int, radius: float, walls: Segments
+    pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats, squares: Floats
 ) -> tuple[float, bool]:
-    """How near to a robot's origin a wall is (inf without any), and whether one meets its hull.
+    """A distance from a robot's origin within which there is no wall, and whether one meets its hull.
 
-    The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin.
+    The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin. A wall counts
+    as near as the upright rectangle around it: to be sure, that is enough. ``squares`` (walls): scratch.
     """
-    cos, sin, nearest, meets = math.cos(theta), math.sin(theta), math.inf, False
-    for block in range(walls.discs.shape[0]):
-        away = math.hypot(walls.discs[block, 0] - x, walls.discs[block, 1] - y) - walls.discs[block, 2]
-        if away > max(nearest, radius):
+    x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
+    for j in range(walls.shape[0]):
+        ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
+        dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
+        squares[j] = dx * dx + dy * dy
+    for j in range(walls.shape[0]):
+        nearest = min(nearest, squares[j])
+        if squares[j] > radius * radius:
             continue
-        for j in range(walls.starts[block], walls.starts[block + 1]):
-            ax, ay, bx, by = (
-                walls.ends[j, 0] - x,
-                walls.ends[j, 1] - y,
-                walls.ends[j, 2] - x,
-                walls.ends[j, 3] - y,
-            )
-            away = point_segment(0.0, 0.0, ax, ay, bx, by)
-            nearest = min(nearest, away)
-            if meets or away > radius:
-                continue
-            ax, ay, bx, by = (
-                cos * ax + sin * ay,
-                cos * ay - sin * ax,
-                cos * bx + sin * by,
-                cos * by - sin * bx,
-            )
-            for k in range(hulls.polygon_bits.shape[0]):
-                corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
-                meets |= hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners)
-    return nearest, meets
+        ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
+        ax, ay, bx, by = cos * ax + sin * ay, cos * ay - sin * ax, cos * bx + sin * by, cos * by - sin * bx
+        for k in range(hulls.polygon_bits.shape[0]):
+            corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
+            if hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners):
+                return 0.0, True
+    return math.sqrt(nearest), False
 
 
 @jit
@@ -450,18 +402,28 @@ def hulls_meet(hulls: Shapes) -> bool:
 
 @jit
 def stop_robots(
-    fleet: Fleet, walls: Segments, before: Floats, hulls: Shapes, poses: Floats, free: Floats, hit: Flags
+    fleet: Fleet,
+    number: int,
+    before: Floats,
+    room: Shapes,
+    squares: Floats,
+    poses: Floats,
+    free: Floats,
+    hit: Flags,
 ) -> None:
-    """Puts the robots of one world that meet something back to where they were ``before``; they are hit."""
+    """Puts the robots of one world, on the map of that number, back where they meet something; they are hit.
+
+    ``before``: where they were. ``room`` for the hulls and ``squares`` for the walls: scratch.
+    """
+    first, end = fleet.walls.starts[fleet.blocks[number]], fleet.walls.starts[fleet.blocks[number + 1]]
     together = False
     if poses.shape[0] > 1:
-        place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
-        together = hulls_meet(hulls)
+        place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, room)
+        together = hulls_meet(room)
     for k in range(poses.shape[0]):
-        meets = False
+        meets, walls = together, fleet.walls.ends[first:end]
         if free[k] <= fleet.radius:
-            x, y, theta = poses[k, 0], poses[k, 1], poses[k, 2]
-            free[k], meets = nearest_wall(x, y, theta, fleet.hulls, 1 << k, fleet.radius, walls)
+            free[k], meets = nearest_wall(poses[k], fleet.hulls, 1 << k, fleet.radius, walls, squares)
         if together or meets:
             poses[k], free[k], hit[k] = before[k], 0.0, True
 
@@ -475,10 +437,10 @@ def drive_worlds(
     ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``free`` (n, r): no wall
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
-    hulls, before, robots = placed_hulls(fleet), np.empty_like(poses[0]), poses.shape[1]
+    room, before, squares = placed_hulls(fleet), np.empty_like(poses[0]), np.empty(fleet.walls.ends.shape[0])
     for i in range(poses.shape[0]):
         near = False
-        for k in range(robots):
+        for k in range(poses.shape[1]):
             x, y, theta, forward = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2], twists[i, k, 0]
             before[k, 0], before[k, 1], before[k, 2] = x, y, theta
             x, y, theta = twist_step(x, y, theta, forward, 0.0, twists[i, k, 1], dt)
@@ -487,7 +449,7 @@ def drive_worlds(
             near |= free[i, k] <= fleet.radius
             near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
         if near:
-            stop_robots(fleet, walls_of(fleet, maps[i]), before, hulls, poses[i], free[i], hit[i])
+            stop_robots(fleet, maps[i], before, room, squares, poses[i], free[i], hit[i])
 
 
 @jit
@@ -512,46 +474,48 @@ def arrivals(
 def look_worlds(
     fleet: Fleet, maps: Integers, poses: Floats, keys: Integers, drawn: Integers, ranges: Singles
 ) -> None:
-    """Scans of all robots, as ``scan`` and ``add_noise`` make them; the reach where nothing is seen.
+    """Scans of all robots, as ``scan`` and ``add_noise`` make them, (n, r, rays); the reach where nothing is seen.
 
-    The noise of world i is number ``drawn[i]`` and following of ``keys[i]``. ``ranges`` (n, r, rays).
+    The noise of world i is number ``drawn[i]`` and following of ``keys[i]``.
     """
-    robots, rays = poses.shape[1], fleet.beams.cos.shape[0]
-    hulls, others = placed_hulls(fleet), robots > 1
-    padded = (rays + 31) // 32 * 32  # whole vectors are faster; a ray without a direction meets nothing
-    cos, near = np.zeros(padded, dtype=np.float32), np.zeros(padded, dtype=np.float32)
-    sin = np.zeros(padded, dtype=np.float32)
-    for i in range(poses.shape[0]):
-        if others:
+    robots, rays = ranges.shape[1], ranges.shape[2]
+    hulls, cos, sin = placed_hulls(fleet), np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
+    for i in range(ranges.shape[0]):
+        if robots > 1:
             place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
         for k in range(robots):
-            x, y, theta = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2]
-            turn_beams(theta, fleet.beams, cos, sin)
-            near[:] = fleet.reach
-            meet_walls(x, y, cos, sin, walls_of(fleet, maps[i]), near)
-            if others:
+            x, y, near = poses[i, k, 0], poses[i, k, 1], ranges[i, k]
+            turn_beams(poses[i, k, 2], fleet.beams, cos, sin)
+            near[:] = Single(1.0 / fleet.reach)
+            first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
+            meet_walls(x, y, cos, sin, fleet.walls, first, end, near)
+            if robots > 1:
                 meet_shapes(x, y, cos, sin, hulls, ~(1 << k), near)
-            ranges[i, k] = near[:rays]
-            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)
+            for j in range(rays):
+                near[j] = Single(1) / near[j]
+            add_noise(near, fleet.noise, keys[i], drawn[i] + k * rays)
 
 
 @jit
 def sense_worlds(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
     """Limits ``ranges`` (n, r, rays) to 0..``far``, and fills ``sensed`` (n, r, numbers) with some rays and minima.
 
-    ``single`` (r, s): rays given as they are, first; ``sectors`` (rays): the sector each ray belongs to, from 0.
+    ``single`` (r, s): rays given as they are, first. ``sectors`` (m, 3): of a sector, from 0, the first ray and the
+    end; a sector may have several such stretches.
     """
     s, nothing, most = single.shape[1], Single(0), Single(far)
     sensed[:] = most
     for i in range(ranges.shape[0]):
         for k in range(ranges.shape[1]):
-            seen, numbers = ranges[i, k], sensed[i, k]
-            for j in range(seen.shape[0]):
-                seen[j] = min(max(seen[j], nothing), most)
-            for j in range(seen.shape[0]):
-                numbers[s + sectors[j]] = min(numbers[s + sectors[j]], seen[j])
+            for j in range(ranges.shape[2]):
+                ranges[i, k, j] = min(max(ranges[i, k, j], nothing), most)
+            for m in range(sectors.shape[0]):
+                least = most
+                for j in range(sectors[m, 1], sectors[m, 2]):
+                    least = min(least, ranges[i, k, j])
+                sensed[i, k, s + sectors[m, 0]] = min(sensed[i, k, s + sectors[m, 0]], least)
             for j in range(s):
-                numbers[j] = seen[single[k, j]]
+                sensed[i, k, j] = ranges[i, k, single[k, j]]
 
 
 @jit
@@ -625,8 +589,6 @@ def warm() -> None:
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
-    tricycle_twist(1.0, 0.0, 1.0)
-    limited_speed(0.0, 1.0, 1.0, 1.0, 1.0, 0.1)
     point_polygon(2.0, 0.0, corners)
     normal(1, 0)
     uniform(1, 0)

@@ -9,10 +9,11 @@ import sys
 import numpy as np
 import pytest
 
-from kit import kernels
+from kit import kernels, motors
 from kit.blocks import in_blocks
 
-FAR = np.float32(10)
+FAR = np.float32(0.1)
+"""As rays count: 1 / distance."""
 NOTHING = kernels.Shapes(
     np.zeros((0, 3)),
     np.zeros(0, dtype=np.int64),
@@ -54,7 +55,7 @@ def test_short_steps_lead_where_a_long_one_does(twist: tuple[float, float, float
 
 
 def test_a_tricycle_turns_about_the_point_where_its_axles_meet() -> None:
-    forward, turn = kernels.tricycle_twist(0.5, 0.3, 0.9)
+    forward, turn = motors.tricycle_twist(0.5, 0.3, 0.9)
     assert forward / turn == pytest.approx(0.9 / math.tan(0.3))
     assert math.hypot(forward, turn * 0.9) == pytest.approx(0.5)
 
@@ -84,7 +85,7 @@ def test_limits_of_a_motor(
     limits: tuple[float, float, float], dt: float, current: float, target: float, new: float
 ) -> None:
     acceleration, deceleration, top = map(float, limits)
-    found = kernels.limited_speed(float(current), float(target), acceleration, deceleration, top, dt)
+    found = motors.limited_speed(float(current), float(target), acceleration, deceleration, top, dt)
     assert found == pytest.approx(new, abs=1e-9)
 
 
@@ -93,7 +94,7 @@ def test_limits_of_a_motor(
 
 def test_a_ray_and_a_segment() -> None:
     hit = kernels.ray_segment(*singles(1, 0, 2, -1, 2, 3), FAR)
-    assert hit == 2
+    assert hit == 0.5
     for miss in ((2, 1, 2, 3), (-2, -1, -2, 3), (11, -1, 11, 1), (2, 0, 5, 0)):  # beside, behind, far, along
         assert kernels.ray_segment(*singles(1, 0, *miss), FAR) == FAR
 
@@ -107,12 +108,12 @@ def test_no_ray_slips_between_segments_that_share_an_end() -> None:
         left = np.float32(corner[0] - y), np.float32(corner[1] + x)
         right = np.float32(corner[0] + y), np.float32(corner[1] - x)
         far = kernels.ray_segment(cos, sin, *left, *corner, FAR)
-        assert kernels.ray_segment(cos, sin, *corner, *right, far) == pytest.approx(length, rel=1e-5)
+        assert kernels.ray_segment(cos, sin, *corner, *right, far) == pytest.approx(1 / length, rel=1e-5)
 
 
 def test_a_ray_and_a_circle() -> None:
-    assert kernels.ray_circle(*singles(1, 0, 3, 0, 0.5), FAR) == 2.5
-    assert kernels.ray_circle(*singles(0, 1, 0.3, 2, 0.5), FAR) == pytest.approx(1.6)
+    assert kernels.ray_circle(*singles(1, 0, 3, 0, 0.5), FAR) == np.float32(0.4)
+    assert kernels.ray_circle(*singles(0, 1, 0.3, 2, 0.5), FAR) == pytest.approx(1 / 1.6)
     for miss in ((3, 1, 0.5), (-3, 0, 0.5), (0.2, 0, 0.5), (11, 0, 0.5)):  # beside, behind, inside, far
         assert kernels.ray_circle(*singles(1, 0, *miss), FAR) == FAR
 

@@ -23,6 +23,9 @@ from kit.world.records import Body, Layer, Model, Polygon, World
 FEW_WALLS = 64
 """So many are looked at one by one: to sort out those out of sight costs more. Measured."""
 
+VECTOR = 32
+"""Single numbers that a processor takes at once, or several times as many."""
+
 Corners = tuple[tuple[float, float], ...]
 
 
@@ -101,7 +104,6 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
     offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
     starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
     hulls, robot_of = _hulls(first.robot, len(first.starts))
-    directions = np.array(first.robot.directions)
     return kernels.Fleet(
         walls=kernels.Segments(
             np.concatenate([part.ends for part in parts]),
@@ -112,10 +114,16 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
         hulls=hulls,
         robot_of=robot_of,
         radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
-        beams=kernels.Beams(np.cos(directions), np.sin(directions)),
+        beams=_beams(first.robot.directions),
         reach=first.robot.reach,
         noise=first.robot.noise if noise is None else noise,
     )
+
+
+def _beams(directions: tuple[float, ...]) -> kernels.Beams:
+    """The rays, and as many more as make the number a multiple of VECTOR."""
+    missing = -len(directions) % VECTOR
+    return kernels.Beams(*(np.pad(each(directions), (0, missing)) for each in (np.cos, np.sin)))
 
 
 def _hulls(robot: Robot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:

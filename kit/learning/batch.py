@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from kit import kernels
 from kit.learning.arena import Ground
 from kit.learning.courses import Courses
-from kit.learning.observations import FAR_TARGET
+from kit.learning.observations import FAR_TARGET, RAYS
 from kit.learning.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.tasks import Task
 from kit.learning.transition import Array, Transition, bearing, distance
@@ -21,6 +21,7 @@ Singles = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+EVERYONE = slice(None)
 NO_MOVE = -1
 FULL_TURN = 2.0 * np.pi
 
@@ -134,9 +135,9 @@ class BatchEnv:
         self._reward: RewardFunction = task.reward if reward is None else reward
         self._courses = Courses(task)
         self._single, self._sectors = task.observation.tables(task.robots)
+        self._codes, self._twists = task.actions.codes, task.actions.twists
         self._first = first
         self._restart = restart
-        self._everyone: Numbers = np.arange(n, dtype=np.int64)
         self._keys = self._sown(seed)
         self._state = State.of(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
@@ -164,8 +165,8 @@ class BatchEnv:
             self._state.episode[:] = 0
         else:
             self._state.episode += 1
-        self._start(self._everyone, cases)
-        return self._observed(self._everyone, self._look(self._everyone))
+        self._start(np.arange(self.n), cases)
+        return self._observed(EVERYONE, self._look(EVERYONE))
 
     def _sown(self, seed: int) -> Numbers:
         """(n,) where each world's randomness comes from."""
@@ -198,8 +199,7 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
-        transition = self._advance(self.task.actions.chosen(actions, self.task.robots))
-        final = self._observed(self._everyone, transition.ranges)
+        transition, final = self._advance(self.task.actions.chosen(actions, self.task.robots))
         rewards, terms = self._rewarded(transition)
         terminated, truncated = transition.collided | transition.reached, transition.timed_out
         if self.task.timeout_terminal:
@@ -208,15 +208,15 @@ class BatchEnv:
         observations = self._restarted(over, final) if len(over) and self._restart else final
         return Step(observations, rewards, terminated, truncated, final, transition, terms)
 
-    def _advance(self, choices: Numbers) -> Transition:
-        """Moves every world by ``choices`` (n, robots), and tells what happened."""
+    def _advance(self, choices: Numbers) -> tuple[Transition, Singles]:
+        """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
         task, courses, old = self.task, self._courses, self._state
-        twists = task.actions.twists[choices]
+        twists = self._twists[choices]
         pose, free, hit = old.pose.copy(), old.free.copy(), np.zeros(old.free.shape, dtype=np.bool_)
         maps, dt = courses.map_of[old.case], task.step_time / task.checks
         for _ in range(task.checks):
             kernels.drive_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
-        turn, move = twists[:, :, 1] * task.step_time, task.actions.codes[choices]
+        turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
         self._state = new = State(
             episode=old.episode,
             case=old.case,
@@ -230,7 +230,9 @@ class BatchEnv:
             move=move,
             in_target=self._arrived(pose, old.target),
         )
-        return Transition(
+        ranges = self._look(EVERYONE)
+        seen = self._observed(EVERYONE, ranges)
+        transition = Transition(
             case=new.case,
             step=new.step,
             max_steps=task.max_steps,
@@ -246,8 +248,9 @@ class BatchEnv:
             previous_to_go=old.to_go,
             full_turns=(np.abs(new.turned) / FULL_TURN).astype(np.int64),
             forward_steps=new.forward_steps,
-            ranges=self._look(self._everyone),
+            ranges=ranges[:, :, :RAYS],
         )
+        return transition, seen
 
     def _restarted(self, over: Numbers, final: Singles) -> Singles:
         """The observations, with those of the next episodes of the worlds ``over``."""
@@ -255,7 +258,7 @@ class BatchEnv:
         self._state.episode[over] += 1
         self._start(over)
         observations = final.copy()
-        observations[over] = self._observed(over, self._look(over))[over]
+        observations[over] = self._observed(over, self._look(over))
         return observations
 
     def _arrived(self, poses: Floats, targets: Floats) -> Flags:
@@ -268,30 +271,28 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _look(self, which: Numbers) -> Singles:
-        """(n, robots, rays) what the lidars of the worlds ``which`` read; the rest is left open."""
+    def _look(self, which: Numbers | slice) -> Singles:
+        """(m, robots, rays) what the lidars of the worlds ``which`` read."""
         state, courses = self._state, self._courses
-        ranges = np.empty((self.n, self.task.robots, len(courses.fleet.beams.cos)), dtype=np.float32)
-        drawn = (state.episode << EPISODE) + state.step * ranges[0].size
-        kernels.look_worlds(
-            courses.fleet, which, courses.map_of[state.case], state.pose, self._keys, drawn, ranges
-        )
+        maps, poses = courses.map_of[state.case[which]], state.pose[which]
+        ranges = np.empty((*poses.shape[:2], len(courses.fleet.beams.cos)), dtype=np.float32)
+        drawn = (state.episode[which] << EPISODE) + state.step[which] * (ranges.shape[1] * ranges.shape[2])
+        kernels.look_worlds(courses.fleet, maps, poses, self._keys[which], drawn, ranges)
         return ranges
 
-    def _observed(self, which: Numbers, ranges: Singles) -> Singles:
-        """(n, size) observations of the worlds ``which``. Ranges are limited to what agents see, in place."""
+    def _observed(self, which: Numbers | slice, ranges: Singles) -> Singles:
+        """(m, size) observations of the worlds ``which``. Ranges are limited to what agents see, in place."""
         seen, state = self.task.observation, self._state
-        sensed = np.zeros((self.n, self.task.robots, seen.size), dtype=np.float32)
-        kernels.sense_worlds(which, seen.clip, self._single, self._sectors, ranges, sensed)
+        sensed = np.empty((*ranges.shape[:2], seen.size), dtype=np.float32)
+        kernels.sense_worlds(seen.clip, self._single, self._sectors, ranges, sensed)
         sensed *= np.float32(seen.scale)
         if seen.target:
-            first = seen.size - seen.arrived - 2
-            near = np.minimum(distance(state.pose, state.target), FAR_TARGET) * seen.scale
-            sensed[:, :, first] = near
-            sensed[:, :, first + 1] = bearing(state.pose, state.target) / np.pi
+            pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
+            sensed[:, :, first] = np.minimum(distance(pose, target), FAR_TARGET) * seen.scale
+            sensed[:, :, first + 1] = bearing(pose, target) / np.pi
         if seen.arrived:
-            sensed[:, :, -1] = state.in_target
-        return sensed.reshape(self.n, -1)
+            sensed[:, :, -1] = state.in_target[which]
+        return sensed.reshape(len(sensed), -1)
 
     def _rewarded(self, transition: Transition) -> tuple[Singles, dict[str, Array]]:
         """(n,) rewards, and what each term adds."""

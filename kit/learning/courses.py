@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from kit import kernels
 from kit.learning.arena import Unsupported, fleet_of, ground
 from kit.learning.distance import CELL, ways
+from kit.learning.observations import RAYS
 from kit.learning.tasks import Task
 from kit.world.catalogue import Case
 
@@ -43,6 +44,9 @@ class Courses:
                 raise Unsupported(
                     f"{each.name} has {len(each.starts)} robots, task {task.name} {task.robots}"
                 )
+            if len(each.robot.directions) != RAYS:
+                rays = len(each.robot.directions)
+                raise Unsupported(f"{each.name}: observations are made of {RAYS} rays, its lidar has {rays}")
         self.task = task
         self.fleet = fleet_of(grounds, task.lidar_noise)
         self.map_of: Numbers = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)

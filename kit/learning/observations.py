@@ -45,9 +45,14 @@ class Observation:
         return len(self.rays) + sectors + 2 * self.side_rays + 2 * self.target + self.arrived
 
     def tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """(robots, single) the rays that each robot's numbers start with, and (91) the sector of every ray."""
+        """(robots, single) the rays that each robot's numbers start with; (m, 3) sector, first ray and end of every
+        stretch of rays in one sector."""
         single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
-        return np.array(single, dtype=np.int64).reshape(robots, -1), np.array(self.sectors, dtype=np.int64)
+        sectors = np.array(self.sectors, dtype=np.int64)
+        ends = np.flatnonzero(np.diff(sectors, append=-1)) + 1
+        starts = np.concatenate([[0], ends[:-1]])
+        stretches = np.stack([sectors[starts], starts, ends], axis=1)
+        return np.array(single, dtype=np.int64).reshape(robots, -1), stretches
 
     def space(self, robots: int) -> spaces.Box:
         """Box (robots * size,) float32."""

@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from kit import kernels
+from kit import motors
 from kit.world.problems import quoted
 from kit.world.reading import Section
 
@@ -46,7 +46,7 @@ class SpeedLimits:
 
     def limited(self, current: float, target: float, dt: float) -> float:
         """The speed after ``dt`` when ``target`` is asked for."""
-        return kernels.limited_speed(current, target, self.acceleration, self.deceleration, self.speed, dt)
+        return motors.limited_speed(current, target, self.acceleration, self.deceleration, self.speed, dt)
 
 
 def read_limits(section: Section, key: str) -> SpeedLimits:

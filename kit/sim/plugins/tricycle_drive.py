@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kit import kernels
+from kit import motors
 from kit.msg.geometry_msgs import Twist
 from kit.sim.bodies import clipped
 from kit.sim.keys import SpeedLimits, read_limits, read_topic
@@ -135,7 +135,7 @@ class TricycleDrive(Plugin):
     ====================== ==================================================================
 
     Reports as DiffDrive does, with the same keys; wheels of the encoders are the rear ones, which turn as
-    ``kit.kernels.tricycle_twist`` says. The front wheel turns with the steering. Like DiffDrive's, the last command
+    ``kit.motors.tricycle_twist`` says. The front wheel turns with the steering. Like DiffDrive's, the last command
     holds for ever.
     """
 
@@ -166,7 +166,7 @@ class TricycleDrive(Plugin):
         steering = self._steering + rate * dt
         if params.max_steering:
             steering = clipped(steering, params.max_steering)
-        forward, turn = kernels.tricycle_twist(self._speed, self._steering, params.wheelbase)
+        forward, turn = motors.tricycle_twist(self._speed, self._steering, params.wheelbase)
         self._steering_rate = (steering - self._steering) / dt
         lateral = turn * params.wheelbase  # of the body's origin, which lies before the rear axle
         sent = self._odometry.step((forward, lateral, turn), dt)
