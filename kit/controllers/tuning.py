@@ -1,0 +1,38 @@
+"""Keeps a running node's parameters at the values wanted, also after the node has been started anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from kit.msg.rcl_interfaces import Parameter, ParameterType, ParameterValue, SetParameters
+from kit.ros.graph import Graph
+
+
+class Tuner:
+    """Of one node, by its service ``set_parameters``. Never waits; a node without the service is left alone."""
+
+    def __init__(self, graph: Graph, node: str) -> None:
+        self._node = graph.create_node(f"{node}_tuner")
+        self._client = self._node.create_client(SetParameters, f"/{node}/set_parameters")
+        self._told: dict[str, float] | None = None
+
+    def look(self, wanted: Mapping[str, float]) -> None:
+        """To be called a few times a second: tells the node what has changed, and a new node everything."""
+        if not self._client.service_is_ready():
+            self._told = None
+        elif self._told != wanted:
+            self._told = dict(wanted)
+            self._client.call_async(
+                SetParameters.Request(
+                    parameters=[
+                        Parameter(
+                            name=name,
+                            value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value),
+                        )
+                        for name, value in wanted.items()
+                    ]
+                )
+            )
+
+    def close(self) -> None:
+        self._node.destroy_node()

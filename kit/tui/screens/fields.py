@@ -1,0 +1,221 @@
+"""The field of a map, live: arrows over the floor, traps, the force on each robot, intensities to change."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from enum import Enum
+from itertools import cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual.binding import Binding, BindingType
+
+from kit.fields import adjacency
+from kit.fields.course import Course, middle_of
+from kit.fields.minima import Trap
+from kit.fields.planner import Unreachable
+from kit.geometry import Pose
+from kit.picture.camera import Camera
+from kit.picture.field import FieldPicture, changed, with_field
+from kit.picture.scene import FloatArray, Scene
+from kit.tui.look import Look
+from kit.tui.screens.fields_keys import FIELDS_HELP, FIELDS_KEYS
+from kit.tui.screens.play import PlayScreen
+from kit.tui.text_rows import Row, row
+
+if TYPE_CHECKING:
+    from kit.controllers.tuning import Tuner
+    from kit.places import Place
+    from kit.session import Session
+
+STEP: Final = 1.1
+"""One key press multiplies or divides an intensity by this."""
+MOST_TRAPS: Final = 3
+"""Listed beside the picture."""
+
+
+class Shown(Enum):
+    """What the arrows are."""
+
+    FORCES = "forces"
+    WAYS = "planner's ways"
+    NOTHING = "no arrows"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Opened:
+    """What was made for one session's place."""
+
+    place: Place
+    picture: FieldPicture
+    tuner: Tuner
+
+
+class FieldsScreen(PlayScreen):
+    """The play screen with a field over the floor. Robots are driven by whatever controller drives them."""
+
+    keys = FIELDS_KEYS
+    help = FIELDS_HELP
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("i", "next_intensity", show=False),
+        Binding("left_square_bracket", f"scale({1 / STEP})", show=False),
+        Binding("right_square_bracket", f"scale({STEP})", show=False),
+        Binding("t", "next_field", show=False),
+    ]
+
+    def __init__(
+        self,
+        look: Look,
+        place: str,
+        controller: str,
+        *,
+        case: str | None = None,
+        folder: Path,
+        seed: int = 0,
+        derived: bool = False,
+    ) -> None:
+        super().__init__(look, place, controller, case=case, folder=folder, seed=seed)
+        self._derived = derived
+        self._opened: _Opened | None = None
+        self._traps: tuple[Trap, ...] = ()
+        self._names = ("walls", "target", "robot", "tension")
+        self._chosen = 0
+        self._kinds = cycle(Shown)
+        self.shown = next(self._kinds)
+
+    def open_world(self) -> None:
+        super().open_world()
+        self.behind.listen(self._attend)
+
+    def on_screen_resume(self) -> None:
+        self.behind.listen(self._attend)  # the screen of nodes may have listened meanwhile
+
+    def action_next_intensity(self) -> None:
+        self._chosen = (self._chosen + 1) % len(self._names)
+        self._show()
+
+    def action_scale(self, times: float) -> None:
+        """The chosen intensity, for the picture and for the controller."""
+        opened = self._opened
+        if opened is not None:
+            picture = opened.picture
+            picture.intensities = changed(picture.intensities, self._names[self._chosen], times)
+            self._traps = picture.traps()
+            self.behind.wish(self._attend)
+            self._show()
+
+    def action_next_field(self) -> None:
+        self.shown = next(self._kinds)
+        self._show()
+
+    def action_zoom(self, steps: int) -> None:
+        super().action_zoom(steps)
+        self._show()
+
+    def action_pan(self, key: str) -> None:
+        super().action_pan(key)
+        self._show()
+
+    def action_fit(self) -> None:
+        super().action_fit()
+        self._show()
+
+    # In the world's thread
+
+    def _attend(self, session: Session) -> None:
+        """Makes the picture of another place, and keeps the controller's intensities as they are on the screen."""
+        opened = self._opened
+        if opened is None or opened.place is not session.place:
+            opened = self._open(session)
+        if opened is not None:
+            values = asdict(opened.picture.intensities)
+            opened.tuner.look({f"intensity.{name}": float(value) for name, value in values.items()})
+
+    def _open(self, session: Session) -> _Opened | None:
+        from kit.controllers.tuning import Tuner
+        from kit.world.problems import WorldError
+
+        place = session.place
+        if place.case is None:
+            self.behind.listen(None)
+            self._trouble_arrived(
+                f"{place.name} has no target, so its field has none either. Press m for a map."
+            )
+            return None
+        try:
+            course = Course.open(
+                place.world.file,
+                place.partners,
+                place.case.target,
+                place.case.target_radius,
+                derived=self._derived,
+            )
+        except (WorldError, LookupError, ValueError) as error:
+            self.behind.listen(None)
+            self._trouble_arrived(str(error))
+            return None
+        picture = FieldPicture(course)
+        self._traps = picture.traps()
+        self._opened = _Opened(place, picture, Tuner(session.graph, "fields"))
+        return self._opened
+
+    # In the face's
+
+    def _show(self) -> None:
+        super()._show()
+        opened, view = self._opened, self.view
+        if view is not None and opened is not None and self.is_active:
+            self._rows("panel").show(self._panel(opened.picture, self._poses(view.scene, opened.picture)))
+
+    def _newest_scene(self) -> Scene:
+        scene, opened = super()._newest_scene(), self._opened
+        if opened is None:
+            return scene
+        camera = self.world.camera or Camera.fit(scene.bounds, *self.world.size)
+        vectors = self._vectors(opened.picture, self._poses(scene, opened.picture))
+        return with_field(scene, opened.picture, camera, vectors, self._traps)
+
+    def _vectors(self, picture: FieldPicture, poses: Sequence[Pose]) -> FloatArray | None:
+        if self.shown is Shown.FORCES:
+            return picture.forces
+        if self.shown is Shown.WAYS and poses:
+            try:
+                return picture.directions(middle_of(poses))
+            except Unreachable:
+                return None
+        return None
+
+    def _poses(self, scene: Scene, picture: FieldPicture) -> list[Pose]:
+        known = {body.model: body.pose for body in scene.robots}
+        return [known[robot.name] for robot in picture.course.robots if robot.name in known]
+
+    def _panel(self, picture: FieldPicture, poses: Sequence[Pose]) -> list[Row]:
+        """At most 20 rows of 22 characters."""
+        values = asdict(picture.intensities)
+        rows = [row(("intensities", "dim"))]
+        for number, name in enumerate(self._names):
+            chosen = number == self._chosen
+            rows.append(
+                row((f"{'>' if chosen else ' '}{name:<8}", "bold" if chosen else ""), f"{values[name]:>9.2f}")
+            )
+        rows += [row(("arrows", "dim")), row(f" {self.shown.value}"), row(("traps", "dim"))]
+        rows += [
+            row(f" ! {trap.x:6.2f} {trap.y:6.2f} {trap.share:4.0%}") for trap in self._traps[:MOST_TRAPS]
+        ] or [row(" none")]
+        if poses:
+            rows.append(row(("forces", "dim")))
+            decision = picture.decision(poses)
+            rows += [
+                row(f" {robot.name[:8]:<8}", (f"{math.hypot(*force):9.1f}", "bold"))
+                for robot, force in zip(picture.course.robots, decision.forces, strict=True)
+            ]
+        if len(poses) == 2:
+            beside = "yes" if adjacency.by_geometry(poses[0], poses[1]) else "no"
+            rows.append(row(("side by side", "dim")))
+            rows.append(row(f" {beside:<8}", (f"{float(adjacency.graded(poses[0], poses[1])):9.2f}", "bold")))
+        if self.view is not None and self.view.score.reached_s is not None:
+            rows.append(row(("target reached", "good")))
+        return rows
