@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from kit.learning.choice import TaskChoice
-from kit.learning.events import Ended, Event, EventReader, Progress, Started, Examined
+from kit.learning.events import Ended, Event, EventReader, Examined, Progress, Started
 from kit.learning.policies import Policy, load_policy
 from kit.workspace import write_atomically
 from kit.world.problems import quoted, suggestion

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kit.learning.evaluation import Result
-from kit.learning.events import Ended, Event, Noted, Progress, Started, Examined
+from kit.learning.events import Ended, Event, Examined, Noted, Progress, Started
 from kit.learning.runs import Run, RunError, Summary
 from kit.learning.tally import Outcome
 

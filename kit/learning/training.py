@@ -21,7 +21,7 @@ from kit.learning.algorithms import Algorithm, find_algorithm
 from kit.learning.batch import BatchEnv, RewardError
 from kit.learning.choice import TaskChoice
 from kit.learning.evaluation import CaseResult, Examiner, Result, seed_for
-from kit.learning.events import Ended, Event, EventWriter, Noted, Progress, Started, Examined
+from kit.learning.events import Ended, Event, EventWriter, Examined, Noted, Progress, Started
 from kit.learning.extra import require_learner, versions
 from kit.learning.learner import Halt, Learner
 from kit.learning.policies import Policy, save_policy

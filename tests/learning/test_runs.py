@@ -12,10 +12,10 @@ from kit.learning.events import (
     Ended,
     EventReader,
     EventWriter,
+    Examined,
     Noted,
     Progress,
     Started,
-    Examined,
     from_line,
     to_line,
 )
