@@ -42,7 +42,7 @@ class Submission:
     @contextmanager
     def laid_out(self) -> Iterator[Path]:
         """The files in a folder of their own, not to be written to; where the main one lies."""
-        with tempfile.TemporaryDirectory(prefix="grader-") as folder:
+        with tempfile.TemporaryDirectory(prefix="work-") as folder:
             for name, content in self.files.items():
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)

@@ -40,8 +40,8 @@ exec {command} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
 """
 
 
-def by_slurm(queue: Queue, shards: int) -> str:
-    """Submits the array job and waits until it is over; what sbatch said. Raises CannotRun."""
+def by_slurm(queue: Queue, shards: int) -> None:
+    """Submits the array job and waits until it is over. Raises CannotRun."""
     script = queue.folder / SCRIPT
     write_atomically(script, slurm_script(queue, shards).encode())
     sbatch = shutil.which("sbatch")
@@ -50,7 +50,6 @@ def by_slurm(queue: Queue, shards: int) -> str:
     done = subprocess.run([sbatch, "--wait", str(script)], capture_output=True, text=True, check=False)
     if done.returncode != 0 and queue.waiting():
         raise CannotRun(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
-    return done.stdout.strip()
 
 
 def by_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,11 +79,9 @@ def command(
         entries = prepare(queue, submissions, assignment, terms)
         waiting = queue.waiting()
         click.echo(f"{len(entries)} submissions, {len(waiting)} to grade", err=True)
-        with click.progressbar(
-            length=len(waiting), label="graded", file=click.get_text_stream("stderr")
-        ) as bar:
+        with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
             if executor == "slurm":
-                click.echo(by_slurm(queue, jobs), err=True)
+                by_slurm(queue, jobs)
             elif executor == "dask":
                 by_dask(queue, waiting, cluster, count)
             elif executor == "local":

@@ -33,9 +33,20 @@ NASTY = {
 
 def result(text: str, status: Status = Status.FAIL) -> Result:
     nasty = Test(
-        "reached", text, status, 1.0, 2.0, rationale=text, hints=(text, text), expected=text, actual=text, log=text
+        "reached",
+        text,
+        status,
+        1.0,
+        2.0,
+        rationale=text,
+        hints=(text, text),
+        expected=text,
+        actual=text,
+        log=text,
     )
-    hidden = Test("h", "Hidden one", Status.FAIL, 0.0, 1.0, Visibility.HIDDEN, rationale="s3cret", log="s3cret")
+    hidden = Test(
+        "h", "Hidden one", Status.FAIL, 0.0, 1.0, Visibility.HIDDEN, rationale="s3cret", log="s3cret"
+    )
     return Result("reach", "v", "abc", "0.1", "public", 1, "linux", (nasty, hidden), (text,))
 
 
@@ -115,14 +126,19 @@ def test_classroom_always_gets_tests_and_a_maximum() -> None:
 def test_prairielearn_does_not_grade_what_did_not_run() -> None:
     stopped = Test("a", "A", Status.STUDENT_ERROR, 0.0, 1.0, rationale="work.py:3: SyntaxError")
     later = Test("b", "B", Status.SKIPPED, 0.0, 1.0, depends_on="a")
-    content = json.loads(writer("prairielearn")(Result("r", "v", "s", "g", "public", 1, "p", (stopped, later))))
+    content = json.loads(
+        writer("prairielearn")(Result("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
+    )
     assert content["gradable"] is False
     assert content["format_errors"] == ["work.py:3: SyntaxError"]
     assert json.loads(writer("prairielearn")(result("no")))["score"] == pytest.approx(1 / 3)
 
 
 def test_check50_tells_failed_from_unknown() -> None:
-    assert [test["passed"] for test in json.loads(writer("check50")(result("no")))["results"]] == [False, False]
+    assert [test["passed"] for test in json.loads(writer("check50")(result("no")))["results"]] == [
+        False,
+        False,
+    ]
     broken = json.loads(writer("check50")(result("no", Status.GRADER_ERROR)))["results"]
     assert broken[0]["passed"] is None
 
