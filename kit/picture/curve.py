@@ -20,6 +20,9 @@ from kit.picture.scene import FloatArray
 INKS = ROBOTS
 """The first curve's, the second's, the third's as the first's again; their numbers tell them apart too."""
 
+MARGIN_FROM = 20
+"""From so many columns on there is room for a scale on the left."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
@@ -44,6 +47,8 @@ class Axes:
     high: float | None = None
     goal: float | None = None
     """A level to reach, drawn as a dashed line."""
+    margin: int = 0
+    """Columns on the left at least, for plots one below the other."""
 
 
 def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, encoder: Encoder) -> Frame:
@@ -52,21 +57,21 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     frame = Frame.empty(columns, rows)
     curves = [_finite(curve) for curve in curves]
     low, high = _vertical(curves, axes)
-    right = _round_up(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
+    right = round_up(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
     top, bottom = int(rows >= 4), rows - int(rows >= 3)
     labels = {top: f"{high:.4g}", bottom - 1: f"{low:.4g}"}
     if axes.goal is not None:
         labels.setdefault(top + _row(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
-    left = max(map(len, labels.values())) + 1 if columns >= 20 else 0
+    left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MARGIN_FROM else 0
     plot = _plot(curves, axes.goal, (low, high, right), columns - left, bottom - top, encoder)
     _paste(frame, plot, top, left)
     if left:
         for row, label in labels.items():
-            _write(frame, row, 0, label.rjust(left - 1))
+            write(frame, row, 0, label.rjust(left - 1))
     if bottom < rows:
-        _write(frame, bottom, left, "0")
+        write(frame, bottom, left, "0")
         end = f"{_count(right)} {axes.unit}".rstrip()
-        _write(frame, bottom, max(left + 2, columns - len(end)), end)
+        write(frame, bottom, max(left + 2, columns - len(end)), end)
     if top:
         _write_names(frame, curves, left)
     return frame
@@ -108,7 +113,7 @@ def _plot(
                 column = int(curve.x[-1] / right * (columns - 1))
                 row = _row(float(curve.y[-1]), low, high, rows)
                 if 0 <= row < rows:
-                    _write(frame, row, column, str(number + 1), INKS[number % len(INKS)])
+                    write(frame, row, column, str(number + 1), INKS[number % len(INKS)])
     return frame
 
 
@@ -138,13 +143,13 @@ def _vertical(curves: Sequence[Curve], axes: Axes) -> tuple[float, float]:
     values = np.concatenate(seen) if seen else np.array((0.0, 1.0))
     marks = [float(values.min()), float(values.max())] + ([] if axes.goal is None else [axes.goal])
     low, high = min(marks), max(marks)
-    step = _round_up((high - low) / 4 or abs(high) or 1.0)
+    step = round_up((high - low) / 4 or abs(high) or 1.0)
     low = math.floor(low / step) * step if axes.low is None else axes.low
     high = math.ceil(high / step) * step if axes.high is None else axes.high
     return (low, high) if high > low else (low, low + step)
 
 
-def _round_up(value: float) -> float:
+def round_up(value: float) -> float:
     """The next of 1, 2, 5, 10, 20, 50, ... times any power of ten."""
     if value <= 0:
         return 1.0
@@ -162,11 +167,12 @@ def _write_names(frame: Frame, curves: Sequence[Curve], column: int) -> None:
         newest = f" {curve.y[-1]:.3g}" if len(curve.y) else ""
         key = f"{number + 1} " if len(curves) > 1 else ""
         text = f"{key}{curve.name}{newest}"
-        _write(frame, 0, column, text, INKS[number % len(INKS)])
+        write(frame, 0, column, text, INKS[number % len(INKS)])
         column += len(text) + 2
 
 
-def _write(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:
+def write(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:
+    """Writes a text into a frame; what does not fit is cut off."""
     rows, columns = frame.shape
     if not 0 <= row < rows:
         return

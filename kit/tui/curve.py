@@ -31,9 +31,10 @@ class CurveView(FrameView):
         self._encoder = encoder or Braille()
         self._curves: Sequence[Curve] = ()
 
-    def show(self, curves: Sequence[Curve]) -> bool:
-        """Draws these curves from now on; says whether anything looks different."""
+    def show(self, curves: Sequence[Curve], axes: Axes | None = None) -> bool:
+        """Draws these curves from now on, on other axes if given; says whether anything looks different."""
         self._curves = curves
+        self._axes = axes or self._axes
         return self._redraw()
 
     def on_resize(self, event: events.Resize) -> None:
