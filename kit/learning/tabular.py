@@ -80,7 +80,11 @@ class TableLearner:
         future = np.where(step.terminated, 0.0, self.future(reached, following))
         target = step.rewards + self._settings.gamma * future
         error = target - self._values[state, action]
-        np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error)
+        pair = state * self._values.shape[1] + action
+        alike = np.bincount(pair)[
+            pair
+        ]  # worlds that did the same in the same state move its value by their mean
+        np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error / alike)
 
     def future(self, state: Integers, action: Integers) -> Floats:
         """What the next state is worth, where ``action`` will be taken in it."""
