@@ -169,12 +169,16 @@ def _start(run: Run, detach: bool) -> None:
     from kit.learning.worker import start
 
     reader = EventReader(run.events_file, from_now=True)
-    start(run)
+    process = start(run)
     click.echo(f"{run.name}: training in {run.folder}")
     if detach:
         click.echo(f"`kit watch {run.name}` shows how it goes.")
-    else:
+        return
+    try:
         _follow(run, reader)
+    finally:
+        if not run.alive:
+            process.wait()
 
 
 def _follow(run: Run, reader: EventReader | None = None) -> None:

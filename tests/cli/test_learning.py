@@ -1,0 +1,105 @@
+"""The verbs of learning, as a user types them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kit.cli import main
+from kit.learning.policies import load_policy
+
+QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
+
+
+def kit(*arguments: object, code: int = 0) -> Result:
+    result = CliRunner().invoke(main, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"})
+    assert result.exit_code == code, result.output
+    assert "Traceback" not in result.output
+    return result
+
+
+def test_from_training_to_a_node(tmp_path: Path) -> None:
+    said = kit("train", "turn", *QUICK, "--name", "first").output
+    assert "started" in said
+    assert "finished after 4,000 steps" in said
+    assert said.count("TEST") == 1  # it ended before its strategy's first look: one is made at the end
+    assert kit("runs").output.count("first") == 1
+    assert "finished" in kit("runs", "first").output
+    assert json.loads(kit("runs", "--json").output)[0]["name"] == "first"
+    assert kit("watch", "first", "--once").output in said or "started" in said
+    assert "worst" in kit("evaluate", "--episodes", 20).output
+    data = json.loads(kit("evaluate", "first", "--episodes", 20, "--json").output)
+    assert set(data["cases"]) == {"turn_a_to_b", "turn_b_to_a"}
+    kit("evaluate", "first", "--episodes", 2, "--pictures", tmp_path / "seen")
+    assert {file.name for file in (tmp_path / "seen").iterdir()} == {"turn_a_to_b.png", "turn_b_to_a.png"}
+    assert "turn_a_to_b" in kit("evaluate", "first", "--episodes", 2, "--paths", 2).output
+    table = kit("compare", "first", "first", "--episodes", 10, "--curves").output
+    assert "worst" in table
+    refused = kit("evaluate", "first", "--node", tmp_path / "node.py", code=2).output
+    assert "table" in refused
+    assert not (tmp_path / "node.py").exists()
+
+
+MISTAKES = {
+    "no task": (("train",), "kit train turn"),
+    "unknown task": (("train", "trun"), "turn"),
+    "unknown case": (("train", "hallway", "--on", "dors"), "doors"),
+    "unknown algorithm": (("train", "turn", "--algo", "pppo"), "ppo"),
+    "unknown reward": (("train", "turn", "--algorithm-reward", "mine"), "algorithm-1"),
+    "bad name": (("train", "turn", *QUICK, "--name", "../x"), "letters"),
+    "no such run": (("watch", "nothing"), "kit train turn"),
+    "nothing to go on with": (("train", "--resume", "nothing"), "no run"),
+    "nothing to test": (("evaluate",), "kit train turn"),
+    "nothing to stop": (("runs", "--stop"), "kit train turn"),
+    "no such file": (("evaluate", "gone.npz"), "gone.npz"),
+    "unknown group": (("crosstable", "hallway", "--algo", "sarsa", "--groups", "stairs"), "stairs"),
+}
+
+
+@pytest.mark.parametrize(("arguments", "said"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
+    assert said in kit(*arguments, code=2).output
+    assert not list((tmp_path / "workspace").glob("runs/*"))
+
+
+def test_a_bad_reward_is_told_before_anything_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("def reward(speed):\n    return speed\n")
+    said = kit("train", "turn", *QUICK, "--reward", file, code=2).output
+    assert "mine.py:1" in said
+    assert not list((tmp_path / "workspace").glob("runs/*"))
+
+
+def test_a_reward_that_raises_is_shown_with_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("def reward(step):\n    return 1 / (step - 5)\n")
+    said = kit("train", "turn", *QUICK, "--reward", file, "--name", "bad", code=1).output
+    assert "reward.py:2" in said
+    assert "failed" in kit("runs").output
+
+
+def test_a_policy_is_tested_on_cases_it_was_not_trained_on() -> None:
+    kit("train", "turn", *QUICK, "--on", "turn_a_to_b", "--name", "one-way")
+    own = json.loads(kit("evaluate", "one-way", "--episodes", 5, "--json").output)
+    every = json.loads(kit("evaluate", "one-way", "--episodes", 5, "--on", "all", "--json").output)
+    assert (len(own["cases"]), len(every["cases"])) == (1, 2)
+    assert "17" in kit("evaluate", "one-way", "--task", "hallway", code=2).output
+
+
+def test_a_finished_run_is_not_resumed_and_its_file_is_a_policy(tmp_path: Path) -> None:
+    kit("train", "turn", *QUICK, "--name", "done")
+    assert "has finished" in kit("train", "--resume", "done", code=2).output
+    file = tmp_path / "workspace" / "runs" / "done" / "best.npz"
+    assert load_policy(file).trained_on.task == "turn"
+    assert "worst" in kit("evaluate", file, "--episodes", 3).output
+    file.write_bytes(file.read_bytes()[:100])
+    assert "damaged" in kit("evaluate", file, code=2).output
+
+
+def test_everything_there_is_can_be_listed() -> None:
+    said = kit("train", "--list").output
+    for name in ("hallway", "curve_right_180", "recurrent-ppo", "algorithm-3"):
+        assert name in said
