@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Sequence
-from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -14,15 +12,16 @@ import numpy as np
 
 from grader import behaviours, planning
 from grader.assignment import Assignment, Criterion
-from grader.model import NAMES, Floats, Model, build
+from grader.model import Floats, Model, build
 from grader.symmetry import Turned, mirrored, rotated
-from grader.transitions import Steps
+from grader.transitions import KNOWN, Steps, transition
 from kit.host.batch import StudentFunctions
 from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.wire import printable
+from kit.learning.student import FUNCTION, RewardFileError, columns_of, parameters_of
+from kit.world.problems import suggestion
 
-FUNCTION: Final = "reward"
 SHUFFLE: Final = 1234
 """The seed of the order in which the same transitions are asked for a second time."""
 MOST_SAMPLES: Final = 4000
@@ -68,7 +67,7 @@ class Exam:
         """Whether the same transitions give the same rewards to the bit: in another order, and in a fresh process."""
         steps = Steps.all(self.model)
         order = np.random.default_rng(SHUFFLE).permutation(len(steps))
-        shuffled = Steps(self.model, steps.states[order], steps.moves[order])
+        shuffled = steps.at(order)
         try:
             with self._open() as functions:
                 first = self._call(functions, shuffled)
@@ -82,8 +81,12 @@ class Exam:
     def symmetry(self) -> float:
         """The share of transitions whose reward stays the same when the whole task is mirrored and when it is turned."""
         everything = Steps.all(self.model)
-        pick = np.random.default_rng(SHUFFLE).permutation(len(everything))[:MOST_SAMPLES]
-        sample = Steps(self.model, everything.states[pick], everything.moves[pick])
+        # In the target's middle there is no direction to the target.
+        elsewhere = np.flatnonzero(
+            ~everything.reached & (self.model.cell_of(everything.states) != self.model.target)
+        )
+        pick = np.random.default_rng(SHUFFLE).permutation(elsewhere)[:MOST_SAMPLES]
+        sample = everything.at(pick)
         known = self.rewards.reshape(-1)[pick]
         same = np.ones(len(sample), dtype=np.bool_)
         turns: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
@@ -133,9 +136,8 @@ class Exam:
 
     def _call(self, functions: StudentFunctions, steps: Steps) -> Floats:
         self.steps += len(steps)
-        if not self._names:
-            return np.array(functions.call(FUNCTION, [{} for _ in range(len(steps))]), dtype=np.float64)
-        return np.array(functions.call_columns(FUNCTION, steps.columns(self._names)), dtype=np.float64)
+        columns = columns_of(transition(steps), self._names)
+        return np.array(functions.call_columns(FUNCTION, columns), dtype=np.float64)
 
 
 class Examination:
@@ -173,27 +175,13 @@ class Examination:
 def signature(file: Path) -> tuple[str, ...]:
     """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
     try:
-        tree = ast.parse(file.read_bytes())
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        line = error.lineno if isinstance(error, SyntaxError) else None
-        raise _wrong(file, f"this is not Python: {type(error).__name__}", line, FailureKind.SYNTAX) from None
-    found = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == FUNCTION]
-    if not found:
-        raise _wrong(file, f"there is no function {FUNCTION}() in it.", None)
-    node = found[-1]
-    arguments = node.args
-    if arguments.vararg or arguments.kwarg or arguments.posonlyargs:
-        raise _wrong(file, f"name what {FUNCTION}() needs one by one, without * and /.", node.lineno)
-    names = tuple(argument.arg for argument in (*arguments.args, *arguments.kwonlyargs))
-    for name in names:
-        if name not in NAMES:
-            near = get_close_matches(name, NAMES, n=1)
-            hint = f"Did you mean {near[0]}?" if near else f"There is: {', '.join(NAMES)}."
-            raise _wrong(
-                file, f"{FUNCTION}() asks for {printable(name)[:40]}, which there is not. {hint}", node.lineno
-            )
+        names = parameters_of(file)
+    except RewardFileError as error:
+        # Where the snapshot lies is nothing to tell.
+        message = str(error).replace(f"{file}", file.name)
+        raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
+    unknown = [name for name in names if name not in KNOWN]
+    if unknown:
+        message = f"{file.name}: {FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], KNOWN)}"
+        raise GuestError(Failure(FailureKind.IMPORT, message))
     return names
-
-
-def _wrong(file: Path, message: str, line: int | None, kind: FailureKind = FailureKind.IMPORT) -> GuestError:
-    return GuestError(Failure(kind, message, file.name, line))

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -152,29 +151,3 @@ def _moves(
         free = all(cell in number for cell in way)
         driven.append((number[way[0]] if free else here, heading, not free))
     return (*driven, (here, (heading + 1) % HEADINGS, False), (here, (heading - 1) % HEADINGS, False))
-
-
-NAMES: Final[Mapping[str, str]] = MappingProxyType(
-    {
-        "x": "where the robot is [m]",
-        "y": "where the robot is [m]",
-        "heading": "the robot's [rad], counter-clockwise from x",
-        "previous_x": "before the step [m]",
-        "previous_y": "before the step [m]",
-        "previous_heading": "before the step [rad]",
-        "target_x": "[m]",
-        "target_y": "[m]",
-        "distance": "to the target, as the crow flies [m]",
-        "previous_distance": "before the step [m]",
-        "to_go": "to the target, along the shortest way [m]",
-        "previous_to_go": "before the step [m]",
-        "bearing": "of the target from straight ahead, to the left positive [rad]",
-        "previous_bearing": "before the step [rad]",
-        "front": "room straight ahead [m]",
-        "move": "what the robot did: forward, back, left or right",
-        "previous_move": "what it did the step before; empty in the first",
-        "collided": "whether it ran into a wall, which ends the episode",
-        "reached": "whether it is in the target, which ends the episode",
-    }
-)
-"""What a student's ``reward`` may ask for by its parameters' names, and what it gets."""

@@ -1,19 +1,52 @@
-"""Transitions of the model as what a reward gets: columns by name for a student's, a record for the kit's own."""
+"""Transitions of the model as the kit's own record: what every reward gets, the kit's and a student's, here as in
+training."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
-from typing import Any, Final, TypeAlias
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from grader.model import CELL, LASTS, MOVES, NO_MOVE, Floats, Integers, Model
+from grader.model import CELL, LASTS, MOVES, Flags, Floats, Integers, Model
+from kit.learning.actions import Move
+from kit.learning.observations import RAYS
+from kit.learning.rewards import RewardFunction
+from kit.learning.transition import Transition
 
-Column: TypeAlias = NDArray[Any]
+KNOWN: Final = (
+    *(
+        "collided",
+        "reached",
+        "hit",
+        "in_target",
+        "was_in_target",
+        "move",
+        "previous_move",
+        "pose",
+        "previous_pose",
+    ),
+    *(
+        "target",
+        "to_go",
+        "previous_to_go",
+        "front",
+        "distance",
+        "previous_distance",
+        "bearing",
+        "previous_bearing",
+    ),
+    "max_steps",
+)
+"""The facts of a step that the model has. The others (the step's number, turns made so far, the lidar's rays) depend
+on what the model leaves out."""
+
+KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
+"""The kit's number of each of the model's moves; the last: none."""
+
+SIGHT: Final = 2.0
+"""m: no farther does the agent of the kit's tasks see (dissertation, section 3.1.2)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,84 +66,53 @@ class Steps:
         states = np.repeat(np.arange(model.states), len(MOVES))
         return cls(model, states, np.tile(np.arange(len(MOVES)), model.states))
 
+    def at(self, index: Integers) -> Steps:
+        """Some of them, in another order."""
+        return Steps(self.model, self.states[index], self.moves[index])
+
     @cached_property
     def after(self) -> Integers:
         return self.model.next[self.states, self.moves]
 
-    @cached_property
-    def before_pose(self) -> Floats:
-        return self.model.pose(self.states)
-
-    @cached_property
-    def after_pose(self) -> Floats:
-        return self.model.pose(self.after)
-
     @property
-    def hit(self) -> NDArray[np.bool_]:
+    def hit(self) -> Flags:
         return self.model.hit[self.states, self.moves]
 
     @property
-    def reached(self) -> NDArray[np.bool_]:
+    def reached(self) -> Flags:
         return self.model.reached[self.states, self.moves]
 
-    @property
-    def target(self) -> Floats:
-        """(2)"""
-        place: Floats = (self.model.cells[self.model.target] + 0.5) * CELL
-        return place
 
-    def columns(self, names: Sequence[str]) -> dict[str, Sequence[Any] | Column]:
-        """What a student's reward asked for. KeyError for a name that there is not."""
-        return {name: _listed(COLUMNS[name](self)) for name in names}
+def rewards_of(reward: RewardFunction, model: Model) -> Floats:
+    """(states, moves) what one of the kit's rewards pays for every transition.
 
-    def away(self, pose: Floats) -> Floats:
-        found: Floats = np.hypot(self.target[0] - pose[:, 0], self.target[1] - pose[:, 1])
-        return found
-
-    def bearing(self, pose: Floats) -> Floats:
-        towards = np.arctan2(self.target[1] - pose[:, 1], self.target[0] - pose[:, 0])
-        # At the target itself every direction is right.
-        found: Floats = np.where(self.away(pose) < 1e-9, 0.0, wrapped(towards - pose[:, 2]))
-        return found
+    What it knows of an episode's past beyond the last move is not part of the model's states: every transition stands
+    for one at an episode's beginning.
+    """
+    return np.asarray(reward(transition(Steps.all(model))), dtype=np.float64).reshape(model.states, -1)
 
 
-def wrapped(angle: Floats) -> Floats:
-    """The same direction, in [-pi, pi); directions a rounding apart from the seam stay together."""
-    turned: Floats = (np.round(angle, 12) + np.pi) % (2 * np.pi) - np.pi
-    return turned
-
-
-def _listed(column: Column) -> Sequence[Any] | Column:
-    return column if column.dtype.kind == "f" else column.tolist()
-
-
-def _names(moves: Integers) -> Column:
-    return np.array([*MOVES, ""], dtype=object)[moves]
-
-
-COLUMNS: Final[Mapping[str, Callable[[Steps], Column]]] = MappingProxyType(
-    {
-        "x": lambda s: s.after_pose[:, 0],
-        "y": lambda s: s.after_pose[:, 1],
-        "heading": lambda s: s.after_pose[:, 2],
-        "previous_x": lambda s: s.before_pose[:, 0],
-        "previous_y": lambda s: s.before_pose[:, 1],
-        "previous_heading": lambda s: s.before_pose[:, 2],
-        "target_x": lambda s: np.full(len(s), s.target[0]),
-        "target_y": lambda s: np.full(len(s), s.target[1]),
-        "distance": lambda s: s.away(s.after_pose),
-        "previous_distance": lambda s: s.away(s.before_pose),
-        "to_go": lambda s: s.model.to_go[s.model.cell_of(s.after)],
-        "previous_to_go": lambda s: s.model.to_go[s.model.cell_of(s.states)],
-        "bearing": lambda s: s.bearing(s.after_pose),
-        "previous_bearing": lambda s: s.bearing(s.before_pose),
-        "front": lambda s: s.model.ahead[s.model.cell_of(s.after), s.model.heading_of(s.after)],
-        "move": lambda s: _names(s.moves),
-        "previous_move": lambda s: _names(s.states % LASTS),
-        "collided": lambda s: s.hit,
-        "reached": lambda s: s.reached,
-    }
-)
-"""How each of ``grader.model.NAMES`` is made."""
-
-assert len(MOVES) == NO_MOVE  # so that the last name is the empty one
+def transition(steps: Steps) -> Transition:
+    """The kit's record of these transitions, for one robot."""
+    model, count = steps.model, len(steps)
+    before, after = model.cell_of(steps.states), model.cell_of(steps.after)
+    front = np.minimum(model.ahead[after, model.heading_of(steps.after)], SIGHT)
+    zeros = np.zeros((count, 1), dtype=np.int64)
+    return Transition(
+        case=np.zeros(count, dtype=np.int64),
+        step=np.ones(count, dtype=np.int64),
+        max_steps=model.task.max_steps,
+        hit=steps.hit[:, None],
+        in_target=steps.reached[:, None],
+        was_in_target=zeros.astype(np.bool_),
+        move=KIT_MOVES[steps.moves][:, None],
+        previous_move=KIT_MOVES[steps.states % LASTS][:, None],
+        pose=model.pose(steps.after)[:, None, :],
+        previous_pose=model.pose(steps.states)[:, None, :],
+        target=np.broadcast_to((model.cells[model.target] + 0.5) * CELL, (count, 2)),
+        to_go=model.to_go[after][:, None],
+        previous_to_go=model.to_go[before][:, None],
+        full_turns=zeros,
+        forward_steps=zeros.astype(np.float64),
+        ranges=np.repeat(front[:, None, None], RAYS, axis=2),
+    )

@@ -36,7 +36,7 @@ def parameters_of(file: Path) -> tuple[str, ...]:
         tree = ast.parse(file.read_bytes(), file.name)
     except OSError as error:
         raise RewardFileError(f"{file}: cannot be read ({error.strerror}).") from None
-    except (SyntaxError, ValueError) as error:
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f":{error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
         raise RewardFileError(f"{file}{line}: not Python ({getattr(error, 'msg', error)}).") from None
     for node in tree.body:
@@ -76,8 +76,7 @@ class StudentReward:
 
     def __call__(self, transition: Transition) -> Array:
         """(n,) rewards of n worlds."""
-        columns = {name: _column(transition, name) for name in self._names}
-        return np.frombuffer(self._functions.call_columns(FUNCTION, columns))
+        return np.frombuffer(self._functions.call_columns(FUNCTION, columns_of(transition, self._names)))
 
     def close(self) -> None:
         self._functions.close()
@@ -89,6 +88,11 @@ class StudentReward:
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def columns_of(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
+    """What a reward with these parameters is called with: one column each, a value for every one of n worlds."""
+    return {name: _column(transition, name) for name in names}
 
 
 def _column(transition: Transition, name: str) -> Sequence[Any] | Array:

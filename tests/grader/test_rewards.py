@@ -14,14 +14,14 @@ import pytest
 from grader import planning
 from grader.assignment import Assignment, GridTask, Kind
 from grader.examination import Exam
-from grader.kit_rewards import rewards_of
-from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NAMES, NO_MOVE, Model, build
+from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
 from grader.symmetry import mirrored, rotated
-from grader.transitions import COLUMNS, Steps
+from grader.transitions import KNOWN, Steps, rewards_of, transition
 from kit.host.confine import Level
 from kit.host.failure import FailureKind
 from kit.host.limits import GRADER
 from kit.learning.rewards import ALGORITHM_1, ALGORITHM_3, Reward
+from kit.learning.student import columns_of
 
 ROOM = GridTask(
     (
@@ -62,11 +62,11 @@ REWARDS = {
     "alive": ("reached, collided", "return 0.0 if collided else 10.0 if reached else 1.0"),
     "moving": (
         "move, reached, collided",
-        "return (0.5 if move in ('forward', 'back') else 0.0) + 5.0 * reached - 5.0 * collided",
+        "return (0.5 if move in (1, 2) else 0.0) + 5.0 * reached - 5.0 * collided",
     ),
     "turning": (
         "move, reached, collided",
-        "return (0.5 if move in ('left', 'right') else 0.0) + 5.0 * reached - 5.0 * collided",
+        "return (0.5 if move in (3, 4) else 0.0) + 5.0 * reached - 5.0 * collided",
     ),
     "sign": ("distance, previous_distance, collided", "return distance - previous_distance - collided"),
 }
@@ -154,10 +154,9 @@ def test_the_model_drives_as_the_map_says() -> None:
     assert (model.starts % LASTS == NO_MOVE).all()
 
 
-def test_every_name_a_reward_may_ask_for_has_a_column() -> None:
-    assert list(COLUMNS) == list(NAMES)
+def test_every_fact_that_the_model_knows_is_told() -> None:
     steps = Steps.all(room(SMALL))
-    for name, column in steps.columns(tuple(NAMES)).items():
+    for name, column in columns_of(transition(steps), KNOWN).items():
         assert len(column) == len(steps), name
 
 
@@ -168,14 +167,14 @@ def test_a_turned_task_is_the_same_task(turned: Callable[[Steps], Steps]) -> Non
     assert np.array_equal(other.hit, steps.hit)
     assert np.array_equal(other.reached, steps.reached)
     for name in ("distance", "to_go", "front"):
-        assert np.allclose(COLUMNS[name](other), COLUMNS[name](steps)), name
+        assert np.allclose(getattr(transition(other), name), getattr(transition(steps), name)), name
 
 
 @pytest.mark.parametrize(
-    ("body", "least", "most"), [("-abs(bearing)", 0.999, 1), ("bearing", 0, 0.6), ("x", 0, 0.2)]
+    ("body", "least", "most"), [("-abs(bearing)", 0.999, 1), ("bearing", 0, 0.6), ("pose[0]", 0, 0.2)]
 )
 def test_symmetry(tmp_path: Path, body: str, least: float, most: float) -> None:
-    exam = examine(tmp_path, f"def reward(bearing, x): return {body}")
+    exam = examine(tmp_path, f"def reward(bearing, pose): return {body}")
     assert least <= exam.symmetry <= most
 
 
@@ -205,14 +204,15 @@ def test_a_reward_has_no_memory_and_no_chance(tmp_path: Path, text: str, pure: b
     ("text", "kind", "said"),
     [
         ("def reword(distance): return 1", FailureKind.IMPORT, "no function reward"),
-        ("def reward(*distance): return 1", FailureKind.IMPORT, "one by one"),
-        ("def reward(distanse): return 1", FailureKind.IMPORT, "Did you mean distance"),
-        ("def reward(distance: return 1", FailureKind.SYNTAX, "not Python"),
-        ("(" * 5000, FailureKind.SYNTAX, "not Python"),
-        ("-" * 100_000 + "1", FailureKind.SYNTAX, "not Python"),
+        ("def reward(*distance): return 1", FailureKind.IMPORT, "leave out"),
+        ("def reward(distanse): return 1", FailureKind.IMPORT, 'did you mean "distance"'),
+        ("def reward(distance: return 1", FailureKind.IMPORT, "not Python"),
+        ("(" * 5000, FailureKind.IMPORT, "not Python"),
+        ("-" * 100_000 + "1", FailureKind.IMPORT, "not Python"),
         ("def reward(distance): return float('nan')", FailureKind.EXCEPTION, "finite"),
         ("def reward(distance): return 1e999", FailureKind.EXCEPTION, "finite"),
         ("def reward(distance): return True", FailureKind.EXCEPTION, "finite"),
+        ("def reward(step): return 1", FailureKind.IMPORT, "does not have"),
         ("def reward(distance): pass", FailureKind.EXCEPTION, "return"),
         ("def reward(distance): return 1 / (distance - distance)", FailureKind.EXCEPTION, "division"),
     ],
