@@ -16,7 +16,9 @@ from kit.layers.assignment import Assignment
 from kit.layers.requirements import Case, Contact
 from kit.world.tables import table
 
-Style = Literal["space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text"]
+Style = Literal[
+    "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"
+]
 Glyphs = Literal["braille", "ascii"]
 
 
@@ -30,6 +32,7 @@ Line = tuple[Span, ...]
 
 _ORDER: Final[tuple[Style, ...]] = (
     "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
+    "cursor",
 )  # fmt: skip
 """Where two things meet in one character, the later one is seen."""
 
@@ -211,11 +214,18 @@ def _slope(across: float, down: float) -> str:
     return "\\" if (across > 0) == (down > 0) else "/"
 
 
-def draw_matrix(case: Case, *, struck: Collection[Contact] = (), group: Collection[str] = ()) -> list[Line]:
+def draw_matrix(
+    case: Case,
+    *,
+    struck: Collection[Contact] = (),
+    group: Collection[str] = (),
+    cursor: tuple[int, int] | None = None,
+) -> list[Line]:
     """Every pair and every laser in one table, which no number of entities tangles.
 
     ``#`` must collide, ``x`` the same and struck, ``~`` nobody minds, ``.`` must not; in a laser's row ``#`` must
-    see, ``~`` may, ``.`` must not. A name in the ``group`` is marked by ``*``.
+    see, ``~`` may, ``.`` must not. A name in the ``group`` is marked by ``*``. ``cursor``: row and column of a mark
+    that is to stand out; the lasers' rows follow the entities'.
     """
     numbers = [f"{i + 1}" for i in range(len(case.names))]
     digits = max((len(number) for number in numbers), default=1)
@@ -226,16 +236,26 @@ def draw_matrix(case: Case, *, struck: Collection[Contact] = (), group: Collecti
     for place in range(digits):
         head = "".join(number.rjust(digits)[place].ljust(step) for number in numbers)
         lines.append((Span(" " * (wide + digits + 3) + head, "text"),))
+    at_row, at_column = cursor or (None, None)
     for i, a in enumerate(case.names):
         label = f"{numbers[i].rjust(digits)}{'*' if a in group else ' '}{a[:wide].ljust(wide)}  "
         marks = [_pair_mark(case, a, b, struck) for b in case.names[: i + 1]]
         style: Style = "group" if a in group else "map" if case.by_name[a].kind == "map" else "body"
-        lines.append((Span(label, style), Span("".join(mark.ljust(step) for mark in marks), "edge")))
-    for laser in case.lasers:
+        lines.append((Span(label, style), *_marks(marks, "edge", step, at_column if i == at_row else None)))
+    for i, laser in enumerate(case.lasers, start=len(case.names)):
         marks = [{"sees": "#", "either": "~", "blind": "."}[laser.sighting(name)] for name in case.names]
         label = f"{' ' * digits}>{laser.name[:wide].ljust(wide)}  "
-        lines.append((Span(label, "laser"), Span("".join(mark.ljust(step) for mark in marks), "beam")))
+        lines.append((Span(label, "laser"), *_marks(marks, "beam", step, at_column if i == at_row else None)))
     return lines
+
+
+def _marks(marks: Sequence[str], style: Style, step: int, cursor: int | None) -> Line:
+    """A row of the matrix, ``step`` characters to each mark, the one at the cursor apart."""
+    text = "".join(mark.ljust(step) for mark in marks)
+    if cursor is None:
+        return (Span(text, style),)
+    at = cursor * step
+    return Span(text[:at], style), Span(text[at], "cursor"), Span(text[at + 1 :], style)
 
 
 def _pair_mark(case: Case, a: str, b: str, struck: Collection[Contact]) -> str:

@@ -1,10 +1,12 @@
-"""Plans and proofs in words, as lines of at most 80 characters, for terminals and screen readers alike."""
+"""Plans and proofs in words, as lines of at most 80 characters unless told otherwise, for terminals and screen
+readers alike."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator
 from fractions import Fraction
+from functools import partial
 from itertools import combinations
 
 from kit.layers.certificate import Certificate
@@ -19,11 +21,11 @@ from kit.world.records import MAX_LAYERS
 WIDTH = 80
 
 
-def wrapped(text: str, *, indent: str = "", later: str | None = None) -> list[str]:
+def wrapped(text: str, *, width: int = WIDTH, indent: str = "", later: str | None = None) -> list[str]:
     """A paragraph; ``later`` is the indent of its further lines."""
     return textwrap.wrap(
         text,
-        WIDTH,
+        width,
         initial_indent=indent,
         subsequent_indent=indent if later is None else later,
         break_on_hyphens=False,
@@ -57,16 +59,17 @@ def requirement_in_words(requirement: Requirement, case: Case) -> str:
     return f"the copies of {requirement.a} collide with each other"
 
 
-def case_in_words(case: Case) -> list[str]:
+def case_in_words(case: Case, *, width: int = WIDTH) -> list[str]:
     """What a case asks, briefly: counts, then who collides with whom and what the lasers see."""
+    say = partial(wrapped, width=width)
     maps = [entity.name for entity in case.entities if entity.kind == "map"]
     others = [entity.name for entity in case.entities if entity.kind != "map"]
-    lines = wrapped(f"Maps: {', '.join(maps) or 'none'}. Bodies: {', '.join(others) or 'none'}.")
+    lines = say(f"Maps: {', '.join(maps) or 'none'}. Bodies: {', '.join(others) or 'none'}.")
     for contact in case.collide:
-        lines += wrapped(requirement_in_words(contact, case), indent="  ", later="    ")
+        lines += say(requirement_in_words(contact, case), indent="  ", later="    ")
     for laser in case.lasers:
         seen = [name for name in case.names if name in laser.sees]
-        lines += wrapped(f"{laser.name} sees {listed(seen) or 'nothing'}", indent="  ", later="    ")
+        lines += say(f"{laser.name} sees {listed(seen) or 'nothing'}", indent="  ", later="    ")
     return lines
 
 
@@ -93,40 +96,43 @@ def greedy_in_words(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | No
     yield from greedy_end_in_words(run)
 
 
-def greedy_end_in_words(run: GreedyRun) -> list[str]:
+def greedy_end_in_words(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
     """Where the method led, and what it left open."""
-    lines = wrapped(f"The slides' method ends with {layers_in_words(run.size)}.")
+    say = partial(wrapped, width=width)
+    lines = say(f"The slides' method ends with {layers_in_words(run.size)}.")
     if run.missed:
-        lines += wrapped(
+        lines += say(
             f"It leaves a hole: {listed(run.missed)} (laser > what it should see). What collides with nothing is in "
             "no collision layer, so the method never shows it to a laser. Give it a layer of its own."
         )
     return lines
 
 
-def collision_step_in_words(case: Case, number: int, step: CollisionStep) -> list[str]:
+def collision_step_in_words(case: Case, number: int, step: CollisionStep, *, width: int = WIDTH) -> list[str]:
     """One collision layer: the edge, what joined, what is struck, what is left."""
+    say = partial(wrapped, width=width)
     left = len(step.choices)
-    lines = wrapped(
+    lines = say(
         f"Step {number}. {f'Of {left} edges left, take' if left > 1 else 'Take the last edge,'} {step.edge}."
     )
     for growth in step.growth:
         also = [name for name in growth.choices if name != growth.added]
         choice = f" ({listed(also)} could have joined instead)" if also else ""
-        lines += wrapped(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
-    lines += wrapped(
+        lines += say(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
+    lines += say(
         f"Nobody {'else ' if step.growth else ''}collides with everyone. "
         f"Layer {step.layer.name} = {members_in_words(case, step.layer.members)}.",
         indent="  ",
     )
     struck = ", ".join(map(str, step.struck))
-    lines += wrapped(f"Strike {struck}. {left - len(step.struck) or 'None'} left.", indent="  ")
+    lines += say(f"Strike {struck}. {left - len(step.struck) or 'None'} left.", indent="  ")
     return lines
 
 
-def laser_step_in_words(case: Case, step: LaserStep) -> list[str]:
+def laser_step_in_words(case: Case, step: LaserStep, *, width: int = WIDTH) -> list[str]:
     """One laser: its groups, what becomes of each, and the layers it watches."""
-    lines = wrapped(f"Laser {step.laser}. In each collision layer, group what it must see.")
+    say = partial(wrapped, width=width)
+    lines = say(f"Laser {step.laser}. In each collision layer, group what it must see.")
     endings = {
         "whole layer": "the whole layer, so {} itself serves",
         "known group": "a group that exists already, {}",
@@ -135,72 +141,76 @@ def laser_step_in_words(case: Case, step: LaserStep) -> list[str]:
     }
     for group in step.groups:
         members = members_in_words(case, group.members)
-        lines += wrapped(
-            f"{group.source}: {members}, {endings[group.fate].format(group.layer)}.", indent="  "
-        )
-    lines += wrapped(f"{step.laser} watches {listed(step.watches) or 'nothing'}.", indent="  ")
+        lines += say(f"{group.source}: {members}, {endings[group.fate].format(group.layer)}.", indent="  ")
+    lines += say(f"{step.laser} watches {listed(step.watches) or 'nothing'}.", indent="  ")
     return lines
 
 
 # The optimum and its proof
 
 
-def plan_in_words(plan: Plan) -> list[str]:
+def plan_in_words(plan: Plan, *, width: int = WIDTH) -> list[str]:
     """How many layers, and whether that is proved."""
+    say = partial(wrapped, width=width)
     if plan.optimal:
-        return wrapped(f"{layers_in_words(plan.size)}, and no plan has fewer.")
-    return wrapped(
+        return say(f"{layers_in_words(plan.size)}, and no plan has fewer.")
+    return say(
         f"{layers_in_words(plan.size)} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
         f"have up to {plan.gap} fewer. The time was up; --time-limit gives it more."
     )
 
 
-def proof_in_words(plan: Plan, *, every_pair: bool = False) -> list[str]:
+def proof_in_words(plan: Plan, *, every_pair: bool = False, width: int = WIDTH) -> list[str]:
     """Why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
+    say = partial(wrapped, width=width)
     certificate = plan.certificate
-    lines = _packing_in_words(plan.case, certificate, every_pair=every_pair) if certificate.apart else []
+    lines = (
+        _packing_in_words(plan.case, certificate, every_pair=every_pair, width=width)
+        if certificate.apart
+        else []
+    )
     for part in certificate.parts:
-        lines += _weights_in_words(plan.case, dict(part))
+        lines += _weights_in_words(plan.case, dict(part), width)
     if not plan.size:
-        return [*lines, "Nothing has to meet and nothing has to be seen: no layer is needed."]
+        return [*lines, *say("Nothing has to meet and nothing has to be seen: no layer is needed.")]
     if certificate.bound < plan.bound:
-        lines += wrapped(
+        lines += say(
             f"That proves {certificate.bound}. The solver went through every cover by the {plan.candidates} possible "
             f"layers and found none with fewer than {plan.bound}; there is no shorter reason to give."
         )
     elif certificate.parts and certificate.apart:
-        lines += wrapped(
-            f"No layer counts twice in this: together that is {layers_in_words(certificate.bound)}."
-        )
+        lines += say(f"No layer counts twice in this: together that is {layers_in_words(certificate.bound)}.")
     return lines
 
 
-def _packing_in_words(case: Case, certificate: Certificate, *, every_pair: bool) -> list[str]:
+def _packing_in_words(case: Case, certificate: Certificate, *, every_pair: bool, width: int) -> list[str]:
+    say = partial(wrapped, width=width)
     apart = certificate.apart
     count = len(apart)
     if count == 1:
-        lines = wrapped("This needs a layer:")
+        lines = say("This needs a layer:")
     else:
-        lines = wrapped(f"No two of these {count} fit one layer, so they need {layers_in_words(count)}:")
+        lines = say(f"No two of these {count} fit one layer, so they need {layers_in_words(count)}:")
     for number, requirement in enumerate(apart, start=1):
-        lines += wrapped(f"{number:>3}  {requirement_in_words(requirement, case)}", later="     ")
+        lines += say(f"{number:>3}  {requirement_in_words(requirement, case)}", later="     ")
     pairs = list(combinations(range(count), 2))
     shown = pairs if every_pair else [(i, i + 1) for i in range(min(3, count - 1))]
     if shown:
         lines.append("Because:" if every_pair or len(pairs) <= len(shown) else "Because, for example:")
     for i, j in shown:
-        lines += wrapped(f"{i + 1:>3} and {j + 1}: {fit_together(case, apart[i], apart[j])}", later="     ")
+        lines += say(f"{i + 1:>3} and {j + 1}: {fit_together(case, apart[i], apart[j])}", later="     ")
     return lines
 
 
-def _weights_in_words(case: Case, weights: dict[Requirement, Fraction]) -> list[str]:
+def _weights_in_words(case: Case, weights: dict[Requirement, Fraction], width: int) -> list[str]:
+    say = partial(wrapped, width=width)
     total = sum(weights.values(), Fraction(0))
-    lines = wrapped(
+    lines = say(
         f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
         f"they weigh {_mixed(total)}: they need {layers_in_words(-(-total.numerator // total.denominator))}."
     )
     for requirement, weight in weights.items():
-        lines += wrapped(f"{_mixed(weight):>5}  {requirement_in_words(requirement, case)}", later="       ")
+        lines += say(f"{_mixed(weight):>5}  {requirement_in_words(requirement, case)}", later="       ")
     return lines
 
 
@@ -212,8 +222,9 @@ def _mixed(number: Fraction) -> str:
     return f"{whole} {rest}/{number.denominator}" if whole else f"{rest}/{number.denominator}"
 
 
-def comparison_in_words(run: GreedyRun, plan: Plan) -> list[str]:
+def comparison_in_words(run: GreedyRun, plan: Plan, *, width: int = WIDTH) -> list[str]:
     """The slides' method beside the plan."""
+    say = partial(wrapped, width=width)
     more = run.size - plan.size
     if run.missed:
         count = len(run.missed)
@@ -224,7 +235,7 @@ def comparison_in_words(run: GreedyRun, plan: Plan) -> list[str]:
         verdict = f"{-more} fewer than this plan, which ran out of time"
     else:
         verdict = f"{more} more than needed" if plan.optimal else f"{more} more than the plan"
-    return wrapped(f"The slides' method, taking edges in order: {layers_in_words(run.size)}; {verdict}.")
+    return say(f"The slides' method, taking edges in order: {layers_in_words(run.size)}; {verdict}.")
 
 
 # A world

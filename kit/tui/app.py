@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from textual.app import App
+from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from kit.tui.input.driver import KeyDriver
@@ -18,6 +19,7 @@ class KitApp(App[None]):
 
     TITLE = "kit"
     ENABLE_COMMAND_PALETTE = False
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True)]
     CSS = """
     Screen { background: transparent; }
     KitApp.-ascii Page > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }

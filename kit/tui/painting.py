@@ -9,7 +9,7 @@ stays as it is and everything works, with more bytes.
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from rich.console import Console
 from rich.control import Control
@@ -22,6 +22,9 @@ KNOWN_TEXTUAL: Final = "8.2.8"
 ASK_CURSOR: Final = "\x1b[6n"
 """The terminal answers with its cursor position when it has dealt with all that was written before;
 Textual turns the answer into ``events.CursorPosition``, sent to the app."""
+
+
+Result = TypeVar("Result")
 
 
 class CroppedUpdate(ChopsUpdate):
@@ -48,7 +51,7 @@ class CroppingCompositor(Compositor):
         return update and CroppedUpdate(update.chops, update.spans, update.chop_ends)
 
 
-class StillScreen(Screen[None]):
+class StillScreen(Screen[Result]):
     """A screen that is not painted while another lies over it. Textual would paint both, whole, each time
     anything changes underneath, and from then on for every message."""
 

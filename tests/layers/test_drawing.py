@@ -11,6 +11,7 @@ from kit.layers.drawing import (
     MOST_IN_PICTURE,
     Glyphs,
     Line,
+    Span,
     draw_assignment,
     draw_case,
     draw_graph,
@@ -132,3 +133,15 @@ def test_who_is_in_no_layer_is_told_what_to_write() -> None:
     lines = draw_assignment(case, Assignment((NamedLayer("x", frozenset("a")),), {}))
     assert any(line.startswith("b") and "layers: []" in line for line in lines)
     assert any(line.startswith("eye") and "layers: []" in line for line in lines)
+
+
+def test_the_cursor_stands_out_on_one_mark_and_changes_no_character() -> None:
+    rows, columns = len(SLIDES.names), len(SLIDES.names)
+    for at in ((0, 0), (3, 1), (rows - 1, columns - 1), (rows, 0), (rows + 2, columns - 1)):
+        lines = draw_matrix(SLIDES, cursor=at)
+        assert plain(lines) == plain(draw_matrix(SLIDES))
+        head = len(lines) - rows - len(SLIDES.lasers)
+        marked = [number for number, line in enumerate(lines) if ink([line], "cursor")]
+        assert marked == [head + at[0]]
+        assert ink(lines, "cursor") == 1
+    assert draw_matrix(graph("a-b"), cursor=(1, 0))[2][1:3] == (Span("", "edge"), Span("#", "cursor"))

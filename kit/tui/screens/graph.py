@@ -42,7 +42,7 @@ class News(Message):
     """The world's thread has heard something."""
 
 
-class GraphScreen(StillScreen):
+class GraphScreen(StillScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
@@ -61,7 +61,6 @@ class GraphScreen(StillScreen):
         Binding("full_stop", "step", show=False),
         Binding("question_mark", "help", show=False),
         Binding("escape,n,q", "back", show=False),
-        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
     ]
     DEFAULT_CSS = f"""
     GraphScreen {{ layout: vertical; }}
@@ -243,7 +242,7 @@ class GraphScreen(StillScreen):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
-        return action != "narrow" or self.focused is None
+        return action != "narrow" or (self.is_mounted and self.focused is None)
 
     def action_narrow(self) -> None:
         self._ask_for_name(True)

@@ -47,6 +47,12 @@ class Page(ModalScreen[None]):
             yield text
 
     def on_key(self, event: events.Key) -> None:
-        if base_key(event.key) not in ("left_shift", "right_shift", "left_control", "right_control"):
-            event.stop()
+        event.stop()
+        # Of two keys that come at once, the first has closed it already.
+        if self.is_active and base_key(event.key) not in (
+            "left_shift",
+            "right_shift",
+            "left_control",
+            "right_control",
+        ):
             self.dismiss()

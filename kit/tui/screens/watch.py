@@ -47,7 +47,7 @@ class Trouble(Message):
         self.text = text
 
 
-class WatchScreen(StillScreen, DriveScreen):
+class WatchScreen(StillScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
     keys: ClassVar[Row] = ()

@@ -1,0 +1,169 @@
+"""A case typed by hand: a table of who must collide and who must be seen, and its graph beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.widgets import Input
+
+from kit.layers.drawing import Glyphs, draw_matrix, plain
+from kit.layers.editing import Editing, Kind
+from kit.layers.requirements import Case, CaseError
+from kit.layers.walk import Page as Step
+from kit.tui.case_rows import drawn, picture, words_width
+from kit.tui.painting import StillScreen
+from kit.tui.screens.layers_keys import EDIT_HELP, EDIT_KEYS
+from kit.tui.screens.page import Page
+from kit.tui.text_rows import TextRows, row, spread
+
+KINDS: dict[Kind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
+
+
+class CaseEditor(StillScreen[Case]):
+    """Returns the case as it is when it is left."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "move(-1, 0)", show=False),
+        Binding("down", "move(1, 0)", show=False),
+        Binding("left", "move(0, -1)", show=False),
+        Binding("right", "move(0, 1)", show=False),
+        Binding("space,enter", "turn", show=False),
+        Binding("m", "add('map')", show=False, priority=True),
+        Binding("b", "add('body')", show=False, priority=True),
+        Binding("l", "add('laser')", show=False, priority=True),
+        Binding("d,delete", "delete", show=False),
+        Binding("u", "undo", show=False),
+        Binding("f", "one_model", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "back", show=False),
+    ]
+    DEFAULT_CSS = """
+    CaseEditor { layout: vertical; }
+    CaseEditor #heading, CaseEditor #said, CaseEditor #keys { height: 1; }
+    CaseEditor #middle { height: 1fr; }
+    CaseEditor #picture { width: 1fr; }
+    CaseEditor Input, CaseEditor Input:focus { border: none; padding: 0; height: 1; background: transparent; }
+    """
+
+    def __init__(self, case: Case, glyphs: Glyphs) -> None:
+        super().__init__()
+        self._editing = Editing(case)
+        self._glyphs = glyphs
+        self._kind: Kind = "body"
+        self._problem = ""
+        self._top = 0
+
+    @property
+    def editing(self) -> Editing:
+        """The case, and where the cursor is."""
+        return self._editing
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield TextRows(id="picture")
+            yield TextRows(id="table")
+        yield TextRows(id="said")
+        yield TextRows(id="keys")
+        yield Input(select_on_focus=False)
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self._rows("keys").show([EDIT_KEYS])
+        self._ask(None)
+        self.call_after_refresh(self._show)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    def _show(self) -> None:
+        editing, case = self._editing, self._editing.case
+        rows = max(1, self.size.height - 3)
+        table = draw_matrix(case, cursor=(editing.row, editing.column) if editing.pair else None)
+        head = len(table) - editing.rows
+        wide = max([words_width(self.size.width), *(len(line) + 1 for line in plain(table))])
+        room = self.size.width - wide - 1
+        beside = self._rows("picture")
+        beside.display = room >= 24
+        self._rows("table").styles.width = wide if beside.display else self.size.width
+        self._top = min(max(self._top, editing.row - (rows - head) + 1), editing.row)
+        self._rows("table").show([*drawn(table[:head]), *drawn(table[head + self._top :])])
+        if beside.display:
+            laser = editing.laser
+            step = Step("case", "", (), laser=None if laser is None else laser.name)
+            beside.show(picture(case, step, room, rows, self._glyphs))
+        assumed = row(("bodies of one model never meet", "warn")) if editing.never else row()
+        self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
+        self._rows("said").show([row((self._problem, "bad")) if self._problem else row(editing.meaning)])
+
+    def _change(self, change: Callable[[Editing], Editing]) -> None:
+        try:
+            self._editing, self._problem = change(self._editing), ""
+        except CaseError as error:
+            self._problem = str(error)
+        self._show()
+
+    # Keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
+        return action != "add" or (self.is_mounted and self.focused is None)
+
+    def action_move(self, down: int, right: int) -> None:
+        self._change(lambda editing: editing.moved(down, right))
+
+    def action_turn(self) -> None:
+        self._change(Editing.turned)
+
+    def action_delete(self) -> None:
+        self._change(Editing.without_row)
+
+    def action_undo(self) -> None:
+        self._change(Editing.undone)
+
+    def action_one_model(self) -> None:
+        self._change(lambda editing: replace(editing, never=not editing.never))
+
+    def action_add(self, kind: Kind) -> None:
+        self._ask(kind)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        kind, name = self._kind, event.value.strip()
+        if self.focused is None:
+            return  # a second Enter that came with the first
+        if name:
+            self._change(lambda editing: editing.with_new(kind, name))
+        if not self._problem:
+            self._ask(None)
+
+    def _ask(self, kind: Kind | None) -> None:
+        """The field for a name in place of the keys, or the keys. At once: the next letters may be here already."""
+        field = self.query_one(Input)
+        field.display, self._rows("keys").display = kind is not None, kind is None
+        field.value = ""
+        if kind is not None:
+            self._kind = kind
+            field.placeholder = f"name of the {KINDS[kind]}; Enter adds it, Esc does not"
+        self.set_focus(field if kind is not None else None)
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("A case by hand", EDIT_HELP))
+
+    def action_back(self) -> None:
+        """Out of the field, then out of the table."""
+        if self.focused is not None:
+            self._problem = ""
+            self._ask(None)
+            self._show()
+        else:
+            self.dismiss(self._editing.case)

@@ -1,0 +1,301 @@
+"""Layers to look at: a case as a picture, the slides' method step by step, the fewest layers and why."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import ClassVar, Final
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.message import Message
+from textual.widgets import Input
+
+from kit.layers.drawing import MOST_IN_PICTURE, Glyphs
+from kit.layers.examples import EXAMPLES
+from kit.layers.planning import Plan
+from kit.layers.requirements import Case
+from kit.layers.tasks import Task, UnknownTask, open_task, solve_task
+from kit.layers.walk import Method, Part, case_page, method_pages, plan_pages
+from kit.layers.walk import Page as Step
+from kit.layers.world_planning import WorldPlan
+from kit.tui.case_rows import picture, scrolled, words_width
+from kit.tui.look import Look
+from kit.tui.painting import StillScreen
+from kit.tui.screens.case_editor import CaseEditor
+from kit.tui.screens.layers_keys import WALK_HELP, WALK_KEYS
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+from kit.tui.text_rows import Row, TextRows, row, spread
+from kit.workspace import write_atomically
+from kit.world.catalogue import map_names
+from kit.world.problems import WorldError
+
+PARTS: Final[tuple[Part, ...]] = ("case", "method", "fewest", "proof")
+
+LEAST_PICTURE: Final = 30
+"""Columns; with fewer the words take all."""
+
+Solution = tuple[Plan, WorldPlan | None]
+
+
+class Solved(Message):
+    """The planner is done with a task."""
+
+    def __init__(self, task: Task, solution: Solution) -> None:
+        super().__init__()
+        self.task = task
+        self.solution = solution
+
+
+class LayersScreen(StillScreen[None]):
+    """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("right,space,enter", "go(1)", show=False),
+        Binding("left", "go(-1)", show=False),
+        Binding("down", "scroll(1)", show=False),
+        Binding("up", "scroll(-1)", show=False),
+        Binding("pagedown", "scroll(10)", show=False),
+        Binding("pageup", "scroll(-10)", show=False),
+        *(Binding(str(number), f"part('{part}')", show=False) for number, part in enumerate(PARTS, start=1)),
+        Binding("c", "choose_edge", show=False),
+        Binding("e", "edit", show=False),
+        Binding("x", "examples", show=False),
+        Binding("s", "save", show=False, priority=True),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "back", show=False),
+    ]
+    DEFAULT_CSS = """
+    LayersScreen { layout: vertical; }
+    LayersScreen #heading, LayersScreen #said, LayersScreen #keys { height: 1; }
+    LayersScreen #middle { height: 1fr; }
+    LayersScreen #picture { width: 1fr; }
+    LayersScreen Input, LayersScreen Input:focus { border: none; padding: 0; height: 1; background: transparent; }
+    """
+
+    def __init__(self, look: Look, task: Task, title: str, *, saved_to: Path) -> None:
+        super().__init__()
+        self._glyphs: Glyphs = "ascii" if look.terminal.glyphs.value == "ascii" else "braille"
+        self._folder = saved_to
+        self._asked, self._title = task, title
+        self._method = Method(task.case)
+        self._solution: Solution | None = None
+        self._steps: tuple[Step, ...] = ()
+        self._at = self._top = 0
+        self._remark = row()
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield TextRows(id="picture")
+            yield TextRows(id="words")
+        yield TextRows(id="said")
+        yield TextRows(id="keys")
+        yield Input(select_on_focus=False)
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self._rows("keys").show([WALK_KEYS])
+        self._ask_for_name(False)
+        self._solve()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._lay_out)
+
+    @property
+    def step(self) -> Step | None:
+        """What is shown."""
+        return self._steps[self._at] if self._steps else None
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether the planner is done."""
+        return self._solution is not None
+
+    # The case and its plan
+
+    def open(self, task: Task, title: str) -> None:
+        """Another case, from its first page on."""
+        self._asked, self._title = task, title
+        self._method, self._solution = Method(task.case), None
+        self._at = self._top = 0
+        self._remark = row()
+        self._solve()
+        self._lay_out()
+
+    def _solve(self) -> None:
+        """Has the planner at it, elsewhere: it may think for seconds."""
+        task = self._asked
+
+        def solve() -> None:
+            self.post_message(Solved(task, solve_task(task)))
+
+        threading.Thread(target=solve, name="planner", daemon=True).start()
+
+    def on_solved(self, event: Solved) -> None:
+        if event.task is self._asked:  # and not an earlier one's
+            self._solution = event.solution
+            self._lay_out()
+
+    def _lay_out(self) -> None:
+        """All pages for the present width; where one was stays as near as can be."""
+        width = self._words_width
+        if not self.size.width:
+            return
+        case = self._asked.case
+        if self._solution is None:
+            waiting = ("Looking for the fewest layers ...",)
+            rest: tuple[Step, ...] = (Step("fewest", "The fewest layers", waiting),)
+        else:
+            plan, world_plan = self._solution
+            assignment = plan.assignment if world_plan is None else world_plan.assignment
+            rest = tuple(plan_pages(case, assignment, plan, Method(case).run, width))
+        self._steps = (case_page(case, width), *method_pages(self._method.run, width), *rest)
+        self._at = min(self._at, len(self._steps) - 1)
+        self._show()
+
+    # What is shown
+
+    @property
+    def _picture_width(self) -> int:
+        room = self.size.width - words_width(self.size.width) - 1
+        return room if room >= LEAST_PICTURE and len(self._asked.case.names) <= MOST_IN_PICTURE else 0
+
+    @property
+    def _words_width(self) -> int:
+        return words_width(self.size.width) if self._picture_width else self.size.width
+
+    def _show(self) -> None:
+        step = self.step
+        if step is None:
+            return
+        rows = max(1, self.size.height - 3)
+        beside = self._rows("picture")
+        beside.display = bool(self._picture_width)
+        if beside.display:
+            beside.show(picture(self._asked.case, step, self._picture_width, rows, self._glyphs))
+        self._rows("words").styles.width = self._words_width
+        words, self._top = scrolled(step.words, self._top, rows)
+        self._rows("words").show(words)
+        self._rows("heading").show([self._heading(step)])
+        self._rows("said").show([self._remark])
+
+    def _heading(self, step: Step) -> Row:
+        number = PARTS.index(step.part) + 1
+        left = row((self._title, "bold"), f"  {number}. {step.title}")
+        place = row((f"{self._at + 1} of {len(self._steps)}", "dim"))
+        return spread(left, place, self.size.width)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_go(self, steps: int) -> None:
+        self._turn_to(min(max(self._at + steps, 0), len(self._steps) - 1))
+
+    def action_part(self, part: Part) -> None:
+        self._turn_to(next((i for i, step in enumerate(self._steps) if step.part == part), self._at))
+
+    def _turn_to(self, at: int) -> None:
+        if at != self._at:
+            self._at, self._top, self._remark = at, 0, row()
+            self._show()
+
+    def action_scroll(self, lines: int) -> None:
+        self._top += lines
+        self._show()
+
+    def action_choose_edge(self) -> None:
+        step = self.step
+        if step is None or step.step is None:
+            self._say("an edge is chosen where the method begins a layer: 2, then the arrows", "warn")
+            return
+        number = step.step
+        edges = {str(edge): edge for edge in self._method.edges(number)}
+        taken = str(self._method.run.collision_steps[number].edge)
+        choices = [Choice(name, name, "the present one" if name == taken else "") for name in edges]
+
+        def begin_with(chosen: str | None) -> None:
+            if chosen is not None:
+                self._method = self._method.beginning_with(number, edges[chosen])
+                self._lay_out()
+                self._say(f"From here on anew: the method now ends with {self._method.run.size} layers.")
+
+        self.app.push_screen(Picker("Begin this layer with", choices, taken), begin_with)
+
+    def action_edit(self) -> None:
+        self.app.push_screen(CaseEditor(self._asked.case, self._glyphs), self._edited)
+
+    def _edited(self, case: Case | None) -> None:
+        if case is not None and case != self._asked.case:
+            is_new = self._title in EXAMPLES  # and so is what it is about
+            self.open(Task(replace(case, title="") if is_new else case), "mine" if is_new else self._title)
+
+    def action_examples(self) -> None:
+        choices = [Choice(name, name, case.title) for name, case in EXAMPLES.items()]
+        choices += [Choice(name, name, "a map of the kit") for name in map_names() if name not in EXAMPLES]
+        self.app.push_screen(Picker("Cases", choices), self._open_named)
+
+    def _open_named(self, name: str | None) -> None:
+        if name is None:
+            return
+        try:
+            self.open(open_task(name), name)
+        except (WorldError, UnknownTask) as error:
+            self.app.push_screen(Page("That did not work", wrapped(str(error))))
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
+        return action != "save" or (self.is_mounted and self.focused is None)
+
+    def action_save(self) -> None:
+        self._ask_for_name(True)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        name = event.value.strip()
+        if self.focused is None:
+            return  # a second Enter that came with the first
+        self._ask_for_name(False)
+        if name:
+            self._save(self._folder / f"{Path(name).name}.layers.yaml")
+
+    def _save(self, file: Path) -> None:
+        if file.exists():
+            self._say(f"{file.name} is there already: choose another name", "bad")
+            return
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(file, self._asked.as_requirements().encode())
+        except OSError as error:
+            self._say(f"{file}: cannot be written: {error.strerror}", "bad")
+        else:
+            self._say(f"written: kit layers plan {file}", "good")
+
+    def _say(self, text: str, style: str = "") -> None:
+        self._remark = row((text, style))
+        self._rows("said").show([self._remark])
+
+    def _ask_for_name(self, asked: bool) -> None:
+        """The field in place of the keys, or the keys. At once: the next letters may be here already."""
+        field = self.query_one(Input)
+        field.value = ""
+        field.placeholder = f"name of the file in {self._folder}; Enter saves, Esc does not"
+        field.display, self._rows("keys").display = asked, not asked
+        self.set_focus(field if asked else None)
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("Layers", WALK_HELP))
+
+    def action_back(self) -> None:
+        if self.focused is not None:
+            self._ask_for_name(False)
+        elif len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()

@@ -1,0 +1,230 @@
+"""The layers screen: through a case with the arrows, another one, one typed by hand, one saved."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.layers.reading import read_requirements
+from kit.layers.requirements import Contact, Sight
+from kit.layers.tasks import open_task
+from kit.tui.look import Look
+from kit.tui.screens.case_editor import CaseEditor
+from kit.tui.screens.layers import LayersScreen
+from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+
+Scene = Callable[[LayersScreen, Pilot[None]], Awaitable[None]]
+
+
+def play(
+    scene: Scene, name: str = "slides-lasers", *, folder: Path = Path("/nowhere"), size: tuple[int, int] = (80, 24),
+    glyphs: str = "braille",
+) -> None:  # fmt: skip
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalWishes(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+
+    async def run() -> None:
+        app: App[None] = App()
+        async with app.run_test(size=size) as pilot:
+            screen = LayersScreen(Look.of(terminal), open_task(name), name, saved_to=folder)
+            await app.push_screen(screen)
+            await solved(screen)
+            await pilot.pause()
+            await scene(screen, pilot)
+
+    asyncio.run(run())
+
+
+async def solved(screen: LayersScreen) -> None:
+    async with asyncio.timeout(20):
+        while not screen.is_solved:
+            await asyncio.sleep(0.02)
+
+
+def rows(screen: Screen[object] | LayersScreen) -> list[str]:
+    return [
+        "".join(segment.text for segment in strip).rstrip()
+        for strip in screen.app.screen._compositor.render_strips()
+    ]
+
+
+def text(screen: LayersScreen) -> str:
+    return "\n".join(rows(screen))
+
+
+def words(screen: LayersScreen) -> str:
+    """The words beside the picture, as one line."""
+    return " ".join(" ".join(row[45:] for row in rows(screen)[1:-2]).split())
+
+
+def test_the_slides_method_step_by_step() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        assert "What is asked" in rows(screen)[0]
+        await pilot.press("2")
+        assert "layer 1 of 6" in rows(screen)[0]
+        assert "Of 12 edges left, take Map1 - M4.B1." in words(screen)
+        assert all(f"[{name}]" in text(screen) for name in ("Map1", "M4.B1", "M4.B2"))
+        await pilot.press("right", "right", "right", "right", "right")
+        assert "layer 6 of 6" in rows(screen)[0]
+        assert "None left." in words(screen)
+        await pilot.press("right")
+        assert "<Ls1>" in text(screen)
+        await pilot.press("left")
+        assert "layer 6 of 6" in rows(screen)[0]
+
+    play(scene)
+
+
+def test_the_optimum_and_its_certificate_beside_the_picture() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("3")
+        assert "10 layers, and no plan has fewer." in words(screen)
+        await pilot.press("4")
+        assert "No two of these 10 fit one layer, so they need 10 layers:" in words(screen)
+        assert "Map1 and M4.B2 collide" in words(screen)
+        await pilot.press("right", "right")
+        assert rows(screen)[0].endswith("23 of 23")
+
+    play(scene)
+
+
+def test_words_that_are_too_many_are_scrolled() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        assert "more lines below" in text(screen)
+        first = words(screen)
+        await pilot.press("down")
+        assert words(screen) != first
+        await pilot.press("pagedown", "pagedown", "pagedown")
+        assert "more lines below" not in text(screen)
+        await pilot.press("pageup", "pageup", "pageup", "pageup")
+        assert words(screen) == first
+
+    play(scene, size=(80, 16))
+
+
+def test_a_step_can_begin_with_another_edge() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("c")
+        assert "an edge is chosen where" in text(screen)
+        await pilot.press("2", "c")
+        await pilot.pause()
+        await pilot.press("down", "enter")
+        await pilot.pause()
+        assert "take a - c." in words(screen)
+        assert "the method now ends with" in text(screen)
+
+    play(scene, "greedy-trap")
+
+
+def test_another_case_from_the_list() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("x")
+        await pilot.pause()
+        await pilot.press(*"three", "enter")
+        await solved(screen)
+        await pilot.pause()
+        assert rows(screen)[0].startswith("three  1.")
+        await pilot.press("3")
+        assert "1 layer, and no plan has fewer." in words(screen)
+
+    play(scene)
+
+
+def test_a_world_of_the_kit_is_a_case_too() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("3")
+        assert "no plan has fewer" in words(screen)
+
+    play(scene, "maze")
+
+
+def test_a_case_typed_by_hand_is_planned() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("e")
+        await pilot.pause()
+        editor = screen.app.screen
+        assert isinstance(editor, CaseEditor)
+        await pilot.press("d", "d")
+        assert "nobody is here" in text(screen)
+        await pilot.press("m", *"walls", "enter", "b", *"robot", "enter", "space")
+        assert "walls and robot must collide" in rows(screen)[-2]
+        await pilot.press("right", "space")
+        assert "there is only one robot" in rows(screen)[-2]
+        await pilot.press("l", *"eye", "enter", "left", "space")
+        assert "eye must see walls" in rows(screen)[-2]
+        assert "<eye>" in text(screen)
+        assert set(editor.editing.case.requirements) == {Contact("walls", "robot"), Sight("eye", "walls")}
+        await pilot.press("b", *"a", "space", "escape")
+        assert "walls" in text(screen)
+        await pilot.press("escape")
+        await solved(screen)
+        await pilot.pause()
+        assert rows(screen)[0].startswith("mine  1.")
+        await pilot.press("3")
+        assert "2 layers, and no plan has fewer." in words(screen)
+
+    play(scene, "two")
+
+
+def test_letters_of_names_are_not_taken_for_keys() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("b", *"mbldufq", "enter")
+        editor = screen.app.screen
+        assert isinstance(editor, CaseEditor)
+        assert editor.editing.case.names[-1] == "mbldufq"
+        await pilot.press("u")
+        assert "mbldufq" not in editor.editing.case.names
+
+    play(scene, "two")
+
+
+def test_what_cannot_be_is_said_and_the_field_stays() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("e")
+        await pilot.pause()
+        await pilot.press("m", *"robot", "enter")
+        assert "named twice" in rows(screen)[-2]
+        await pilot.press("2", "enter")
+        assert "#robot2#" in text(screen)
+
+    play(scene, "two")
+
+
+def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        for expected in ("written:", "is there already"):
+            await pilot.press("s", *"test", "enter")
+            assert expected in text(screen)
+        await pilot.press("s", *"../up", "enter")
+
+    play(scene, folder=tmp_path / "worlds")
+    saved = tmp_path / "worlds" / "test.layers.yaml"
+    assert len(read_requirements(saved).case.requirements) == 22
+    assert sorted(file.name for file in tmp_path.rglob("*.yaml")) == ["test.layers.yaml", "up.layers.yaml"]
+    assert not list(tmp_path.glob("*.yaml"))
+
+
+@pytest.mark.parametrize("size", [(200, 50), (60, 18), (40, 10), (20, 4)])
+def test_any_size_will_do(size: tuple[int, int]) -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        for key in ("2", "3", "4", "e", "escape"):
+            await pilot.press(key)
+            assert len(rows(screen)) == size[1]
+
+    play(scene, size=size)
+
+
+def test_in_plain_characters() -> None:
+    async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
+        for key in ("1", "2", "right", "3", "4", "e"):
+            await pilot.press(key)
+            assert text(screen).isascii()
+
+    play(scene, glyphs="ascii")
