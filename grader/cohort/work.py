@@ -7,6 +7,7 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -81,8 +82,7 @@ class Pool:
                     worker = worker or self._start()
                     if self._is_done(worker, key):
                         break
-                    worker.kill()
-                    worker.wait()
+                    _end(worker, now=True)
                     worker = None
                     if attempt == TRIES - 1:
                         self._queue.keep(key, _incident(self._queue, key))
@@ -91,9 +91,8 @@ class Pool:
         except Exception as error:  # noqa: BLE001  # a thread's errors are raised where it was started
             self._problems.append(error)
         finally:
-            if worker is not None and worker.stdin is not None:
-                worker.stdin.close()
-                worker.wait()
+            if worker is not None:
+                _end(worker)
 
     def _next(self) -> str | None:
         with self._lock:
@@ -117,6 +116,15 @@ class Pool:
         except BrokenPipeError:
             return False
         return worker.stdout.readline() == f"{DONE} {key}\n"
+
+
+def _end(worker: subprocess.Popen[str], *, now: bool = False) -> None:
+    """Lets a worker go: it ends when nothing more can be asked."""
+    if now:
+        worker.kill()
+    with worker, suppress(BrokenPipeError):
+        assert worker.stdin is not None
+        worker.stdin.close()
 
 
 def _incident(queue: Queue, key: str) -> Result:

@@ -1,0 +1,299 @@
+"""A class: graded once, resumed anywhere, the same however it is done."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from grader.cohort import gradebook
+from grader.cohort.executors import CannotRun, by_dask, by_slurm, locally, slurm_script, work_key
+from grader.cohort.gradebook import Row, as_csv, as_json, changes, rows
+from grader.cohort.late import LatePolicy, moment, read_policy, read_times
+from grader.cohort.queue import Queue, QueueError, key_of, prepare
+from grader.cohort.work import Pool, work
+from grader.reading import read
+from grader.result import Verdict
+from grader.session import Terms
+from grader.submission import take
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
+
+TERMS = Terms(Level.LIMITED, may_fall=False)
+DUE = datetime(2026, 11, 30, 12, tzinfo=UTC)
+
+
+def submissions(folder: Path, count: int = 3) -> Path:
+    folder.mkdir()
+    for number in range(count):
+        (folder / f"s{number}.py").write_text(
+            FORWARD.replace("SPEED = 0.3", f"SPEED = {0.05 + 0.1 * number}")
+        )
+    (folder / "broken.py").write_text("1/0\n")
+    (folder / "copy.py").write_text(FORWARD.replace("SPEED = 0.3", "SPEED = 0.05"))
+    (folder / "link.py").symlink_to("/etc/passwd")
+    return folder
+
+
+@pytest.fixture
+def queue(tmp_path: Path) -> Queue:
+    assignment = read(write_assignment(tmp_path / "quick"))
+    made = Queue(tmp_path / "queue")
+    prepare(made, submissions(tmp_path / "in"), assignment, TERMS)
+    return made
+
+
+def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> None:
+    waiting = queue.waiting()
+    assert len(waiting) == 4  # six entries, two of them equal, one refused
+    for key in waiting:
+        work(queue, key)
+    table = rows(queue)
+    assert [row.name for row in table] == ["broken", "copy", "link", "s0", "s1", "s2"]
+    assert [row.verdict for row in table] == ["fail", "fail", "refused", "fail", "fail", "fail"]
+    points = {row.name: row.points for row in table}
+    assert points["broken"] == points["link"] == 0.0
+    assert points["copy"] == points["s0"]
+    assert points["s0"] < points["s1"] <= points["s2"]  # type: ignore[operator]  # all have a grade
+    assert queue.waiting() == ()
+
+
+def test_processes_and_one_process_give_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
+    done: list[str] = []
+    locally(queue, queue.waiting(), 2, done.append)
+    assert len(done) == 4
+    together = as_json(rows(queue))
+    other = Queue(tmp_path / "other")
+    prepare(other, tmp_path / "in", queue.assignment(), TERMS)
+    for number in range(3):
+        for key in other.waiting((number, 3)):
+            work_key(str(other.folder), key)
+    assert as_json(rows(other)) == together
+
+
+def test_shards_share_the_work(queue: Queue) -> None:
+    shares = [set(queue.waiting((number, 3))) for number in range(3)]
+    assert set.union(*shares) == set(queue.waiting())
+    assert sum(map(len, shares)) == len(queue.waiting())
+
+
+def test_a_damaged_result_is_made_again(queue: Queue) -> None:
+    key = queue.waiting()[0]
+    work(queue, key)
+    assert key not in queue.waiting()
+    for damaged in (b"", b"{", b"[]", b'{"schema": 99}'):
+        queue.result_file(key).write_bytes(damaged)
+        assert key in queue.waiting()
+
+
+def test_a_worker_that_dies_is_nobodys_fault(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    key = queue.waiting()[0]
+
+    def dead(self: Pool) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    monkeypatch.setattr(Pool, "_start", dead)
+    locally(queue, [key], 1, lambda key: None)
+    result = queue.result(key)
+    assert result is not None
+    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+    assert [row.final for row in rows(queue) if row.verdict == "broken"] in ([None], [None, None])
+
+
+def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> None:
+    assignment = queue.assignment()
+    submission = take(tmp_path / "in" / "s0.py", assignment.submit)
+    key = key_of(submission, assignment, TERMS)
+    assert key_of(take(tmp_path / "in" / "copy.py", assignment.submit), assignment, TERMS) == key
+    assert key_of(submission, assignment, Terms(Level.FILTERED)) != key
+    assert key_of(submission, assignment, Terms(Level.LIMITED, secret=True)) != key
+    changed = read(write_assignment(tmp_path / "quick2", QUICK.replace("points: 3", "points: 4")))
+    assert key_of(submission, changed, TERMS) != key
+
+
+def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_path: Path) -> None:
+    for key in queue.waiting():
+        work(queue, key)
+    before = rows(queue)
+    changed = read(write_assignment(tmp_path / "quick", QUICK.replace("full: 0.5", "full: 5")))
+    prepare(queue, tmp_path / "in", changed, TERMS)
+    assert len(queue.waiting()) == 4
+    for key in queue.waiting():
+        work(queue, key)
+    told = list(changes(before, rows(queue)))
+    assert any(line.startswith("s2: 3 -> ") and "moves pass -> partial" in line for line in told)
+    assert not any(line.startswith(("broken", "link")) for line in told)
+    assert list(changes(before, gradebook.read_json(as_json(before)))) == []
+
+
+def test_a_spreadsheet_gets_no_formula() -> None:
+    row = Row("=cmd()", "fail", 1.0, 2.0, 1.0, 1.0, {"a": 1.0}, {"a": "pass"}, "@x\n+1", "")
+    lines = as_csv([row]).splitlines()
+    assert lines[1].startswith("'=cmd()")
+    assert "'@x +1" in lines[1]
+
+
+@pytest.mark.parametrize(
+    ("late", "kept"),
+    [(-1.0, 1.0), (0.0, 1.0), (0.2, 1.0), (0.3, 0.9), (24.3, 0.8), (24 * 6.0, 0.5), (24 * 20.0, 0.0)],
+)
+def test_lateness(late: float, kept: float) -> None:
+    policy = LatePolicy(DUE, grace_s=900, per_day=0.1, least=0.5, latest_days=10)
+    assert policy.kept(DUE + timedelta(hours=late)) == pytest.approx(kept)
+
+
+def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: Path) -> None:
+    for key in queue.waiting():
+        work(queue, key)
+    policy_file, times_file = tmp_path / "late.yaml", tmp_path / "times.csv"
+    policy_file.write_text("due: 2026-11-30T12:00:00\nper_day: 0.5\n")
+    times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00\ns1,2026-11-30T11:00:00\n")
+    results = {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
+    table = {row.name: row for row in rows(queue, read_policy(policy_file), read_times(times_file))}
+    assert (table["s2"].kept, table["s1"].kept) == (0.5, 1.0)
+    assert table["s2"].final == table["s2"].points / 2  # type: ignore[operator]  # it has a grade
+    assert results == {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
+    policy_file.write_text("due: tomorrow\nper_dya: 1\n")
+    with pytest.raises(WorldError, match=r"late\.yaml:1:6.*\n.*late\.yaml:2:1"):
+        read_policy(policy_file)
+    times_file.write_text("name,submitted\ns2,never\n")
+    with pytest.raises(ValueError, match=r"times\.csv:2"):
+        read_times(times_file)
+    assert moment("2026-11-30T12:00:00+01:00") == datetime(2026, 11, 30, 11, tzinfo=UTC)
+
+
+def test_an_array_job_works_off_its_shares(
+    queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With a stand-in for sbatch that runs the script's tasks one after the other."""
+    bin_folder = tmp_path / "bin"
+    bin_folder.mkdir()
+    sbatch = bin_folder / "sbatch"
+    sbatch.write_text('#!/bin/sh\nfor i in 0 1; do SLURM_ARRAY_TASK_ID=$i sh "$2" || exit 1; done\n')
+    sbatch.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{bin_folder}:{os.environ['PATH']}")
+    assert "#SBATCH --array=0-1" in slurm_script(queue, 2)
+    by_slurm(queue, 2)
+    assert queue.waiting() == ()
+    assert (queue.folder / "slurm.sh").is_file()
+
+
+def test_what_a_machine_lacks_is_said(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    with pytest.raises(CannotRun, match="sbatch"):
+        by_slurm(queue, 2)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(CannotRun, match=r"robot-learning-kit\[cluster\]"):
+        by_dask(queue, queue.waiting(), "tcp://nowhere:1", lambda key: None)
+    with pytest.raises(QueueError, match="grader cohort"):
+        Queue(queue.folder / "none").entries()
+
+
+def test_a_cluster_gets_names_alone(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a stand-in for Dask that runs what it is given here."""
+    distributed = type(sys)("distributed")
+
+    class Future:
+        def __init__(self, value: str) -> None:
+            self.value = value
+
+        def result(self) -> str:
+            return self.value
+
+    class Client:
+        def __init__(self, address: str) -> None:
+            assert address == "tcp://cluster:1"
+
+        def __enter__(self) -> Client:
+            return self
+
+        def __exit__(self, *error: object) -> None:
+            """Nothing to close."""
+
+        def map(self, function: object, *columns: list[str], **options: object) -> list[Future]:
+            assert all(isinstance(each, str) for column in columns for each in column)
+            return [Future(function(*row)) for row in zip(*columns, strict=True)]  # type: ignore[operator]
+
+    distributed.Client = Client  # type: ignore[attr-defined]  # a stand-in
+    distributed.as_completed = iter  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "distributed", distributed)
+    done: list[str] = []
+    by_dask(queue, queue.waiting(), "tcp://cluster:1", done.append)
+    assert len(done) == 4
+    assert queue.waiting() == ()
+
+
+@LOCKS
+def test_levels_do_not_change_points(tmp_path: Path) -> None:
+    assignment = read(write_assignment(tmp_path / "quick"))
+    folder = submissions(tmp_path / "in")
+    tables = []
+    for level in (Level.LIMITED, Level.FILTERED):
+        made = Queue(tmp_path / f"queue{int(level)}")
+        prepare(made, folder, assignment, Terms(level, may_fall=False))
+        for key in made.waiting():
+            work(made, key)
+        tables.append([(row.name, row.points, dict(row.tests)) for row in rows(made)])
+    assert tables[0] == tables[1]
+
+
+def command(tmp_path: Path) -> list[str]:
+    return [
+        *(
+            sys.executable,
+            "-P",
+            "-m",
+            "grader",
+            "cohort",
+            str(tmp_path / "in"),
+            "--jobs",
+            "2",
+            "--level",
+            "0",
+        ),
+        *("--assignment", str(tmp_path / "quick"), "--queue", str(tmp_path / "queue")),
+    ]
+
+
+def test_the_command_makes_a_gradebook_and_goes_on(tmp_path: Path) -> None:
+    write_assignment(tmp_path / "quick")
+    submissions(tmp_path / "in", 2)
+    first = subprocess.run(command(tmp_path), capture_output=True, text=True, check=False)
+    assert first.returncode == 0, first.stderr
+    assert "4 fail, 1 refused" in first.stdout
+    before = (tmp_path / "queue" / "gradebook.json").read_bytes()
+    assert len(json.loads(before)) == 5
+    again = subprocess.run(command(tmp_path), capture_output=True, text=True, check=False)
+    assert "0 to grade" in again.stderr
+    assert (tmp_path / "queue" / "gradebook.json").read_bytes() == before
+
+
+@pytest.mark.long
+def test_killed_at_twenty_moments_and_resumed(tmp_path: Path) -> None:
+    """The gradebook of a cohort that was killed again and again is that of one that was left in peace."""
+    write_assignment(tmp_path / "quick")
+    submissions(tmp_path / "in", 40)
+    subprocess.run(command(tmp_path), capture_output=True, check=True)
+    undisturbed = (tmp_path / "queue" / "gradebook.json").read_bytes()
+    subprocess.run(["rm", "-r", str(tmp_path / "queue")], check=True)
+    chance = random.Random(7)
+    for _ in range(20):
+        running = subprocess.Popen(
+            command(tmp_path), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        time.sleep(chance.uniform(0.2, 3.0))
+        os.killpg(running.pid, signal.SIGKILL)
+        running.wait()
+    subprocess.run(command(tmp_path), capture_output=True, check=True)
+    assert (tmp_path / "queue" / "gradebook.json").read_bytes() == undisturbed
