@@ -131,8 +131,9 @@ class TurnEnv(TaskEnv):
     Reward: algorithm 3 of the dissertation, times 0.01: forward +1.5, collision -200, target 400 and a point for each
     step left, time out -300 less what moving forward earned.
 
-    Start: within 0.05 m and 0.2 rad of the map's. End: terminated by a collision or when the hull is within 0.2 m of
-    the target; truncated after 200 steps.
+    Start: within 0.05 m and 0.2 rad of the map's.
+
+    End: terminated by a collision or when the hull is within 0.2 m of the target; truncated after 200 steps.
 
     ``task=TURN_SEED`` is the dissertation's own: ranges up to 10 m and rewards as they are, no noise at the start, and
     a time out that terminates.
@@ -156,8 +157,9 @@ class HallwayEnv(TaskEnv):
 
     Reward: algorithm 1 of the dissertation, times 0.01. Its terms are in ``info``.
 
-    Start: up to 0.3 m to either side, any heading; the target up to 0.3 m to either side. End: terminated by a
-    collision or when the hull is within 0.25 m of the target; truncated after 200 steps.
+    Start: up to 0.3 m to either side, any heading; the target up to 0.3 m to either side.
+
+    End: terminated by a collision or when the hull is within 0.25 m of the target; truncated after 200 steps.
 
     ``task=HALLWAY_SEED`` is the dissertation's own: rewards as they are, and a time out that terminates.
     """
@@ -179,8 +181,10 @@ class WheelchairsEnv(TaskEnv):
     Reward: progress of both along the way [m], -0.05 for every step that is not side by side, -2 for a collision, +2
     when both are in the target. Its terms are in ``info``, and so is whether the two are adjacent.
 
-    Start: side by side, 0.4 m apart, each within 0.05 m and 0.1 rad. End: terminated by a collision or when both are
-    within 0.4 m of the target at the same time; truncated after 300 steps.
+    Start: side by side, 0.4 m apart, each within 0.05 m and 0.1 rad.
+
+    End: terminated by a collision or when both are within 0.4 m of the target at the same time; truncated after 300
+    steps.
 
     ``task=WHEELCHAIRS_SEED`` is the dissertation's own: one of 16 actions, algorithm 2, no noise at the start, and a
     time out that terminates; ``WHEELCHAIRS_SEED_49`` its first attempt.

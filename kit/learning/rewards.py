@@ -16,6 +16,7 @@ import numpy as np
 
 from kit.learning.actions import Move
 from kit.learning.transition import Array, Transition
+from kit.world.problems import quoted, suggestion
 
 Term: TypeAlias = Callable[[Transition], Array]
 """(...) what a transition earns by one rule, before it is weighed."""
@@ -189,15 +190,23 @@ TERMS: Mapping[str, Term] = MappingProxyType(
 )
 
 
+class UnknownTerm(LookupError):
+    """No term has that name; the message offers the nearest one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """How much a term counts."""
+    """How much a term counts. Raises UnknownTerm."""
 
     term: str
     """A name in ``TERMS``."""
     value: float
     at_end: bool = True
     """Whether it also counts in the step that ends the episode."""
+
+    def __post_init__(self) -> None:
+        if self.term not in TERMS:
+            raise UnknownTerm(f"there is no reward term {quoted(self.term)}: {suggestion(self.term, TERMS)}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,65 @@
+"""Transitions and worlds for the tests of learning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.actions import Move
+from kit.learning.batch import BatchEnv, Step
+from kit.learning.tasks import HALLWAY, TURN, WHEELCHAIRS, Task
+from kit.learning.transition import Transition
+
+TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
+"""One of each kind."""
+
+
+def actions_of(batch: BatchEnv, chance: np.random.Generator) -> NDArray[np.int64]:
+    """Any actions, one for each world."""
+    robots = batch.task.robots
+    numbers = chance.integers(len(batch.task.actions.moves), size=(batch.n, robots))
+    if not batch.task.actions.one_number:
+        return numbers
+    return numbers @ len(batch.task.actions.moves) ** np.arange(robots - 1, -1, -1)
+
+
+def steps(batch: BatchEnv, count: int, seed: int = 0) -> Iterator[Step]:
+    """What so many steps of chance give."""
+    chance = np.random.default_rng(seed)
+    for _ in range(count):
+        yield batch.step(actions_of(batch, chance))
+
+
+@cache
+def sampled(name: str) -> Transition:
+    """Some thousand transitions, among them every way in which an episode ends."""
+    task = replace(TASKS[name], max_steps=25, target_radius=1.5 if name == "turn" else 1.0)
+    batch, chance = BatchEnv(task, 60, seed=5), np.random.default_rng(0)
+    batch.reset()
+    ahead = np.full((60, task.robots), task.actions.moves.index(Move.FORWARD))
+    found = []
+    for _ in range(80):
+        actions = actions_of(batch, chance).reshape(60, -1)
+        found.append(
+            batch.step(np.where(np.arange(60)[:, None] % 3 == 0, ahead, actions).squeeze()).transition
+        )
+    return joined(found)
+
+
+def joined(transitions: list[Transition]) -> Transition:
+    """Those of all of them, one after the other."""
+    columns = {
+        field.name: np.concatenate([getattr(each, field.name) for each in transitions])
+        for field in fields(Transition)
+        if field.name != "max_steps"
+    }
+    return Transition(max_steps=transitions[0].max_steps, **columns)
+
+
+def short(task: Task, case: str) -> Task:
+    """The task on one case."""
+    return replace(task, cases=(case,))
