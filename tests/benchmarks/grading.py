@@ -16,11 +16,12 @@ import time
 from collections import Counter
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.cohort.gradebook import rows
 from grader.cohort.queue import Queue
+
+ROOT = Path(__file__).parents[2]
 
 SHEET = """
 title: Round the corner
