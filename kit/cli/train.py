@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from kit.learning.choice import TaskChoice
     from kit.learning.events import EventReader
     from kit.learning.runs import Run, RunConfig
+    from kit.tui.terminal import TerminalDecision
 
 
 @click.command()
@@ -57,6 +58,9 @@ if TYPE_CHECKING:
 @click.option("--detach", is_flag=True, help="Do not watch; it trains on either way.")
 @click.option("--list", "listed", is_flag=True, help="List tasks, cases, algorithms and rewards.")
 @options.workspace
+@learning_options.plain
+@options.glyphs
+@options.color
 def command(
     task: str | None,
     algo: str,
@@ -80,6 +84,9 @@ def command(
     detach: bool,
     listed: bool,
     workspace: Path | None,
+    plain: bool,
+    glyphs: str | None,
+    color: str | None,
 ) -> None:
     """Train an agent for TASK in a process of its own, and watch it.
 
@@ -94,9 +101,10 @@ def command(
     if listed:
         click.echo("\n".join(_list()))
         return
+    terminal = None if detach else options.terminal(plain=plain, glyphs=glyphs, color=color)
     with learning_options.mistakes():
         if resume is not None:
-            _go_on(resume, workspace, detach)
+            _go_on(resume, workspace, terminal)
             return
         if task is None:
             raise click.UsageError(
@@ -120,10 +128,12 @@ def command(
             *(algo, preset, seed, steps, worlds, learning_rate, goal, keep_training),
             reward_file=None if reward_file is None else str(reward_file.absolute()),
         )
-        _begin(config, name, workspace, detach)
+        _begin(config, name, workspace, terminal)
 
 
-def _begin(config: RunConfig, name: str | None, workspace: Path | None, detach: bool) -> None:
+def _begin(
+    config: RunConfig, name: str | None, workspace: Path | None, terminal: TerminalDecision | None
+) -> None:
     """Checks everything that can be wrong before anything is written."""
     from kit.learning.algorithms import find_algorithm
     from kit.learning.extra import require_learner
@@ -135,7 +145,7 @@ def _begin(config: RunConfig, name: str | None, workspace: Path | None, detach: 
         require_learner()
     if config.reward_file is not None:
         parameters_of(Path(config.reward_file))
-    _start(new_run(learning_options.runs_folder(workspace), config, name), detach)
+    _start(new_run(learning_options.runs_folder(workspace), config, name), terminal)
 
 
 def _check(choice: TaskChoice) -> None:
@@ -144,7 +154,7 @@ def _check(choice: TaskChoice) -> None:
     Courses(choice.resolve())
 
 
-def _go_on(name: str, workspace: Path | None, detach: bool) -> None:
+def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:
     from kit.learning.runs import RunError, find_run
 
     run = find_run(learning_options.runs_folder(workspace), name)
@@ -153,38 +163,42 @@ def _go_on(name: str, workspace: Path | None, detach: bool) -> None:
     if summary.state in ("running", "paused"):
         run.ask("go")
         click.echo(f"{run.name} is being trained; if it paused, it goes on.")
-        if not detach:
-            _follow(run)
+        if terminal is not None:
+            _show(run, terminal)
         return
     if summary.state == "finished":
         raise RunError(
             f"{run.name} has finished: {summary.reason}. `kit evaluate {run.name}` tests it; start another with "
             "another --seed."
         )
-    _start(run, detach)
+    _start(run, terminal)
 
 
-def _start(run: Run, detach: bool) -> None:
+def _start(run: Run, terminal: TerminalDecision | None) -> None:
+    """``terminal``: where to watch it; None: nowhere."""
     from kit.learning.events import EventReader
     from kit.learning.worker import start
 
     reader = EventReader(run.events_file, from_now=True)
     process = start(run)
     click.echo(f"{run.name}: training in {run.folder}")
-    if detach:
+    if terminal is None:
         click.echo(f"`kit watch {run.name}` shows how it goes.")
         return
     try:
-        _follow(run, reader)
+        _show(run, terminal, reader)
     finally:
         if not run.alive:
             process.wait()
 
 
-def _follow(run: Run, reader: EventReader | None = None) -> None:
-    from kit.cli.watch import follow
+def _show(run: Run, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
+    from kit.cli.watch import follow, look
 
-    follow(run, reader=reader)
+    if terminal.plain.value:
+        follow(run, reader=reader)
+    else:
+        look(run, terminal)
 
 
 def _list() -> list[str]:
