@@ -17,6 +17,7 @@ from kit.layers.assignment import Assignment, NamedLayer
 from kit.layers.greedy import Chooser, GreedyRun, greedy
 from kit.layers.planning import Plan
 from kit.layers.requirements import Case, Contact, Sight
+from kit.layers.world_planning import WorldPlan
 
 T = TypeVar("T")
 
@@ -96,11 +97,15 @@ def method_pages(run: GreedyRun, width: int) -> Iterator[Page]:
     yield Page("method", "Where the slides' method ends", ending, struck)
 
 
-def plan_pages(case: Case, assignment: Assignment, plan: Plan, run: GreedyRun, width: int) -> Iterator[Page]:
-    """The fewest layers, all and one by one, and the proof. ``assignment``: the plan's, or the same in the names of
-    a world."""
+def plan_pages(
+    case: Case, plan: Plan, world_plan: WorldPlan | None, run: GreedyRun, width: int
+) -> Iterator[Page]:
+    """The fewest layers, all and one by one, and the proof; in a world's own names where there is one. ``run``: what
+    the slides' method comes to."""
+    assignment = plan.assignment if world_plan is None else world_plan.assignment
     size = len(assignment.layers)
     overview = (
+        *([] if world_plan is None else _today(world_plan, width)),
         *words.plan_in_words(plan, width=width),
         *words.comparison_in_words(run, plan, width=width),
         "",
@@ -117,6 +122,16 @@ def plan_pages(case: Case, assignment: Assignment, plan: Plan, run: GreedyRun, w
     few = len(plan.certificate.apart) <= FEW
     said = words.proof_in_words(plan, every_pair=few, width=width)
     yield Page("proof", "Why no plan has fewer", tuple(said), others)
+
+
+def _today(world_plan: WorldPlan, width: int) -> list[str]:
+    """What the world has at present."""
+    said = words.wrapped(
+        f"Today the world names {words.layers_in_words(world_plan.names_today)}.", width=width
+    )
+    if wrong := len(world_plan.wrong_today):
+        said += words.wrapped(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
+    return said
 
 
 def listing(case: Case, assignment: Assignment, width: int) -> list[str]:

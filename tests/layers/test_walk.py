@@ -9,6 +9,7 @@ import pytest
 from kit.layers.examples import EXAMPLES
 from kit.layers.planning import solve
 from kit.layers.requirements import Case
+from kit.layers.tasks import open_task, solve_task
 from kit.layers.walk import Method, Page, case_page, method_pages, plan_pages
 
 WIDTH = 34
@@ -20,7 +21,7 @@ def pages(case: Case, width: int = WIDTH) -> list[Page]:
     return [
         case_page(case, width),
         *method_pages(run, width),
-        *plan_pages(case, plan.assignment, plan, run, width),
+        *plan_pages(case, plan, None, run, width),
     ]
 
 
@@ -86,3 +87,16 @@ def test_another_edge_leads_elsewhere_and_what_came_before_stays() -> None:
     again = changed.beginning_with(1, method.edges(1)[-1])
     assert again.run.collision_steps[0] == method.run.collision_steps[0]
     assert 2 not in again.wanted or again.run.collision_steps[1].edge == method.edges(1)[-1]
+
+
+def test_a_world_is_planned_in_its_own_names() -> None:
+    task = open_task("crossing")
+    plan, world_plan = solve_task(task)
+    assert world_plan is not None
+    first, *others = plan_pages(task.case, plan, world_plan, Method(task.case).run, 80)
+    assert first.words[0].startswith("Today the world names ")
+    for layer in world_plan.assignment.layers:
+        assert any(line.startswith(f"{layer.name} = ") for line in first.words)
+    assert [page.group for page in others if page.part == "fewest"] == [
+        layer.members for layer in world_plan.assignment.layers
+    ]

@@ -66,3 +66,6 @@ def test_it_costs_little_and_nothing_while_paused(graph: User) -> None:
     assert cpu_seconds(graph.process.pid) - cpu < 0.15
     graph.send(b"." * 12)
     graph.until(lambda: len(graph.output) > before, "what was said in a few steps")
+    graph.send(b"\x03")
+    assert graph.wait() == 0
+    graph.assert_sane()

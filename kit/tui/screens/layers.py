@@ -83,7 +83,7 @@ class LayersScreen(StillScreen[None]):
         self._glyphs: Glyphs = "ascii" if look.terminal.glyphs.value == "ascii" else "braille"
         self._folder = saved_to
         self._asked, self._title = task, title
-        self._method = Method(task.case)
+        self._method = self._usual = Method(task.case)
         self._solution: Solution | None = None
         self._steps: tuple[Step, ...] = ()
         self._at = self._top = 0
@@ -122,7 +122,8 @@ class LayersScreen(StillScreen[None]):
     def open(self, task: Task, title: str) -> None:
         """Another case, from its first page on."""
         self._asked, self._title = task, title
-        self._method, self._solution = Method(task.case), None
+        self._method = self._usual = Method(task.case)
+        self._solution = None
         self._at = self._top = 0
         self._remark = row()
         self._solve()
@@ -152,9 +153,7 @@ class LayersScreen(StillScreen[None]):
             waiting = ("Looking for the fewest layers ...",)
             rest: tuple[Step, ...] = (Step("fewest", "The fewest layers", waiting),)
         else:
-            plan, world_plan = self._solution
-            assignment = plan.assignment if world_plan is None else world_plan.assignment
-            rest = tuple(plan_pages(case, assignment, plan, Method(case).run, width))
+            rest = tuple(plan_pages(case, *self._solution, self._usual.run, width))
         self._steps = (case_page(case, width), *method_pages(self._method.run, width), *rest)
         self._at = min(self._at, len(self._steps) - 1)
         self._show()
