@@ -90,6 +90,12 @@ class Door:
         for visitor in self._visitors:
             visitor.close()
         self._visitors = []
+        self._turn_away()
+
+    def _turn_away(self) -> None:
+        """Who has knocked and was not let in."""
+        while not self._coming.empty():
+            self._coming.get().close()
 
     def _let_in(self, line: Line) -> None:
         if len(self._visitors) >= MOST_VISITORS:
@@ -115,3 +121,4 @@ class Door:
             self._coming.put(line)
             self._wake()
         self._listener.close()
+        self._turn_away()
