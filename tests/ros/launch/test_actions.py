@@ -1,0 +1,312 @@
+"""What a launch file's actions ask for, in which order, and what follows from what happens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kit.ros.launch.actions import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    EmitEvent,
+    GroupAction,
+    IncludeLaunchDescription,
+    LogInfo,
+    OpaqueFunction,
+    RegisterEventHandler,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+    UnregisterEventHandler,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
+from kit.ros.launch.conditions import (
+    IfCondition,
+    LaunchConfigurationEquals,
+    LaunchConfigurationNotEquals,
+    UnlessCondition,
+)
+from kit.ros.launch.entity import LaunchDescription
+from kit.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
+from kit.ros.launch.events import ShutdownProcess, matches_action
+from kit.ros.launch.problems import LaunchError
+from kit.ros.launch.processes import ExecuteProcess, Node, PushRosNamespace, SetParameter, SetRemap
+from kit.ros.launch.sources import LaunchDescriptionSource
+from kit.ros.launch.substitution import LaunchConfiguration
+from tests.ros.launch.conftest import Play
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds"),
+    [
+        (IfCondition("true"), True),
+        (IfCondition("1"), True),
+        (IfCondition("False"), False),
+        (IfCondition(True), True),
+        (UnlessCondition("false"), True),
+        (UnlessCondition(LaunchConfiguration("flag")), False),
+        (LaunchConfigurationEquals("flag", "true"), True),
+        (LaunchConfigurationNotEquals("flag", "true"), False),
+        (LaunchConfigurationEquals("other", None), True),
+    ],
+)
+def test_a_condition_decides(condition: Any, holds: bool) -> None:
+    assert Play(LogInfo(msg="here", condition=condition), flag="true").said == (["here"] if holds else [])
+
+
+def test_a_condition_that_says_neither_is_refused() -> None:
+    with pytest.raises(LaunchError, match="is 'maybe'"):
+        Play(LogInfo(msg="here", condition=IfCondition(LaunchConfiguration("flag"))), flag="maybe")
+
+
+def test_what_a_group_sets_holds_inside() -> None:
+    show = lambda: LogInfo(msg=[LaunchConfiguration("a", default="-"), LaunchConfiguration("b", default="-")])  # noqa: E731 - one per use
+    run = Play(
+        SetLaunchConfiguration("a", "1"),
+        GroupAction([SetLaunchConfiguration("b", "2"), show()], launch_configurations={"a": "9"}),
+        show(),
+        GroupAction([SetLaunchConfiguration("b", "3")], scoped=False),
+        show(),
+        GroupAction([show()], forwarding=False),
+        UnsetLaunchConfiguration("b"),
+        show(),
+        GroupAction([show()], condition=IfCondition("false")),
+    )
+    assert run.said == ["92", "1-", "13", "--", "1-"]
+
+
+def test_the_environment_of_a_process() -> None:
+    run = Play(
+        SetEnvironmentVariable("A", "1"),
+        AppendEnvironmentVariable("A", "2"),
+        AppendEnvironmentVariable("A", "0", prepend=True),
+        GroupAction([UnsetEnvironmentVariable("B"), ExecuteProcess(cmd=["x"], additional_env={"C": "3"})]),
+        ExecuteProcess(cmd=["x"], env={"D": "4"}),
+        ExecuteProcess(cmd=["x"]),
+        environment={"B": "b"},
+    )
+    assert [each["environment"] for each in run.started] == [
+        {"A": "0:1:2", "C": "3"},
+        {"D": "4"},
+        {"A": "0:1:2", "B": "b"},
+    ]
+
+
+def test_a_node_s_command_line(tmp_path: Path) -> None:
+    file = tmp_path / "values.yaml"
+    file.write_text("")
+    run = Play(
+        Node(
+            package="pkg",
+            executable="exe",
+            name="one",
+            namespace="left",
+            arguments=["own", LaunchConfiguration("rate")],
+            ros_arguments=["--log-level", "debug"],
+            parameters=[
+                {"rate": LaunchConfiguration("rate"), "loud": LaunchConfiguration("loud"), "name": "yes it is"},
+                {"a": {"b": 1, "c": [1.5, 2.0]}, "text": "'7'", "flag": True, "list": ["x", "y"]},
+                str(file),
+            ],
+            remappings=[("scan", "/scan"), (LaunchConfiguration("loud"), "quiet")],
+            output="screen",
+            emulate_tty=True,
+        ),
+        rate="20.0",
+        loud="true",
+    )
+    assert run.arguments == [
+        "own", "20.0", "--ros-args", "--log-level", "debug", "-r", "__node:=one", "-r", "__ns:=/left",
+        "-p", "rate:=20.0", "-p", "loud:=true", "-p", 'name:="yes it is"', "-p", "a.b:=1", "-p", "a.c:=[1.5, 2.0]",
+        "-p", 'text:="7"', "-p", "flag:=true", "-p", 'list:=["x", "y"]', "--params-file", str(file),
+        "-r", "scan:=/scan", "-r", "true:=quiet",
+    ]  # fmt: skip
+
+
+def test_groups_push_namespaces_parameters_and_remappings() -> None:
+    run = Play(
+        GroupAction(
+            [
+                PushRosNamespace("fleet"),
+                SetParameter("use_sim_time", True),
+                SetRemap("scan", "laser"),
+                GroupAction([PushRosNamespace("one"), Node(executable="a")]),
+                Node(executable="b", namespace="two"),
+                Node(executable="c", namespace="/three"),
+            ]
+        ),
+        Node(executable="d"),
+    )
+    rest = ["-p", "use_sim_time:=true", "-r", "scan:=laser"]
+    assert [each["arguments"] for each in run.started] == [
+        ["--ros-args", "-r", "__ns:=/fleet/one", *rest],
+        ["--ros-args", "-r", "__ns:=/fleet/two", *rest],
+        ["--ros-args", "-r", "__ns:=/three", *rest],
+        [],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Node(executable="a", parameters=[{"x": object()}]), "no parameter can hold"),
+        (lambda: Node(executable="a", parameters=["/nowhere.yaml"]), "/nowhere.yaml does not exist"),
+        (lambda: TimerAction(period="soon", actions=[]), "no number of seconds"),
+        (lambda: IncludeLaunchDescription("/nowhere.launch.py"), "does not exist"),
+    ],
+)
+def test_what_cannot_be_done_is_said_with_the_line(make: Any, message: str) -> None:
+    with pytest.raises(LaunchError, match=message) as caught:
+        Play(make())
+    assert caught.value.place is not None
+    assert caught.value.place.file == __file__
+
+
+def test_unknown_arguments_of_an_action_are_refused_at_once() -> None:
+    with pytest.raises(TypeError, match="'ouput'"):
+        Node(executable="a", ouput="screen")
+
+
+def test_timers_go_off_in_the_launch_s_time() -> None:
+    later = TimerAction(period=2.0, actions=[LogInfo(msg="second"), TimerAction(period=1.0, actions=[LogInfo(msg="third")])])
+    cancelled = TimerAction(period=1.5, actions=[LogInfo(msg="never")])
+    run = Play(later, cancelled, TimerAction(period=LaunchConfiguration("wait"), actions=[LogInfo(msg="first")]), wait="1")
+    assert run.service.wake_ns == 1_000_000_000
+    cancelled.cancel()
+    run.go_on(1.0)
+    assert run.said == ["first"]
+    run.go_on(2.0)
+    assert run.said == ["second"]
+    run.go_on(2.9)
+    assert run.said == []
+    run.go_on(3.0)
+    assert run.said == ["third"]
+    assert run.service.wake_ns is None
+
+
+def test_functions_return_actions() -> None:
+    def choose(context: Any, count: int, *, word: str) -> list[LogInfo]:
+        return [LogInfo(msg=context.launch_configurations[word])] * count
+
+    run = Play(
+        OpaqueFunction(function=choose, args=[2], kwargs={"word": "room"}),
+        OpaqueFunction(function=lambda context: None),
+        room="maze",
+    )
+    assert run.said == ["maze", "maze"]
+
+
+def test_what_happens_to_processes_is_reacted_to() -> None:
+    server, client = ExecuteProcess(cmd=["server"]), ExecuteProcess(cmd=["client"])
+    run = Play(
+        server,
+        RegisterEventHandler(OnProcessStart(target_action=server, on_start=[client])),
+        RegisterEventHandler(
+            OnProcessExit(target_action=client, on_exit=lambda event, context: LogInfo(msg=f"{event.process_name} {event.returncode}"))
+        ),
+        RegisterEventHandler(
+            OnProcessIO(target_action=server, on_stdout=lambda event: None, on_stderr=lambda event, context: [LogInfo(msg=event.text.decode())])
+        ),
+    )
+    run.go_on(0.0, ("started", 1, 11))
+    assert [each["command"] for each in run.started] == [["client"]]
+    run.go_on(0.0, ("started", 2, 12), ("printed", 1, "trouble", False))
+    assert run.said == ["trouble"]
+    run.go_on(0.0, ("exited", 2, 12, 3))
+    assert run.said == ["client-2 3"]
+
+
+def test_a_process_is_started_again() -> None:
+    run = Play(ExecuteProcess(cmd=["x"], respawn=True, respawn_delay=0.5))
+    run.go_on(1.0, ("exited", 1, 11, 1))
+    assert run.started == []
+    assert run.service.wake_ns == 1_500_000_000
+    run.go_on(1.5)
+    assert [each["command"] for each in run.started] == [["x"]]
+
+
+def test_the_end_of_one_can_be_the_end_of_all() -> None:
+    main = Node(executable="main", on_exit=Shutdown(reason="main is done"))
+    run = Play(main, RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="good bye")])), ExecuteProcess(cmd=["x"]))
+    run.go_on(1.0, ("exited", 1, 11, 0))
+    assert run.said == ["good bye"]
+    assert run.requests[-1] == ["shutdown", "main is done"]
+
+
+def test_a_process_can_be_ended_and_handlers_withdrawn() -> None:
+    victim = ExecuteProcess(cmd=["x"])
+    handler = OnProcessExit(on_exit=[LogInfo(msg="heard")])
+    run = Play(
+        ExecuteProcess(cmd=["other"]),
+        victim,
+        RegisterEventHandler(handler),
+        UnregisterEventHandler(handler),
+        EmitEvent(event=ShutdownProcess(process_matcher=matches_action(victim))),
+    )
+    assert ["end", 2] in run.requests
+    run.go_on(0.0, ("exited", 2, 12, 0))
+    assert run.said == []
+
+
+def write(file: Path, body: str) -> str:
+    file.write_text(
+        "from kit.ros.launch.actions import *\nfrom kit.ros.launch.entity import LaunchDescription\n"
+        "from kit.ros.launch.substitution import LaunchConfiguration, ThisLaunchFileDir\n"
+        f"def generate_launch_description():\n    return {body}\n"
+    )
+    return str(file)
+
+
+def test_other_launch_files_are_included(tmp_path: Path) -> None:
+    inner = write(tmp_path / "inner.launch.py", "LaunchDescription([LogInfo(msg=['in ', LaunchConfiguration('room'), ' ', ThisLaunchFileDir()])])")
+    run = Play(
+        IncludeLaunchDescription(LaunchDescriptionSource(inner), launch_arguments={"room": "maze"}.items()),
+        IncludeLaunchDescription(inner, condition=IfCondition("false")),
+        LogInfo(msg="out"),
+    )
+    assert run.said == [f"in maze {tmp_path}", "out"]
+
+
+def test_launch_files_that_include_each_other_are_found_out(tmp_path: Path) -> None:
+    one, two = tmp_path / "one.launch.py", tmp_path / "two.launch.py"
+    write(one, f"LaunchDescription([IncludeLaunchDescription({str(two)!r})])")
+    write(two, f"LaunchDescription([IncludeLaunchDescription({str(one)!r})])")
+    with pytest.raises(LaunchError, match=r"one\.launch\.py -> .*two\.launch\.py -> .*one\.launch\.py"):
+        Play(IncludeLaunchDescription(str(one)))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x = 1", "no generate_launch_description"),
+        ("def generate_launch_description(): return []", "must return a LaunchDescription, not list"),
+    ],
+)
+def test_a_file_that_is_no_launch_file_is_refused(text: str, message: str, tmp_path: Path) -> None:
+    file = tmp_path / "odd.launch.py"
+    file.write_text(text)
+    with pytest.raises(LaunchError, match=message):
+        Play(IncludeLaunchDescription(str(file)))
+
+
+def test_launch_files_in_xml_are_refused_by_name(tmp_path: Path) -> None:
+    (tmp_path / "a.launch.xml").write_text("<launch/>")
+    with pytest.raises(LaunchError, match="in Python only"):
+        Play(IncludeLaunchDescription(str(tmp_path / "a.launch.xml")))
+
+
+def test_all_declared_arguments_are_found_wherever_they_stand() -> None:
+    description = LaunchDescription(
+        [
+            DeclareLaunchArgument("a", default_value=["x", LaunchConfiguration("b")]),
+            GroupAction([DeclareLaunchArgument("b", choices=["1"])]),
+            TimerAction(period=1.0, actions=[DeclareLaunchArgument("a"), DeclareLaunchArgument("c")]),
+        ]
+    )
+    declared = description.get_launch_arguments()
+    assert [each.name for each in declared] == ["a", "b", "c"]
+    assert declared[0].shown_default == "'x' + LaunchConfig('b')"

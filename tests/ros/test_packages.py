@@ -1,0 +1,102 @@
+"""Packages as they lie: found, read, and never run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.ros.packages import Executable, PackageError, find_packages, read_package
+
+XML = "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
+SETUP = """
+from setuptools import setup
+package_name = 'pkg'
+submodules = [package_name + '/deep']
+raise SystemExit('never run')
+setup(name=package_name, packages=[package_name] + submodules, version=open('VERSION').read(), {})
+"""
+
+
+def package(folder: Path, setup: str = "", **files: str) -> Path:
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(XML)
+    if setup:
+        (folder / "setup.py").write_text(SETUP.format(setup))
+    for name, text in files.items():
+        (folder / name.replace("__", ".")).write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("written", "name", "module"),
+    [
+        ("entry_points={'console_scripts': ['run = pkg.main:main']}", "run", "pkg.main"),
+        ("entry_points={'console_scripts': ['run=pkg.__init__:main',],}", "run", "pkg.__init__"),
+        ("entry_points={'console_scripts': [package_name + ' = ' + package_name + '.a:main']}", "pkg", "pkg.a"),
+        ("entry_points={'console_scripts': [f'{package_name} = {package_name}.b:main']}", "pkg", "pkg.b"),
+        ("entry_points={'console_scripts': 'run = pkg.c:main'}", "run", "pkg.c"),
+    ],
+)
+def test_programs_are_read_from_setup_py_without_running_it(
+    written: str, name: str, module: str, tmp_path: Path
+) -> None:
+    found = read_package(package(tmp_path / "p", written))
+    assert found.executables == (Executable(name, module, "main"),)
+    assert (found.name, found.version, found.description) == ("pkg", "1.2.3", "a b")
+
+
+def test_programs_may_stand_in_other_files(tmp_path: Path) -> None:
+    configured = package(tmp_path / "a", setup__cfg="[options.entry_points]\nconsole_scripts =\n    run = pkg.m:go\n")
+    assert read_package(configured).executables == (Executable("run", "pkg.m", "go"),)
+    project = package(tmp_path / "b", pyproject__toml="[project.scripts]\nrun = 'pkg.m:go'\n")
+    assert read_package(project).executables == (Executable("run", "pkg.m", "go"),)
+    moved = package(tmp_path / "c", "package_dir={'': 'src'}, entry_points={'console_scripts': ['r = pkg.m:go']}")
+    assert read_package(moved).source == moved / "src"
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ("entry_points={'console_scripts': make()}", r"setup\.py:6: .*computed"),
+        ("entry_points={'console_scripts': ['run pkg.main']}", "must look like"),
+        ("entry_points={'console_scripts': ['run = pkg.main']}", "must look like"),
+        ("entry_points=(", r"setup\.py:6"),
+    ],
+)
+def test_what_cannot_be_read_is_said_with_file_and_line(written: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(PackageError, match=message):
+        read_package(package(tmp_path / "p", written))
+
+
+def test_broken_manifests_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(PackageError, match=r"no package\.xml"):
+        read_package(tmp_path)
+    (tmp_path / "package.xml").write_text("<package>\n<name>x</nam></package>")
+    with pytest.raises(PackageError, match=r"package\.xml:2:\d+: broken XML"):
+        read_package(tmp_path)
+    (tmp_path / "package.xml").write_text("<package/>")
+    with pytest.raises(PackageError, match="no <name>"):
+        read_package(tmp_path)
+
+
+def test_programs_and_their_files_are_found_by_name(tmp_path: Path) -> None:
+    found = read_package(package(tmp_path / "p", "entry_points={'console_scripts': ['run = pkg.m:go', 'x = pkg.n:go']}"))
+    (tmp_path / "p" / "pkg").mkdir()
+    (tmp_path / "p" / "pkg" / "m.py").touch()
+    assert found.file_of(found.executable("run")) == tmp_path / "p/pkg/m.py"
+    with pytest.raises(PackageError, match="has no executable 'rin'; it has: run, x"):
+        found.executable("rin")
+    with pytest.raises(PackageError, match=r"there is no .*n\.py"):
+        found.file_of(found.executable("x"))
+
+
+def test_packages_are_found_in_workspaces(tmp_path: Path) -> None:
+    package(tmp_path / "ws/src/group/one")
+    package(tmp_path / "ws/src/other/two")
+    (tmp_path / "ws/src/other/COLCON_IGNORE").touch()
+    package(tmp_path / "ws/src/one/inside")
+    package(tmp_path / "ws/.hidden/three")
+    package(tmp_path / "ws/a/b/c/d/too_deep")
+    assert find_packages([tmp_path / "ws"]) == {"pkg": tmp_path / "ws/src/group/one"}
+    assert find_packages([tmp_path / "nowhere"]) == {}
