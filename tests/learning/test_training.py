@@ -158,6 +158,7 @@ BAD_REWARDS = {
     "raises": ("def reward(step):\n    return 1 / (step - 7)\n", "reward.py:2"),
     "nan": ("def reward(step):\n    return float('nan')\n", "nan"),
     "text": ("def reward(step):\n    return 'good'\n", "reward.py"),
+    "sleeps": ("import time\ndef reward(step):\n    time.sleep(60)\n", "3"),
     "exits": ("import os\ndef reward(step):\n    os._exit(3)\n", "_exit"),
 }
 
