@@ -148,36 +148,33 @@ def _stretches(charge: Charge) -> Iterator[Row]:
     if isinstance(charge, PointCharge):
         yield _point(charge)
     elif isinstance(charge, LineCharge):
-        yield _line(charge, (), 0.0)
+        yield _line(charge, 0.0)
+    elif _is_closed(charge):
+        yield from (_line(line, 0.0, clamped=True) for line in charge.lines)
     else:
-        # A corner at a line's end is that line, going on acting beyond its end: half the work for the same force.
-        corners = {(point.x, point.y): point for point in charge.points}
-        spare = dict(corners)
+        first = charge.handover is Handover.FIRST_LINE
+        count = len(charge.lines)
         for number, line in enumerate(charge.lines):
-            first = charge.handover is Handover.FIRST_LINE
-            joined = (
-                ()
-                if first
-                else tuple(
-                    end for end in line.ends if end in corners and corners[end].intensity == line.intensity
-                )
-            )
-            for end in joined:
-                spare.pop(end, None)
-            yield _line(line, joined, FIRST * (number - len(charge.lines)) if first else 0.0)
-        yield from map(_point, spare.values())
+            yield _line(line, FIRST * (number - count) if first else 0.0)
+        yield from map(_point, charge.points)
+
+
+def _is_closed(composite: CompositeCharge) -> bool:
+    """Whether every line's ends are corners of its strength, and nothing else is. Then each line acts beyond its
+    ends like its corners: half the members for the same force."""
+    ends = {(end, line.intensity) for line in composite.lines for end in line.ends}
+    corners = {((point.x, point.y), point.intensity) for point in composite.points}
+    return composite.handover is Handover.NEAREST and ends == corners
 
 
 def _point(charge: PointCharge) -> Row:
     return charge.x, charge.y, 0.0, 0.0, 0.0, 0.0, 0.0, charge.intensity, 0.0
 
 
-def _line(line: LineCharge, corners: tuple[tuple[float, float], ...], rank: float) -> Row:
+def _line(line: LineCharge, rank: float, *, clamped: bool = False) -> Row:
     length = line.length
     ux, uy = ((line.bx - line.ax) / length, (line.by - line.ay) / length) if length else (0.0, 0.0)
-    start, end = line.ends
-    low = -math.inf if start in corners else 0.0
-    high = math.inf if end in corners else length
+    low, high = (-math.inf, math.inf) if clamped else (0.0, length)
     return line.ax, line.ay, ux, uy, length, low, high, line.intensity, rank
 
 

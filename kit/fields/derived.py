@@ -13,8 +13,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-import numpy as np
-
 from kit.fields.charges import Charge, CompositeCharge, LineCharge, PointCharge, members
 from kit.fields.floor import Floor
 
@@ -32,7 +30,7 @@ NEAR: Final = 0.05
 
 def derive(floor: Floor) -> tuple[Charge, ...]:
     """Charges of strength 1 for all walls that the floor's inside ends at."""
-    faces = [wall for wall in np.unique(floor.walls, axis=0).tolist() if _faces(floor, wall)]
+    faces: list[list[float]] = floor.faces().tolist()
     meeting: dict[Point, list[int]] = defaultdict(list)
     for number, (ax, ay, bx, by) in enumerate(faces):
         meeting[_same(ax, ay)].append(number)
@@ -80,21 +78,6 @@ def _charges(
             yield CompositeCharge(tuple(those), tuple(PointCharge(*place) for place in points[head]))
         else:
             yield from those
-
-
-def _faces(floor: Floor, wall: list[float]) -> bool:
-    """Whether one side of the wall is floor, anywhere along it."""
-    ax, ay, bx, by = wall
-    length = math.hypot(bx - ax, by - ay)
-    if length == 0:
-        return False
-    aside = 1.5 * floor.cell
-    nx, ny = -(by - ay) / length * aside, (bx - ax) / length * aside
-    return any(
-        floor.inside[floor.cell_at(ax + share * (bx - ax) + side * nx, ay + share * (by - ay) + side * ny)]
-        for share in np.linspace(0.1, 0.9, 9)
-        for side in (1, -1)
-    )
 
 
 def _stands_out(place: Point, walls: list[list[float]], floor: Floor) -> bool:

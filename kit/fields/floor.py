@@ -76,6 +76,25 @@ class Floor:
         x, y = (self.corner[0] + self.cell * np.arange(columns), self.corner[1] + self.cell * np.arange(rows))
         return np.stack(np.meshgrid(x, y), axis=-1)
 
+    def faces(self) -> Floats:
+        """(m, 4): the walls that have the inside on one of their sides, each once."""
+        return np.array(
+            [wall for wall in np.unique(self.walls, axis=0).tolist() if self._looks_inside(wall)]
+        ).reshape(-1, 4)
+
+    def _looks_inside(self, wall: list[float]) -> bool:
+        ax, ay, bx, by = wall
+        length = math.hypot(bx - ax, by - ay)
+        if length == 0:
+            return False
+        aside = 1.5 * self.cell
+        nx, ny = -(by - ay) / length * aside, (bx - ax) / length * aside
+        return any(
+            self.inside[self.cell_at(ax + share * (bx - ax) + side * nx, ay + share * (by - ay) + side * ny)]
+            for share in np.linspace(0.1, 0.9, 9)
+            for side in (1, -1)
+        )
+
     def cell_at(self, x: float, y: float) -> Cell:
         """The cell that holds a place; the nearest one for a place off the grid."""
         column, row = (x - self.corner[0]) / self.cell, (y - self.corner[1]) / self.cell
@@ -130,19 +149,25 @@ def floor_of(world: World) -> Floor:
     return Floor.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
 
 
-def wall_depth(floor: Floor, x: float, y: float) -> float:
-    """How far [m] a place lies behind the face of a solid wall; 0 in the open.
-
-    Walls made from a picture bound what is dark: a place is inside if a ray from it crosses them an odd number
-    of times. Walls that are bare lines have no inside.
-    """
-    ax, ay, bx, by = floor.walls.T
-    crosses = (ay > y) != (by > y)
-    rise = np.where(crosses, by - ay, 1.0)
-    right = crosses & (ax + (y - ay) / rise * (bx - ax) > x)
-    if np.count_nonzero(right) % 2 == 0:
+def wall_depth(floor: Floor, faces: Floats, x: float, y: float) -> float:
+    """How far [m] a place lies behind the nearest of the floor's ``faces``; 0 before it, or on it."""
+    if floor.inside[floor.cell_at(x, y)] or not len(faces):
         return 0.0
-    return float(min(_distance(np.array([x]), np.array([y]), *wall)[0, 0] for wall in floor.walls.tolist()))
+    ax, ay, bx, by = faces.T
+    dx, dy = bx - ax, by - ay
+    share = np.clip(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
+    away_x, away_y = x - ax - share * dx, y - ay - share * dy
+    distance = np.hypot(away_x, away_y)
+    nearest = int(distance.argmin())
+    depth = float(distance[nearest])
+    if depth < 1e-9:
+        return 0.0
+    beyond = 1.5 * floor.cell / depth
+    before = (
+        x + (beyond - 1.0) * float(away_x[nearest]),
+        y + (beyond - 1.0) * float(away_y[nearest]),
+    )
+    return 0.0 if floor.inside[floor.cell_at(*before)] else depth
 
 
 def _span(low: float, high: float, origin: float, cell: float, count: int) -> slice:

@@ -102,10 +102,19 @@ def read_layout(file: Path, floor: Floor | None = None) -> Layout:
     intensities = Intensities()
     if section is not None:
         intensities = _intensities(section.section("intensities"))
-        charges = tuple(_charges(section.sections("charges"), floor))
+        ground = None if floor is None else _Ground(floor, floor.faces())
+        charges = tuple(_charges(section.sections("charges"), ground))
         section.finish()
     problems.raise_if_any()
     return Layout(charges, intensities, file, Field.of(charges))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ground:
+    """Where charges may stand."""
+
+    floor: Floor
+    faces: Floats
 
 
 def _intensities(section: Section) -> Intensities:
@@ -122,44 +131,44 @@ def _intensities(section: Section) -> Intensities:
     return read
 
 
-def _charges(sections: Iterable[Section], floor: Floor | None) -> Iterator[Charge]:
+def _charges(sections: Iterable[Section], ground: _Ground | None) -> Iterator[Charge]:
     for section in sections:
         times = section.number("times", 1.0)
         if section.has("composite"):
             parts = section.sections("composite", at_least=1)
             handover = section.choice("handover", HANDOVERS, Handover.NEAREST.value)
-            yield _composite(section, parts, times, handover, floor)
+            yield _composite(section, parts, times, handover, ground)
         else:
-            charge = _member(section, times, floor)
+            charge = _member(section, times, ground)
             if charge is not None:
                 yield charge
         section.finish()
 
 
-def _member(section: Section, times: float, floor: Floor | None) -> LineCharge | PointCharge | None:
+def _member(section: Section, times: float, ground: _Ground | None) -> LineCharge | PointCharge | None:
     if section.has("line"):
         ax, ay, bx, by = section.numbers("line", length=4)
         line = LineCharge(ax, ay, bx, by, times)
         if line.length == 0:
             section.error("the line has no length: its ends are the same point", "line")
-        elif floor is not None:
-            _check_place(section, "line", _along(line), floor)
+        elif ground is not None:
+            _check_place(section, "line", _along(line), ground)
         return line
     if section.has("point"):
         point = PointCharge(*section.point("point"), times)
-        if floor is not None:
-            _check_place(section, "point", [(point.x, point.y)], floor)
+        if ground is not None:
+            _check_place(section, "point", [(point.x, point.y)], ground)
         return point
     section.error("a charge is one of: line, point, composite")
     return None
 
 
 def _composite(
-    section: Section, parts: tuple[Section, ...], times: float, handover: Handover, floor: Floor | None
+    section: Section, parts: tuple[Section, ...], times: float, handover: Handover, ground: _Ground | None
 ) -> CompositeCharge:
     found = []
     for part in parts:
-        found.append(_member(part, times, floor))
+        found.append(_member(part, times, ground))
         part.finish()
     lines = tuple(each for each in found if isinstance(each, LineCharge))
     points = tuple(each for each in found if isinstance(each, PointCharge))
@@ -189,9 +198,9 @@ def _check_closed(section: Section, lines: tuple[LineCharge, ...], points: tuple
             )
 
 
-def _check_place(section: Section, key: str, places: list[tuple[float, float]], floor: Floor) -> None:
+def _check_place(section: Section, key: str, places: list[tuple[float, float]], ground: _Ground) -> None:
     for x, y in places:
-        depth = wall_depth(floor, x, y)
+        depth = wall_depth(ground.floor, ground.faces, x, y)
         if depth > DEEPEST:
             section.error(
                 f"the charge lies inside a wall: {_text(x, y)} is {depth:.2f} m behind its face. "

@@ -115,14 +115,16 @@ class Ways:
         """Raises Unreachable if no way leads from ``start``, and says where it fails."""
         floor = self.floor
         for place, name in ((self.target, "The target"), (start, "The start")):
-            if not floor.inside[floor.cell_at(*place)]:
-                raise Unreachable(f"{name} ({place[0]:g}, {place[1]:g}) is inside a wall or off the floor.")
+            if floor.clearance[floor.cell_at(*place)] < self.size.shortest - 0.5 * floor.cell:
+                raise Unreachable(
+                    f"{name} ({place[0]:g}, {place[1]:g}) is too near to a wall for {self.size.who}."
+                )
         if math.isfinite(self.cost[floor.cell_at(*start)]):
             return
         widest = floor.widest_way(start, self.target)
         way = f"from ({start[0]:g}, {start[1]:g}) to the target ({self.target[0]:g}, {self.target[1]:g})"
         if widest == 0.0:
-            raise Unreachable(f"No way leads {way}: walls close it off.")
+            raise Unreachable(f"No way leads {way}: walls close it off, or it lies inside one.")
         raise Unreachable(
             f"No way {way} is wide enough for {self.size.who}, {2 * self.size.radius:.2f} m wide: "
             f"where it is narrowest, the widest leaves {2 * widest:.2f} m."

@@ -22,15 +22,15 @@ ALIGNED: Final = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Comfort:
-    """What a passenger bears. Acceleration and jerk are well below the 0.9 m/s^2 and 0.6 m/s^3 of public transport
-    in the first, near the second where a way begins and ends."""
+    """What a passenger bears, in a chair a quarter as large as a real one."""
 
     speed: float = 0.3
     """m/s: of the faster robot; the dissertation's."""
     acceleration: float = 0.2
     """m/s^2: of the faster robot."""
     easing: float = 0.8
-    """s: an acceleration comes and goes over so long, so that jerk is at most twice acceleration over easing."""
+    """s: an acceleration comes and goes over so long: jerk stays below 2 * acceleration / easing where the way is
+    straight, and below twice that where two robots take a bend."""
     turn_rate: float = 0.8
     """rad/s"""
     turn_acceleration: float = 1.0

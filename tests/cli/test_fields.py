@@ -1,0 +1,78 @@
+"""``kit fields`` as a user calls it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from kit.cli import main
+
+
+def kit(*words: str) -> Result:
+    return CliRunner().invoke(main, ["fields", *words])
+
+
+def test_a_field_in_characters_and_in_words() -> None:
+    found = kit("show", "pair_turn_180", "--plain")
+    assert found.exit_code == 0
+    assert {"}", "A", "V", "{", "!"} <= set(found.output)
+    assert "trap (!) at (0.94, 0.64): 46% of the floor leads there" in found.output
+    assert "do not lead to the target" in found.output
+    assert "the planner's ride takes" in found.output
+
+
+def test_where_a_drawn_layout_and_the_walls_differ_is_said() -> None:
+    drawn = kit("show", "pair_turn", "--plain").output
+    assert "unlike the walls: the line (1.82, 2.01)-(-0.42, 2.01) is 0.010 m off" in drawn
+    derived = kit("show", "pair_turn", "--plain", "--derived").output
+    assert "unlike" not in derived
+    assert "derived from the walls" in derived
+
+
+def test_runs_are_counted_and_failures_explained() -> None:
+    found = kit("test", "pair_turn_180", "--case", "pair_turn_left_180", "--runs", "1", "--seed", "3")
+    assert found.exit_code == 1  # not all reached the target
+    header, fields, reason, abreast = found.output.splitlines()
+    assert header.split() == ["case", "controller", "runs", "acc", "adj", "rays", "graded", "path", "m", "time", "s", "wall", "m", "jerk"]
+    assert fields.split()[:4] == ["pair_turn_left_180", "fields", "1", "0.00"]
+    assert "1 of 1 stuck: no progress" in reason
+    assert abreast.split()[:4] == ["pair_turn_left_180", "abreast", "1", "1.00"]
+
+
+def test_for_machines() -> None:
+    found = kit("test", "pair_straight", "--runs", "1", "--controller", "abreast", "--json")
+    assert found.exit_code == 0
+    (summary,) = json.loads(found.output)
+    assert summary["accuracy"] == 1.0
+    assert summary["controller"] == "abreast"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("show", "pair_tern", "--plain"), 'did you mean "pair_turn'),
+        (("show", "pair_turn", "--case", "up", "--plain"), "has no case up"),
+        (("show", "depot", "--plain"), "no DiffDrive"),
+        (("test", "pair_turn", "--controller", "abreats"), "Did you mean abreast"),
+    ],
+)
+def test_mistakes_end_with_one_message(words: tuple[str, ...], said: str) -> None:
+    found = kit(*words)
+    assert found.exit_code == 2
+    assert said in found.output
+    assert "Traceback" not in found.output
+
+
+def test_a_world_of_ones_own_has_no_target(tmp_path: Path) -> None:
+    (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\n")
+    found = kit("show", str(tmp_path / "world.yaml"), "--plain")
+    assert found.exit_code == 2
+    assert "has no target" in found.output
+
+
+def test_drive_is_play() -> None:
+    found = CliRunner().invoke(main, ["drive", "--help"])
+    assert "--controller" in found.output
