@@ -33,7 +33,10 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "ros": ("kit.cli.ros", "Look into a running world from a second terminal, as `ros2` does."),
     "train": ("kit.cli.train", "Train an agent on a task, in a process that outlives this terminal."),
     "runs": ("kit.cli.runs", "List the training runs; pause, go on, stop."),
-    "watch": ("kit.cli.watch", "Watch a training, line by line."),
+    "watch": (
+        "kit.cli.watch",
+        "Watch a training: its curve, its episodes, the robot with its newest policy.",
+    ),
     "evaluate": (
         "kit.cli.evaluate",
         "Test a trained policy case by case; draw its paths; make it a ROS 2 node.",

@@ -20,6 +20,9 @@ on = click.option(
     metavar="CASES",
     help="Only these cases or groups of the task, with commas between: doors,straight.",
 )
+plain = click.option(
+    "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
+)
 episodes = click.option(
     "--episodes",
     type=click.IntRange(1, 1_000_000),

@@ -62,9 +62,17 @@ def command(
 
     app = KitApp(terminal)
     doors = sockets_folder(desk.folder)
-    app.begin(
-        PlayScreen(app.look, place, controller, case=case, folder=desk.controllers, seed=seed, doors=doors)
+    screen = PlayScreen(
+        app.look,
+        place,
+        controller,
+        case=case,
+        folder=desk.controllers,
+        runs=desk.runs,
+        seed=seed,
+        doors=doors,
     )
+    app.begin(screen)
     app.run()
     if app.return_code:
         raise SystemExit(app.return_code)

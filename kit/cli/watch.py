@@ -1,7 +1,8 @@
-"""``kit watch``: how a training goes, line by line."""
+"""``kit watch``: how a training goes, on the screen or line by line."""
 
 from __future__ import annotations
 
+import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from kit.cli import learning_options, options
 if TYPE_CHECKING:
     from kit.learning.events import EventReader
     from kit.learning.runs import Run
+    from kit.tui.terminal import TerminalDecision
 
 LINE_S = 2.0
 """A line of progress so often at most; tests and everything else are always told."""
@@ -22,14 +24,41 @@ LINE_S = 2.0
 @click.argument("run", required=False)
 @click.option("--once", is_flag=True, help="Tell what has happened so far, and end.")
 @options.workspace
-def command(run: str | None, once: bool, workspace: Path | None) -> None:
-    """Watch RUN, by default the last one, until it ends; Ctrl-C ends the watching, not the training."""
+@learning_options.plain
+@options.glyphs
+@options.color
+def command(
+    run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
+) -> None:
+    """Watch RUN, by default the last one: its curve, how its episodes end, the robot with its newest policy.
+
+    Ctrl-C ends the watching, not the training.
+    """
     from kit.learning.runs import find_run
 
     with learning_options.mistakes():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()
-        follow(found, once=once)
+        terminal = options.terminal(plain=plain or once, glyphs=glyphs, color=color)
+        if terminal.plain.value:
+            follow(found, once=once)
+        else:
+            look(found, terminal)
+
+
+def look(run: Run, terminal: TerminalDecision) -> None:
+    """Opens the training screen; exit code 1 if the training has failed by the time it is left."""
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+    from kit.tui.screens.training import TrainingScreen
+
+    app = KitApp(terminal)
+    screen = TrainingScreen(app.look, run)
+    app.begin(screen)
+    app.run()
+    click.echo(screen.farewell)
+    if app.return_code or screen.state == "failed":
+        raise SystemExit(app.return_code or 1)
 
 
 def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -> None:

@@ -34,7 +34,7 @@ MARGIN: Final = 5
 """Columns for the scales of the curve and of the outcomes."""
 THREE_CURVES_FROM: Final = 45
 """Columns from which on the names of three curves fit."""
-NAME: Final = 14
+NAME: Final = 15
 """Columns for the name of a case where several stand in a row."""
 
 _STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
@@ -64,19 +64,24 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
-def figures(standing: Standing) -> Row:
-    """Steps, speed, time left, reward."""
+def figures(standing: Standing, width: int) -> Row:
+    """Steps, speed, time left, and as much more as there is room for."""
     summary = standing.summary
-    parts = [(f"{summary.steps:,}", "bold"), (f" of {standing.plan.steps:,} steps", "dim")]
+    parts = [row((f"{summary.steps:,}", "bold"), (f" of {standing.plan.steps:,} steps", "dim"))]
     if summary.state == "running" and standing.rate:
-        parts += [(f"   {standing.rate:,.0f}", "bold"), (" steps/s", "dim")]
+        parts.append(row((f"{standing.rate:,.0f}", "bold"), (" steps/s", "dim")))
     if standing.left_s is not None:
-        parts += [("   at most ", "dim"), (clock(standing.left_s), "bold"), (" left", "dim")]
-    if standing.reward is not None:
-        parts += [("   reward ", "dim"), (f"{standing.reward:.2f}", "bold")]
+        parts.append(row(("at most ", "dim"), (clock(standing.left_s), "bold"), (" left", "dim")))
     if standing.adjacency:
-        parts += [("   side by side ", "dim"), (f"{standing.adjacency:.0%}", "bold")]
-    return tuple(parts)
+        parts.append(row(("side by side ", "dim"), (f"{standing.adjacency:.0%}", "bold")))
+    if standing.reward is not None:
+        parts.append(row(("reward ", "dim"), (f"{standing.reward:.2f}", "bold")))
+    shown: Row = parts[0]
+    for part in parts[1:]:
+        longer = (*shown, *row("   "), *part)
+        if sum(len(text) for text, _ in longer) <= width:
+            shown = longer
+    return shown
 
 
 def note(name: str, standing: Standing, width: int) -> Row:
@@ -126,7 +131,7 @@ def curves(standing: Standing, kind: str, columns: int) -> tuple[Curve, ...]:
     trained = Curve("training", batches.steps, _two(share))
     worst = Curve("worst", looks.steps, _two(looks.worst))
     if columns < THREE_CURVES_FROM:
-        return trained, Curve("worst in test", worst.x, worst.y)
+        return trained, Curve("worst test", worst.x, worst.y)
     return trained, Curve("test", looks.steps, _two(looks.mean)), worst
 
 
@@ -145,6 +150,7 @@ def shares(standing: Standing) -> Shares:
 
 def pages(standing: Standing, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
     """Cases, and terms of the reward, on as few pages as they fit on; at least one."""
+    width = max(width, NAME + 4)
     blocks = [_cases(standing, width, height), _terms(standing, width)]
     made: list[tuple[Row, ...]] = []
     for title, rows in blocks:
@@ -210,7 +216,8 @@ def short_names(names: Sequence[str]) -> list[str]:
 
 def _terms(standing: Standing, width: int) -> tuple[Row, list[Row]]:
     """The reward of an episode by named term."""
-    title = row(("reward of an episode, by term"[:width], "dim"))
+    total = "" if standing.reward is None else f" {standing.reward:.2f}"
+    title = row((f"reward of an episode{total}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from asyncio import to_thread
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -13,12 +14,14 @@ from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.look import Look
+from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.picker import Choice, Picker
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
+    from kit.learning.runs import Run
     from kit.places import Place
     from kit.session import Session
 
@@ -35,6 +38,7 @@ class PlayScreen(WatchScreen):
         Binding("m", "maps", "map"),
         Binding("c", "controllers", "controller"),
         Binding("n", "nodes", "nodes"),
+        Binding("t", "trainings", "trainings"),
         Binding("g", "hand_back", show=False),
         Binding("x", "next_drive_mode", show=False),
     ]
@@ -47,11 +51,13 @@ class PlayScreen(WatchScreen):
         *,
         case: str | None = None,
         folder: Path,
+        runs: Path,
         seed: int = 0,
         doors: Path | None = None,
     ) -> None:
         super().__init__(look, case or place, seed=seed, doors=doors)
         self._look = look
+        self._runs = runs
         self._folder = folder
         self._find = partial(_find_place, place, case)
         self._controller = find(controller, folder)
@@ -110,6 +116,36 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             self._controller, self._before_takeover = files[chosen], None
             self.behind.drive_with(self._controller)
+
+    @work
+    async def action_trainings(self) -> None:
+        runs = await to_thread(_trainings, self._runs)
+        if not runs:
+            self.app.push_screen(Page("Trainings", wrapped("None yet. `kit train turn` starts one.")))
+            return
+        choices = [Choice(name, name, text) for name, (_, text) in runs.items()]
+        chosen = await self.app.push_screen_wait(Picker("Trainings, the last one first", choices))
+        if chosen is not None:
+            from kit.tui.screens.training import TrainingScreen  # of no use to the first frame
+
+            running = self.view is not None and not self.view.paused
+            self.behind.set_paused(True)  # two worlds at once would take their time from the training
+            await self.app.push_screen_wait(TrainingScreen(self._look, runs[chosen][0]))
+            self.behind.set_paused(not running)
+
+
+def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:
+    """Every run by its name, with what it learns. Called in another thread: the learning side takes a moment to
+    import, and the files may be far away."""
+    from kit.learning.runs import RunError, all_runs
+
+    found = {}
+    for run in all_runs(folder):
+        try:
+            found[run.name] = run, run.config().choice.title
+        except RunError:
+            found[run.name] = run, "damaged"
+    return found
 
 
 def _find_place(name: str, case: str | None) -> Place:

@@ -22,6 +22,7 @@ _CHOICE: Final[KeyTable] = (
     ("m", "another map"),
     ("c", "another controller; a saved file is read again"),
     ("n", "nodes and topics: who says what to whom"),
+    ("t", "trainings: their curves, the robot with the newest policy"),
 )
 _PICTURE: Final[KeyTable] = (
     ("+  -  0", "nearer, farther, everything"),

@@ -1,0 +1,279 @@
+"""Watch a training: its curve, how its episodes end, the robot with its newest policy; pause it, stop it, go on.
+
+Reads the run's files alone: it works for a run of another terminal, and leaving it leaves the training as it is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual import work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.message import Message
+
+from kit.picture.scene import Scene
+from kit.tui import training_rows as say
+from kit.tui.curve import CurveView
+from kit.tui.following import Following
+from kit.tui.look import Look
+from kit.tui.painting import StillScreen
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
+from kit.tui.shares import SharesView
+from kit.tui.text_rows import TextRows, row
+from kit.tui.world_view import WorldView
+
+if TYPE_CHECKING:
+    from kit.learning.demonstration import Moment
+    from kit.learning.runs import Run
+    from kit.learning.standing import Standing
+
+ALL: Final = ""
+"""The choice of all cases, one after the other."""
+KINDS: Final = ("success", "reward")
+PANEL_ROWS: Final = 9
+SIDE_WIDTH: Final = 48
+
+
+class NewStanding(Message):
+    """The run's files tell more."""
+
+
+class NewMoment(Message):
+    """The robot has moved."""
+
+
+class Trouble(Message):
+    """Something could not be done; ``text`` says what and why."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.text = text
+
+
+class TrainingScreen(StillScreen[None]):
+    """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("p", "pause", show=False),
+        Binding("s", "stop", show=False),
+        Binding("tab", "turn_page", show=False),
+        Binding("y", "next_kind", show=False),
+        Binding("c", "case", show=False),
+        Binding("n", "next_episode", show=False),
+        Binding("plus,equals_sign", "zoom(1)", show=False),
+        Binding("minus", "zoom(-1)", show=False),
+        Binding("0", "fit", show=False),
+        Binding("v", "follow", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "back", show=False),
+        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
+    ]
+    DEFAULT_CSS = f"""
+    TrainingScreen {{ layout: vertical; }}
+    TrainingScreen #heading, TrainingScreen #figures, TrainingScreen #caption {{ height: 1; }}
+    TrainingScreen #note, TrainingScreen #keys {{ height: 1; }}
+    TrainingScreen #middle {{ height: 1fr; }}
+    TrainingScreen #left {{ width: 41fr; }}
+    TrainingScreen #right {{ width: 39fr; padding: 0 0 0 1; }}
+    TrainingScreen CurveView {{ height: 11fr; }}
+    TrainingScreen SharesView {{ height: 9fr; }}
+    TrainingScreen #panel {{ height: {PANEL_ROWS}; }}
+    TrainingScreen #side {{ width: {SIDE_WIDTH}; padding: 0 0 0 2; display: none; }}
+    TrainingScreen.-narrow #middle {{ layout: vertical; }}
+    TrainingScreen.-narrow #left, TrainingScreen.-narrow #right {{ width: 1fr; height: 1fr; padding: 0; }}
+    TrainingScreen.-narrow SharesView, TrainingScreen.-narrow #panel {{ display: none; }}
+    TrainingScreen.-low SharesView, TrainingScreen.-low #panel {{ display: none; }}
+    TrainingScreen.-wide #panel {{ display: none; }}
+    TrainingScreen.-wide #side {{ display: block; }}
+    """
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (74, "-usual"), (140, "-wide")]  # noqa: RUF012 - Textual's own
+    VERTICAL_BREAKPOINTS = [(0, "-low"), (20, "-high")]  # noqa: RUF012 - Textual's own
+
+    def __init__(self, look: Look, run: Run) -> None:
+        super().__init__()
+        self.run_name = run.name
+        self.standing: Standing | None = None
+        self.moment: Moment | None = None
+        ascii_only = look.terminal.glyphs.value == "ascii"
+        self._curve = CurveView(encoder=look.encoder, palette=look.palette)
+        self._shares = SharesView(
+            say.ASCII_OUTCOMES if ascii_only else say.OUTCOMES, look.palette, margin=say.MARGIN
+        )
+        self._world = WorldView(look.encoder, look.palette)
+        self._following = Following(
+            run,
+            on_standing=self._standing_arrived,
+            on_moment=self._moment_arrived,
+            on_trouble=self._trouble_arrived,
+        )
+        self._announced: set[type[Message]] = set()
+        self._page = 0
+        self._kind = 0
+        self._case = ALL
+
+    @property
+    def state(self) -> str:
+        """As ``kit.learning.runs.State``; new until the files have been read."""
+        return "new" if self.standing is None else self.standing.summary.state
+
+    @property
+    def farewell(self) -> str:
+        """How the run stands and how to come back, for the terminal that the screen was left to."""
+        return farewell(self.run_name, self.state)
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="figures")
+        with Horizontal(id="middle"):
+            with Vertical(id="left"):
+                yield self._curve
+                yield self._shares
+            with Vertical(id="right"):
+                yield TextRows(id="caption")
+                yield self._world
+                yield TextRows(id="panel")
+            yield TextRows(id="side")
+        yield TextRows(id="note")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
+        self._rows("keys").show([keys(self.state)])
+        self._following.start()
+
+    def on_unmount(self) -> None:
+        self._following.close()
+
+    # What arrives from the threads behind: the newest wins, one announcement at a time is enough
+
+    def _standing_arrived(self, standing: Standing) -> None:
+        self.standing = standing
+        self._announce(NewStanding())
+
+    def _moment_arrived(self, moment: Moment) -> None:
+        self.moment = moment
+        self._announce(NewMoment())
+
+    def _trouble_arrived(self, text: str) -> None:
+        self.post_message(Trouble(text))
+
+    def _announce(self, message: Message) -> None:
+        if type(message) not in self._announced:
+            self._announced.add(type(message))
+            self.post_message(message)
+
+    def on_new_standing(self) -> None:
+        self._announced.discard(NewStanding)
+        self._show_standing()
+
+    def on_new_moment(self) -> None:
+        self._announced.discard(NewMoment)
+        self._show_moment()
+
+    def on_trouble(self, event: Trouble) -> None:
+        self.app.push_screen(Page("That did not work", wrapped(event.text)))
+
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._show)  # when everything has its new size
+
+    def on_screen_resume(self) -> None:
+        self._show()
+
+    # What is shown
+
+    def _show(self) -> None:
+        self._show_standing()
+        self._show_moment()
+
+    def _show_standing(self) -> None:
+        standing, width = self.standing, self.size.width
+        if standing is None or not self.is_active:
+            return
+        kind = KINDS[self._kind]
+        self._rows("heading").show([say.heading(self.run_name, standing, width)])
+        self._rows("figures").show([say.figures(standing, width)])
+        self._rows("note").show([say.note(self.run_name, standing, width)])
+        self._rows("keys").show([keys(self.state)])
+        self._curve.show(say.curves(standing, kind, self._curve.size.width), say.axes(standing, kind))
+        self._shares.show(say.shares(standing))
+        pages = say.pages(standing, self._rows("panel").size.width, PANEL_ROWS)
+        self._rows("panel").show(pages[self._page % len(pages)])
+        side = self._rows("side").content_size
+        self._rows("side").show(say.pages(standing, side.width, max(PANEL_ROWS, side.height))[0])
+
+    def _show_moment(self) -> None:
+        if not self.is_active:
+            return
+        caption = self._rows("caption")
+        if self.moment is None:
+            caption.show([row(("drives from the first test on", "dim"))])
+        else:
+            caption.show([say.caption(self.moment, caption.size.width)])
+            self._world.offer(self._newest_scene)
+
+    def _newest_scene(self) -> Scene:
+        assert self.moment is not None  # nothing is offered before the first moment
+        return self.moment.scene
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_pause(self) -> None:
+        if self.state == "running":
+            self._following.ask("pause")
+        elif self.state == "paused":
+            self._following.ask("go")
+        elif self.state in ("stopped", "interrupted"):
+            self._rows("note").show([row(("starting again ...", "dim"))])
+            self._following.go_on()
+
+    def action_stop(self) -> None:
+        if self.state in ("running", "paused"):
+            self._following.ask("stop")
+
+    def action_turn_page(self) -> None:
+        self._page += 1
+        self._show_standing()
+
+    def action_next_kind(self) -> None:
+        self._kind = (self._kind + 1) % len(KINDS)
+        self._show_standing()
+
+    @work
+    async def action_case(self) -> None:
+        if self.standing is not None:
+            names = self.standing.plan.cases
+            choices = [Choice(ALL, "all", "one after the other"), *(Choice(name, name) for name in names)]
+            chosen = await self.app.push_screen_wait(Picker("Which case to drive", choices, self._case))
+            if chosen is not None:
+                self._case = chosen
+                self._following.show_case(chosen or None)
+
+    def action_next_episode(self) -> None:
+        self._following.skip()
+
+    def action_zoom(self, steps: int) -> None:
+        self._world.zoom(steps)
+
+    def action_fit(self) -> None:
+        self._world.fit()
+
+    def action_follow(self) -> None:
+        self._world.follow(None if self._world.followed is not None else 0)
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("Training", TRAINING_HELP))
+
+    def action_back(self) -> None:
+        """To the screen that this one was opened from, if there is one."""
+        if len(self.app.screen_stack) > 2:  # Textual's own lies at the bottom
+            self.dismiss()
+        else:
+            self.app.exit()
