@@ -124,7 +124,7 @@ def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
     )
     runner = JudgedRunner(simulation, graph, trial.services)
     recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
-    trip, fingerprint = Trip(place.robot, place.case), Fingerprint()
+    trip, fingerprint = Trip(place.driven, place.case), Fingerprint()
     runner.observers += [recorder, trip, fingerprint]
     home = shifted(trial, order.seed)
     if place.robot is not None:

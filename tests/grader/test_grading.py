@@ -1,0 +1,383 @@
+"""From a program to a verdict: shares, dependencies, secrets, the grader's own faults, the command line, the plugin."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+from grader.__main__ import VERBS, main
+from grader.assignment import Assignment
+from grader.checks import contract, drives
+from grader.ci import WORKFLOWS, workflow
+from grader.reading import read
+from grader.result import Result, Status, Verdict
+from grader.self_test import odds, prove
+from grader.session import LevelTooLow, Terms, grade, opened
+from grader.submission import Submission
+from kit.host.confine import Level
+from kit.recording import load
+from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
+
+DESK = Terms(Level.LIMITED)
+
+
+def handed_in(source: str) -> Submission:
+    return Submission("ada", "controller.py", {"controller.py": source.encode()})
+
+
+def statuses(result: Result) -> dict[str, str]:
+    return {test.id: test.status.value for test in result.tests}
+
+
+def test_an_honest_program(quick: Assignment) -> None:
+    result = grade(quick, handed_in(FORWARD), DESK)
+    assert statuses(result) == {"runs": "pass", "moves": "pass", "reached": "fail"}
+    assert (result.points, result.max_points, result.verdict) == (3.0, 6.0, Verdict.FAIL)
+    failed = result.tests[2]
+    assert failed.hints == ("one", "two", "three")
+    assert (failed.expected, failed.actual) == ("reached", "not reached")
+    assert "#" in failed.replay
+    assert failed.episodes[0].name == "turn, seed 1"
+    assert result.steps == 400
+
+
+def test_partial_credit(quick: Assignment) -> None:
+    result = grade(quick, handed_in(FORWARD.replace("SPEED = 0.3", "SPEED = 0.06")), DESK)
+    assert statuses(result)["moves"] == "partial"
+    assert 0.5 < result.tests[1].points < 1.5
+
+
+def test_what_depends_on_a_failure_is_not_judged(quick: Assignment) -> None:
+    result = grade(quick, handed_in("import rclpy\nx = 1 / 0\n"), DESK)
+    assert statuses(result) == {"runs": "student_error", "moves": "skipped", "reached": "skipped"}
+    assert result.points == 0.0
+    assert "controller.py:2" in result.tests[0].rationale
+    assert result.tests[1].depends_on == "runs"
+    assert result.verdict is Verdict.FAIL
+
+
+def test_the_same_program_gets_the_same_result(quick: Assignment) -> None:
+    one, two = (grade(quick, handed_in(FORWARD), DESK) for _ in range(2))
+    assert dataclasses.replace(one, timing=two.timing) == two
+
+
+def test_a_share_of_episodes_may_be_enough(tmp_path: Path) -> None:
+    """The program drives with even seeds only."""
+    source = FORWARD.replace(
+        "SPEED = 0.3", "import random\nSPEED = 0.3 if random.Random().random() < 2 else 0.0"
+    )
+    source = source.replace("random.Random().random() < 2", "MODEL_OK").replace(
+        "class Forward", "import os, random\nMODEL_OK = random.random() < 0.5\n\nclass Forward"
+    )
+    text = QUICK.replace("seeds: [1]", "seeds: [1, 2, 3, 4]").replace("time: 4", "time: 2")
+    shares = {}
+    for need in ("0.25", "1.0", None):
+        extra = "" if need is None else f", need: {need}"
+        folder = write_assignment(
+            tmp_path / f"n{need}", text.replace("{none: 0, full: 0.5}", "{none: 0, full: 0.4}" + extra)
+        )
+        result = grade(read(folder), handed_in(source), DESK)
+        shares[need] = result.tests[1].metrics["share"]
+    driven = shares["1.0"]
+    assert 0.0 < driven < 1.0, "some seeds drive, some do not"
+    assert shares["0.25"] == 1.0
+    assert shares[None] == pytest.approx(driven, abs=0.01)
+
+
+SECRET = QUICK.replace("level: 0", "level: 1")
+
+
+def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
+    text = SECRET.replace("check: reached, points: 3", "check: reached, seeds: secret, points: 3")
+    assignment = read(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [123456789]}"))
+    practice = grade(assignment, handed_in(FORWARD), Terms(Level.LIMITED))
+    assert statuses(practice)["reached"] == "skipped"
+    assert any("1 more tests" in notice for notice in practice.notices)
+    with pytest.raises(LevelTooLow, match="level 1"):
+        grade(assignment, handed_in(FORWARD), Terms(Level.LIMITED, secret=True))
+    trusting = dataclasses.replace(assignment, level=Level.LIMITED)
+    final = grade(trusting, handed_in(FORWARD), Terms(Level.LIMITED, secret=True))
+    assert statuses(final)["reached"] == "fail"
+    assert final.seeds == "public+secret"
+    assert "123456789" not in json.dumps(final.as_dict())
+    assert final.tests[2].episodes[0].name == "turn, secret seed 1"
+    assert final.tests[2].replay == ""
+
+
+def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None:
+    text = SECRET.replace("level: 1", "level: 0").replace("check: runs,", "check: runs, seeds: secret,")
+    assignment = read(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [5]}"))
+    source = FORWARD.replace(
+        "        self.drive.publish", "        raise ValueError('what I saw')\n        self.drive.publish"
+    )
+    result = grade(assignment, handed_in(source), Terms(Level.LIMITED, secret=True))
+    assert result.tests[0].status is Status.STUDENT_ERROR
+    assert "what I saw" not in result.tests[0].rationale + result.tests[0].log
+
+
+def test_a_check_that_breaks_costs_nobody_anything(
+    quick: Assignment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(drive: object, params: object) -> float:
+        raise KeyError("ours")
+
+    table = dict(drives.CHECKS)
+    table["moves"] = dataclasses.replace(table["moves"], measure=broken)
+    monkeypatch.setattr(drives, "CHECKS", table)
+    result = grade(quick, handed_in(FORWARD), DESK)
+    assert statuses(result)["moves"] == "grader_error"
+    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+    assert "KeyError" in result.tests[1].log
+
+
+def test_a_docstring_is_the_feedback() -> None:
+    @contract.check(none=0, full=10, unit="m")
+    def far(drive: object, params: object) -> float:
+        """Only {actual}
+        of {full}."""
+        return 3.0
+
+    assert far.feedback == "Only {actual} of {full}."
+    assert (far.said(2.5), far.said(3.0)) == ("2.5 m", "3 m")
+
+
+@pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
+def test_the_templates_prove_themselves(kind: str) -> None:
+    assignment = dataclasses.replace(read(TEMPLATES / kind), level=Level.LIMITED)
+    proofs = list(prove(assignment, DESK))
+    assert {proof.name: proof.problems for proof in proofs if proof.problems} == {}
+    assert len(proofs) >= 4
+
+
+def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    (folder / "starter.py").write_text("1/0\n")
+    (folder / "solution.py").write_text(FORWARD)
+    wrong = folder / "wrong"
+    wrong.mkdir()
+    (wrong / "moves.py").write_text(FORWARD)
+    (wrong / "nothing.py").write_text(FORWARD)
+    (wrong / "reached__ok.py").write_text(FORWARD)
+    problems = {proof.name: "\n".join(proof.problems) for proof in prove(read(folder), DESK)}
+    assert "student_error" in problems["starter.py"]
+    assert "reached: fail" in problems["solution.py"]
+    assert "should lose moves, and does not" in problems["wrong/moves.py"]
+    assert "loses reached, which it should not" in problems["wrong/moves.py"]
+    assert "must start with criteria" in problems["wrong/nothing.py"]
+    assert problems["wrong/reached__ok.py"] == ""
+
+
+def test_chance_is_found_out(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    for name in ("starter.py", "solution.py"):
+        (folder / name).write_text(
+            FORWARD.replace(
+                "SPEED = 0.3", "import os\nSPEED = 0.1 + int.from_bytes(os.urandom(2), 'big') / 2**18"
+            )
+        )
+    problems = {proof.name: "\n".join(proof.problems) for proof in prove(read(folder), DESK)}
+    assert "does not do the same twice" in problems["solution.py"]
+
+
+def test_the_odds_are_told(tmp_path: Path) -> None:
+    text = QUICK.replace("seeds: [1]", f"seeds: {list(range(10))}").replace(
+        "check: reached,", "check: reached, need: 0.9,"
+    )
+    told = {each.criterion: each for each in odds(read(write_assignment(tmp_path / "q", text)), secret=False)}
+    assert (told["reached"].passes, told["reached"].episodes) == (9, 10)
+    assert told["reached"].unfair[1] == pytest.approx(0.086, abs=1e-3)
+
+
+def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
+    with opened(quick, handed_in(FORWARD), DESK) as grading:
+        (drive,) = grading.evidence("moves")
+        assert drive.steps == 400
+        assert grading.result().verdict is Verdict.FAIL
+        assert grading.worst() is drive
+
+
+# The command line
+
+
+def invoke(*arguments: str) -> tuple[int, str]:
+    done = CliRunner().invoke(main, list(arguments))
+    assert not done.exception or isinstance(done.exception, SystemExit), done.exc_info
+    return done.exit_code, done.output
+
+
+def test_check_in_every_way(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    file = tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    replay = tmp_path / "worst.npz"
+    code, text = invoke(
+        "check", str(file), "--assignment", str(folder), "--hints", "2", "--replay", str(replay)
+    )
+    assert code == 1
+    assert "3 of 6 points. Not yet." in text
+    assert "hint 2 of 3: two" in text
+    assert "--hints 3" in text
+    assert "kit replay" in text
+    assert load(replay).ticks == 400
+    out = tmp_path / "result.json"
+    assert invoke("check", str(file), "--assignment", str(folder), "--json", "--output", str(out)) == (1, "")
+    assert Result.from_dict(json.loads(out.read_text())).points == 3.0
+    code, junit = invoke("report", str(out), "--format", "junit")
+    assert code == 0
+    assert ElementTree.fromstring(junit).attrib["failures"] == "1"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--assignment", "Q", "--format", "pdf"), "There is no format pdf"),
+        (("--assignment", "Q", "--secret", "--level", "0"), "level 1"),
+        (("--assignment", "BAD"), "assignment.yaml:2:1"),
+    ],
+)
+def test_a_users_mistake_is_one_clear_message(tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
+    folders = {
+        "Q": str(write_assignment(tmp_path / "q", SECRET)),
+        "BAD": str(write_assignment(tmp_path / "bad", "title: x\nfoo: 1\n")),
+    }
+    file = tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    code, text = invoke("check", str(file), *(folders.get(each, each) for each in arguments))
+    assert code == 2
+    assert said in text
+
+
+def test_a_submission_that_cannot_be_taken(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    (tmp_path / "ada.zip").write_bytes(b"no")
+    code, text = invoke("check", str(tmp_path / "ada.zip"), "--assignment", str(folder))
+    assert code == 2
+    assert "damaged" in text
+
+
+def test_every_verb_explains_itself() -> None:
+    code, text = invoke("--help")
+    assert code == 0
+    for verb, (_, about) in VERBS.items():
+        assert (verb in text) is bool(about) or verb == "work"
+        assert invoke(verb, "--help")[0] == 0
+    code, text = invoke("chek")
+    assert code == 2
+    assert "Did you mean `grader check`?" in text
+
+
+def test_a_new_assignment_is_a_working_one(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    assert invoke("new", str(folder), "--kind", "reward")[0] == 0
+    assert read(folder).id == "mine"
+    assert not list(folder.rglob("__pycache__"))
+    code, text = invoke("new", str(folder))
+    assert code == 2
+    assert "not empty" in text
+
+
+# Workflows
+
+
+@pytest.mark.parametrize("service", WORKFLOWS)
+def test_workflows_are_yaml_and_harmless(service: str) -> None:
+    content = yaml.safe_load(workflow(service, submit="controller.py", assignment="tasks/one"))
+    text = workflow(service, submit="controller.py", assignment="tasks/one")
+    assert "{submit}" not in text
+    assert "grader check" in text
+    if service == "gitlab":
+        assert content["grade"]["artifacts"]["reports"]["junit"] == "junit.xml"
+        return
+    assert content["permissions"] == {"contents": "read"}
+    assert content["jobs"]["grade"]["outputs"]["result"] == "${{ steps.classroom.outputs.result }}"
+    assert content["jobs"]["grade"]["steps"][0]["with"]["persist-credentials"] is False
+    assert "secrets." not in text
+    assert content["jobs"]["report"]["needs"] == "grade"
+
+
+def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_assignment(tmp_path / "tasks" / "one")
+    monkeypatch.chdir(tmp_path)
+    assert invoke("ci", "github", "--assignment", "tasks/one", "--write")[0] == 0
+    assert (tmp_path / ".github/workflows/grade.yml").is_file()
+    code, text = invoke("ci", "github", "--assignment", "tasks/one", "--write")
+    assert (code, "there already" in text) == (2, True)
+    code, text = invoke("ci", "gitlab", "--assignment", str(tmp_path / "tasks" / "one"))
+    assert (code, "relative" in text) == (2, True)
+
+
+# The plugin
+
+
+def run_pytest(folder: Path, submission: Path, *more: str) -> tuple[int, str, ElementTree.Element]:
+    report = folder.parent / "junit.xml"
+    done = subprocess.run(
+        [
+            *(sys.executable, "-P", "-m", "pytest", "-p", "grader.plugin", "-p", "no:cacheprovider", "-q"),
+            *("--rootdir", str(folder), "-c", "/dev/null", "--submission", str(submission)),
+            *("--grading-level", "0", "--junitxml", str(report), *more, str(folder)),
+        ],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr, ElementTree.parse(report).getroot()
+
+
+OWN = """
+def test_of_the_teachers_own(grading):
+    (drive,) = grading.evidence("moves")
+    assert drive.score.distance_m > 0.5
+"""
+
+
+def test_the_plugin_judges_and_collects_nothing_of_the_students(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    (folder / "test_own.py").write_text(OWN)
+    handed = tmp_path / "handed"
+    handed.mkdir()
+    (handed / "controller.py").write_text(FORWARD)
+    (handed / "conftest.py").write_text("raise SystemExit(0)")
+    (handed / "test_mine.py").write_text("def test_free_points(): pass")
+    code, text, report = run_pytest(folder, handed)
+    assert code == 1
+    assert "3 passed" in text, text
+    assert "1 failed" in text
+    assert "expected reached, got not reached" in text
+    cases = {case.attrib["name"]: case for case in report.iter("testcase")}
+    assert set(cases) == {"runs", "moves", "reached", "test_of_the_teachers_own"}
+    points = {each.attrib["name"]: each.attrib["value"] for each in cases["moves"].iter("property")}
+    assert points == {"points": "2", "max_points": "2", "status": "pass"}
+
+
+def test_the_plugin_tells_failed_from_skipped(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    file = tmp_path / "ada.py"
+    file.write_text("1/0\n")
+    code, text, _ = run_pytest(folder, file)
+    assert code == 1
+    assert "1 failed, 2 skipped" in text
+    assert "ZeroDivisionError" in text
+
+
+def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "q")
+    (folder / "conftest.py").write_text(
+        "import dataclasses\nfrom grader.checks import drives\n"
+        "def broken(drive, params): raise KeyError('ours')\n"
+        "drives.CHECKS = {k: dataclasses.replace(v, measure=broken) for k, v in drives.CHECKS.items()}\n"
+    )
+    file = tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    _, text, report = run_pytest(folder, file)
+    assert "3 errors" in text, text
+    assert report.find("testsuite").attrib["failures"] == "0"  # type: ignore[union-attr]  # pytest writes one
