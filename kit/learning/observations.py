@@ -8,12 +8,11 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from kit.fields.adjacency import SIDE_RAYS as SIDE_RAYS
+
 RAYS = 91
 """The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
 AHEAD = 45
-SIDE_RAYS = ((AHEAD - 21, AHEAD - 25), (AHEAD + 21, AHEAD + 25))
-"""With which rays, a little ahead of abeam and a little behind, the left and the right robot look at each other
-(dissertation, figure 4.8)."""
 FAR_TARGET = 4.0
 """A target's distance is given up to here [m]."""
 

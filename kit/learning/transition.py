@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from kit.fields.adjacency import by_rays, graded
 from kit.learning.observations import AHEAD, SIDE_RAYS
 
 Array: TypeAlias = Any
@@ -15,10 +16,6 @@ Array: TypeAlias = Any
 
 DIAGONAL = 2
 """So many rays (8 degrees) beside straight ahead."""
-BESIDE = 0.4
-"""Robots side by side are no farther apart [m]."""
-ALIKE = 0.05
-"""And what they read differs by no more [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +129,7 @@ class Transition:
         if self.robots == 1:
             return np.zeros(np.shape(self.step), dtype=np.bool_)
         left, right = self.ranges[..., 0, list(SIDE_RAYS[0])], self.ranges[..., 1, list(SIDE_RAYS[1])]
-        return ((left <= BESIDE) & (right <= BESIDE) & (np.abs(left - right) <= ALIKE)).all(axis=-1)
+        return by_rays(left, right)
 
     @cached_property
     def abreast(self) -> Array:
@@ -140,11 +137,7 @@ class Transition:
         other and both face the same way. 0 for one robot."""
         if self.robots == 1:
             return np.zeros(np.shape(self.step))
-        left, right = self.pose[..., 0, :], self.pose[..., 1, :]
-        dx, dy = right[..., 0] - left[..., 0], right[..., 1] - left[..., 1]
-        ahead = [np.abs(np.cos(each[..., 2]) * dx + np.sin(each[..., 2]) * dy) for each in (left, right)]
-        apart = wrapped(left[..., 2] - right[..., 2])
-        return np.exp(-(((ahead[0] + ahead[1]) / (2 * 0.08)) ** 2) - (apart / 0.4) ** 2)
+        return graded(self.pose[..., 0, :], self.pose[..., 1, :])
 
     def at(self, index: Any) -> Transition:
         """The transition of one world, or of some, out of many."""
