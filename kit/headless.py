@@ -6,7 +6,7 @@ import hashlib
 import struct
 import time
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -18,10 +18,12 @@ from kit.pacing import MAXIMUM, Pace
 from kit.places import Place
 from kit.recording import Recorder, save
 from kit.ros.graph import Graph
+from kit.ros.log import LogRecord
 from kit.runner import Guest
 from kit.session import Session
 from kit.sim.simulation import Simulation
 from kit.trip import Score
+from kit.workspace import check_writable
 
 CHECK_EVERY = 100
 """Ticks between two looks at what was asked for besides the ticks themselves."""
@@ -37,7 +39,7 @@ class Fingerprint:
         """What was said shows in what moved."""
 
     def called(self, service: str, *arguments: Any) -> None:
-        """Nor do services."""
+        """Likewise."""
 
     def ticked(self, simulation: Simulation) -> None:
         for pose in simulation.poses():
@@ -62,6 +64,8 @@ class Summary:
     fingerprint: str
     wall_s: float
     failure: Failure | None
+    interrupted: bool = False
+    """By Ctrl-C."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; the same for the same run but for ``wall_s``."""
@@ -79,6 +83,7 @@ class Summary:
             "fingerprint": self.fingerprint,
             "wall_s": round(self.wall_s, 3),
             "failure": None if self.failure is None else str(self.failure),
+            "interrupted": self.interrupted,
         }
 
     def text(self) -> str:
@@ -110,6 +115,8 @@ class Summary:
         ]
         if self.failure is not None:
             rows.append(("stopped", str(self.failure).replace("\n", "\n" + " " * 13)))
+        if self.interrupted:
+            rows.append(("stopped", "by Ctrl-C"))
         return "\n".join(f"{name:<12} {text}" for name, text in rows)
 
 
@@ -130,15 +137,19 @@ def run_headless(
     record: Path | None = None,
     company: Sequence[Callable[[Graph], Companion]] = (),
     on_progress: Callable[[int], None] | None = None,
+    on_message: Callable[[LogRecord], object] = lambda record: None,
 ) -> Summary:
     """Runs ``steps`` ticks, fewer if the controller fails, if the target is reached and that was asked for, or
     on Ctrl-C. ``factor``: simulated seconds per second; a run that is paced waits while it is paused.
 
-    ``on_progress`` is told the ticks done, a few times a second. Raises OSError if ``record`` cannot be written,
-    and what opening ``company`` raises.
+    ``on_progress`` is told the ticks done, a few times a second; ``on_message`` what nodes log and print. Raises
+    OSError if ``record`` cannot be written, before the run if that can be known, and what opening ``company``
+    raises.
     """
     fingerprint = Fingerprint()
-    with Session(place, seed=seed) as session, ExitStack() as stack:
+    if record is not None:
+        check_writable(record)
+    with Session(place, seed=seed, on_message=on_message) as session, ExitStack() as stack:
         runner = session.runner
         for invite in company:
             companion = invite(session.graph)
@@ -155,17 +166,22 @@ def run_headless(
         session.drive_with(controller)
         session.wait_until_driven()
         start = time.perf_counter()
-        done = 0
+        done, interrupted = 0, False
         is_paced, pace = factor != MAXIMUM, Pace(runner.simulation.step_size, factor)
-        with suppress(KeyboardInterrupt):
+        try:
             while done < steps and session.failure is None:
                 pace.wait()
                 runner.tick()
                 done += not (is_paced and runner.paused)
                 if until_reached and session.trip.score.reached_s is not None:
                     break
-                if on_progress is not None and done % CHECK_EVERY == 0:
-                    on_progress(done)
+                if done % CHECK_EVERY == 0:
+                    session.listen()
+                    if on_progress is not None:
+                        on_progress(done)
+        except KeyboardInterrupt:
+            interrupted = True
+        session.listen()
         wall = time.perf_counter() - start
         if recorder is not None and record is not None:
             save(recorder.recording(), record)
@@ -180,4 +196,5 @@ def run_headless(
             fingerprint.text,
             wall,
             session.failure,
+            interrupted,
         )

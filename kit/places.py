@@ -7,8 +7,9 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.sim.loading import load
-from kit.world.catalogue import Case, MapCard, find_map
-from kit.world.records import World
+from kit.workspace import at_home
+from kit.world.catalogue import WORLD, Case, MapCard, find_map, map_names
+from kit.world.records import Model, World
 
 BEACON = "beacon"
 """A model of this name stands where the case's target is."""
@@ -29,9 +30,8 @@ class Place:
     @property
     def drivers(self) -> tuple[str, ...]:
         """All models that can drive, the robot first."""
-        return tuple(
-            sorted(filter(None, {self.robot, *_drivers(self.world)}), key=lambda name: name != self.robot)
-        )
+        first = () if self.robot is None else (self.robot,)
+        return tuple(dict.fromkeys((*first, *_drivers(self.world))))
 
     @property
     def partners(self) -> tuple[str, ...]:
@@ -47,9 +47,14 @@ class Place:
         return tuple(poses[name] for name in self.partners)
 
     @property
+    def driven(self) -> Model | None:
+        """The robot as the world describes it."""
+        return next((model for model in self.world.models if model.name == self.robot), None)
+
+    @property
     def start(self) -> Pose | None:
         """Where the robot stands at first."""
-        return next((model.pose for model in self.world.models if model.name == self.robot), None)
+        return None if self.driven is None else self.driven.pose
 
 
 def place_on_map(card: MapCard, case: Case | None = None) -> Place:
@@ -79,12 +84,16 @@ def _drivers(world: World) -> tuple[str, ...]:
 
 
 def find_place(name: str, case: str | None = None, root: Path | None = None) -> Place:
-    """By the name of a shipped map, or a world file. Raises WorldError, UnknownMap, or LookupError for the case."""
-    path = Path(name).expanduser()
-    if path.is_dir() and (path / "world.yaml").is_file():
-        path = path / "world.yaml"
-    if path.is_file() or path.suffix in (".yaml", ".yml"):
-        return place_in_file(path.absolute(), root)
+    """By the name of a shipped map, or a world file or its folder; a map goes before a folder of that name.
+
+    Raises WorldError, UnknownMap, or LookupError for the case.
+    """
+    path = at_home(name)
+    if name not in map_names():
+        if path.is_dir():
+            path = path / WORLD
+        if path.is_file() or path.suffix in (".yaml", ".yml"):
+            return place_in_file(path.absolute(), root)
     card = find_map(name)
     if case is None:
         return place_on_map(card)

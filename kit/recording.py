@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import zipfile
+import zlib
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,8 +23,8 @@ from numpy.typing import NDArray
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
-from kit.sim.simulation import Simulation
-from kit.sim.telling import tell
+from kit.sim.simulation import Simulation, SimulationError
+from kit.sim.telling import SERVICES, tell
 from kit.workspace import write_atomically
 from kit.world.records import World
 
@@ -154,7 +156,7 @@ def load(file: Path) -> Recording:
                 raise RecordingError(
                     f"{file}: made by another version of the kit (format {header['format']})."
                 )
-            return Recording(
+            recording = Recording(
                 str(header["place"]),
                 None if header["case"] is None else str(header["case"]),
                 int(header["seed"]),
@@ -166,12 +168,37 @@ def load(file: Path) -> Recording:
                 arrays["poses"].astype(np.float64).reshape(-1, 3),
                 arrays["counts"].astype(np.int64),
             )
-    except (KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
+            _check(recording)
+            return recording
+    except (
+        LookupError,
+        ValueError,
+        TypeError,
+        AttributeError,
+        EOFError,
+        zipfile.BadZipFile,
+        zlib.error,
+    ) as error:
         raise RecordingError(f"{file}: not a recording of the kit, or a damaged one ({error}).") from None
 
 
+def _check(recording: Recording) -> None:
+    """ValueError where the parts do not fit together."""
+    counts = recording.counts
+    if not 0 < recording.step_size < math.inf:
+        raise ValueError(f"a step of {recording.step_size} s")
+    if counts.ndim != 1 or (counts < 0).any() or counts.sum() != len(recording.poses):
+        raise ValueError("as many poses as models and ticks are wanted")
+    strange = {told.kind for told in recording.inputs} - {ACCEPT, *SERVICES}
+    if strange:
+        raise ValueError(f"nobody can be told to {min(strange)}")
+
+
 def rerun(recording: Recording, world: World) -> Recording:
-    """Tells a new simulation of ``world`` the same things at the same ticks, and records that."""
+    """Tells a new simulation of ``world`` the same things at the same ticks, and records that.
+
+    Raises RecordingError where the world cannot be told that.
+    """
     simulation = Simulation(world, seed=recording.seed, step_size=recording.step_size)
     recorder = Recorder(recording.place, recording.case, simulation)
     playback = Playback(recording, simulation.accept, partial(tell, simulation))
@@ -201,13 +228,18 @@ class Playback:
         self._tick = 0
 
     def exchange(self) -> bool:
-        """Before a tick: what was said then."""
+        """Before a tick: what was said then. Raises RecordingError for what makes no sense in this world."""
         while self._waiting and self._waiting[-1].tick <= self._tick:
             told = self._waiting.pop()
-            if told.kind == ACCEPT:
-                self._accept(told.content[0], _message(*told.content[1:]))
-            else:
-                self._tell(told.kind, *told.content)
+            try:
+                if told.kind == ACCEPT:
+                    self._accept(told.content[0], _message(*told.content[1:]))
+                else:
+                    self._tell(told.kind, *told.content)
+            except (SimulationError, LookupError, ValueError, TypeError, AttributeError) as error:
+                raise RecordingError(
+                    f"What the world was told before tick {told.tick} makes no sense in it ({told.kind}: {error})."
+                ) from None
         return False
 
     def accepted(self, topic: str, message: Message) -> None:
@@ -224,5 +256,6 @@ class Playback:
 
 def _message(kind: str, content: Mapping[str, Any]) -> Message:
     interface = find_interface(kind)
-    assert issubclass(interface, Message)
+    if not issubclass(interface, Message):
+        raise TypeError(f"{kind} is no message")
     return from_dict(interface, content)

@@ -80,16 +80,26 @@ class Seat:
     def look(self) -> None:
         """Lets a controller that is ready take over, and starts a new version of a file that was saved."""
         coming = self._coming
-        if self._guest is not None:
-            self._hear(self._guest)
-            if self._guest.failure is not None and self._failure is None:
-                self._failure = self._guest.failure
-                self._on_empty()
+        self.listen()
+        if self._guest is not None and self._guest.failure is not None and self._failure is None:
+            self._failure = self._guest.failure
+            self._on_empty()
         if coming is not None:
             self._settle(coming.guest.is_started)
         elif self.controller is not None and self._file is not None and self._file.has_changed():
             self._failure = None
             self._start(self.controller)
+
+    def hang_up(self) -> None:
+        """From any thread: who drives, or is about to, is not waited for any more."""
+        guests = (self._guest, self._coming.guest if self._coming is not None else None)
+        for guest in filter(None, guests):
+            guest.hang_up()
+
+    def listen(self) -> None:
+        """Takes in what who drives has printed."""
+        if self._guest is not None:
+            self._hear(self._guest)
 
     def close(self) -> None:
         self._give_up_coming()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from collections import deque
+from collections.abc import Callable
 from types import TracebackType
 from typing import Final, Self
 
@@ -27,14 +28,16 @@ from kit.sim.simulation import Simulation
 from kit.trip import Trip
 
 KEPT_MESSAGES: Final = 200
-LOG_LINE: Final = re.compile(r"\[(DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d.]+\] \[([^]]*)\]: (.*)")
+LOG_LINE: Final = re.compile(
+    r"\[(?P<severity>DEBUG|INFO|WARN|ERROR|FATAL)\] \[(?P<s>\d+)\.(?P<ns>\d{9})\] \[(?P<name>[^]]*)\]: (?P<text>.*)"
+)
 
 
 class Session:
     """Everything of one drive. Close it when done, or use it as a context manager.
 
-    ``watched``: somebody looks, so lasers look too, whether a node listens or not. ``graph``: one that others
-    are in already; without it the session makes its own.
+    ``watched``: somebody looks, so the robot's lasers look too, whether a node listens or not. ``on_message`` is
+    told each message as it comes. ``graph``: one that others are in already; without it the session makes its own.
     """
 
     def __init__(
@@ -45,17 +48,21 @@ class Session:
         step_size: float = 0.01,
         limits: Limits = DESK,
         watched: bool = False,
+        on_message: Callable[[LogRecord], object] = lambda record: None,
         graph: Graph | None = None,
     ) -> None:
         self.place = place
+        self._on_message = on_message
         self.messages: deque[LogRecord] = deque(maxlen=KEPT_MESSAGES)
         self.graph = Graph() if graph is None else graph
-        self.graph.log.sink = self.messages.append
-        simulation = Simulation(
-            place.world, seed=seed, step_size=step_size, wanted=None if watched else self._has_listener
-        )
+        self.graph.log.sink = self._said
+        self._looked_at: frozenset[str] = frozenset()
+        simulation = Simulation(place.world, seed=seed, step_size=step_size, wanted=self._is_wanted)
+        if watched:
+            ends = (end for name in place.partners for end in simulation.endpoints_of(name))
+            self._looked_at = frozenset(end.topic for end in ends)
         self.runner = Runner(simulation, self.graph)
-        self.trip = Trip(place.robot, place.case)
+        self.trip = Trip(place.driven, place.case)
         self.runner.observers.append(self.trip)
         self.keys = KeystrokePublisher(self.graph)
         self.seat = Seat(
@@ -105,53 +112,67 @@ class Session:
         self.seat.look()
         self.keys.look_around()
 
+    def listen(self) -> None:
+        """Takes in what the controller has printed since the last time."""
+        self.seat.listen()
+
     def stop_robot(self) -> None:
-        """Takes the last command off the robot: nobody drives it who would."""
-        robot = next((model for model in self.place.world.models if model.name == self.place.robot), None)
-        if robot is None:
-            return
-        others = [other.topic("") for other in self.place.world.models if other.namespace != robot.namespace]
-        for end in self.runner.simulation.endpoints:
-            if end.direction == "subscribe" and end.type is Twist and end.topic.startswith(robot.topic("")):
-                if not robot.namespace and end.topic.startswith(tuple(others)):
-                    continue
-                self.runner.accept(end.topic, Twist())
+        """Takes the last command off the robot, and off its partner: nobody drives them who would."""
+        for topic in dict.fromkeys(
+            topic for name in self.place.partners for topic in self.command_topics(name)
+        ):
+            self.runner.accept(topic, Twist())
+
+    def command_topics(self, model: str) -> tuple[str, ...]:
+        """Where a model's devices take commands, as Twists."""
+        ends = self.runner.simulation.endpoints_of(model)
+        return tuple(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
 
     def _print(self, line: str) -> None:
         self.note(line, self.controller.name if self.controller else "")
 
     def note(self, line: str, program: str) -> None:
         """A line that a program printed, as one of the session's messages."""
-        found = LOG_LINE.fullmatch(line)
-        severity, name, text = found.groups() if found else ("INFO", program, line)
-        self.messages.append(
-            LogRecord(self.runner.simulation.time_ns, LoggingSeverity[severity], name, text, "", "", 0)
-        )
+        now, severity, name, text = self.runner.simulation.time_ns, LoggingSeverity.INFO, program, line
+        if found := LOG_LINE.fullmatch(line):
+            severity, name, text = LoggingSeverity[found["severity"]], found["name"], found["text"]
+            now = min(now, int(found["s"] + found["ns"]))  # heard later than said
+        self._said(LogRecord(now, severity, name, text, "", "", 0))
+
+    def _said(self, record: LogRecord) -> None:
+        self.messages.append(record)
+        self._on_message(record)
 
     def reset(self, seed: int | None = None) -> None:
         """The world back to its start; the controller starts anew too."""
         self.runner.tell("reset", seed)
         self.seat.restart()
 
+    def hang_up(self) -> None:
+        """From any thread: a tick that waits for the controller waits no longer. Only ``close`` may follow."""
+        self.seat.hang_up()
+
     def close(self) -> None:
         self.seat.close()
 
-    def _has_listener(self, topic: str) -> bool:
-        return self.graph.subscription_count(topic) > 0
+    def _is_wanted(self, topic: str) -> bool:
+        return topic in self._looked_at or self.graph.subscription_count(topic) > 0
 
     def _arguments(self) -> list[str]:
         """What every controller is told of the place: its robot's name and where home is; which world it is in,
-        who drives there, and where to."""
-        place, start = self.place, self.place.start
-        if start is None or place.robot is None:
+        who drives there, and where to. Its topics are in the robot's namespace, but for those with a slash."""
+        place, robot = self.place, self.place.driven
+        if robot is None:
             return []
+        start = robot.pose
         told = {
             "home": f"[{start.x!r}, {start.y!r}, {start.theta!r}]",
-            "model": place.robot,
+            "model": robot.name,
             "models": json.dumps(place.partners),
             "world": json.dumps(str(place.world.file.absolute())),
         }
         if place.case is not None:
             x, y = place.case.target
             told |= {"target": f"[{x!r}, {y!r}]", "target_radius": repr(float(place.case.target_radius))}
-        return ["--ros-args", *(word for name, value in told.items() for word in ("-p", f"{name}:={value}"))]
+        words = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
+        return ["--ros-args", *words, *(["-r", f"__ns:=/{robot.namespace}"] if robot.namespace else [])]

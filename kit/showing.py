@@ -30,6 +30,11 @@ def clock(seconds: float, digits: int = 1) -> str:
     return f"{minutes}:{rest / 10**digits:0{3 + digits}.{digits}f}"
 
 
+def said(record: LogRecord) -> str:
+    """One message, as a line: ``0:01.2 driver: Hello``."""
+    return f"{clock(record.time_ns / 1e9)} {record.name}: {record.text}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
     """One instant of a session."""

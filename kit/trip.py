@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from kit.geometry import Pose
 from kit.world.catalogue import Case
+from kit.world.records import Circle, Model, Polygon
 
 if TYPE_CHECKING:
     from kit.sim.simulation import Simulation
@@ -29,26 +30,15 @@ class Score:
     """When the hull first came within the target's radius."""
 
 
-LONGEST_STRIDE = 0.1
-"""A robot that is farther [m] from where it was one tick ago was moved by hand."""
-
-LARGEST_ROBOT = 1.0
-"""No part of a robot is farther [m] from its origin."""
-
-
 class Trip:
     """Watches the runner's ticks for one robot and one case."""
 
-    def __init__(self, robot: str | None, case: Case | None) -> None:
-        self._robot = robot
+    def __init__(self, robot: Model | None, case: Case | None) -> None:
+        self._robot = None if robot is None else robot.name
+        self._reach = 0.0 if robot is None else _reach(robot)
         self._case = case
         self._last_tick = -1
         self._simulation: Simulation | None = None
-        self._at: tuple[float, float] | None = None
-        self._reached: float | None = None
-        self._touching = False
-        self._distance = self._time_s = 0.0
-        self._bumps = 0
         self._start()
 
     @property
@@ -67,7 +57,8 @@ class Trip:
         """Commands do not count; only what comes of them."""
 
     def called(self, service: str, *arguments: Any) -> None:
-        """Nor do services."""
+        """A robot that is put somewhere has not driven there."""
+        self._at = None
 
     def ticked(self, simulation: Simulation) -> None:
         if simulation.tick <= self._last_tick:  # it was reset
@@ -79,9 +70,7 @@ class Trip:
             return
         pose = simulation.pose(self._robot)
         if self._at is not None:
-            stride = math.hypot(pose.x - self._at[0], pose.y - self._at[1])
-            if stride <= LONGEST_STRIDE:
-                self._distance += stride
+            self._distance += math.hypot(pose.x - self._at[0], pose.y - self._at[1])
         self._at = pose.x, pose.y
         touching = simulation.touches(self._robot)
         self._bumps += touching and not self._touching
@@ -95,15 +84,27 @@ class Trip:
 
     def _is_in_target(self, simulation: Simulation, case: Case, pose: Pose) -> bool:
         away = math.hypot(pose.x - case.target[0], pose.y - case.target[1])
-        if away > case.target_radius + LARGEST_ROBOT:  # most ticks: spare the hull
+        if away > case.target_radius + self._reach:  # most ticks: spare the hull
             return False
         assert self._robot is not None
         return simulation.hull_distance(self._robot, case.target) < case.target_radius
 
     def _start(self) -> None:
-        self._at = None
+        self._at: tuple[float, float] | None = None
         self._touching = False
-        self._distance = 0.0
+        self._distance = self._time_s = 0.0
         self._bumps = 0
-        self._reached = None
-        self._time_s = 0.0
+        self._reached: float | None = None
+
+
+def _reach(model: Model) -> float:
+    """No part of the model gets farther [m] from its first body's origin, however its joints turn."""
+    reach = 0.0
+    for body in model.bodies:
+        shapes = [footprint.shape for footprint in body.footprints]
+        corners = [
+            math.hypot(*point) for shape in shapes if isinstance(shape, Polygon) for point in shape.points
+        ]
+        rims = [math.hypot(*shape.center) + shape.radius for shape in shapes if isinstance(shape, Circle)]
+        reach += math.hypot(body.pose.x, body.pose.y) + max((*corners, *rims), default=0.0)
+    return reach

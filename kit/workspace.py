@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from errno import EISDIR
 from pathlib import Path
 
 
@@ -41,19 +43,33 @@ class Workspace:
         return self.folder / "runs"
 
 
+def at_home(name: str | Path) -> Path:
+    """A path with ``~`` and ``~user`` written out, where such a home is known."""
+    return Path(os.path.expanduser(name))  # noqa: PTH111 - the method raises where there is no such home
+
+
 def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspace:
     """The workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
 
     Makes the folder and its parts where they are missing, unless ``make`` is false. Raises WorkspaceError
-    when the place is a file or may not be written.
+    when the place is a file or may not be written, or is in a home folder that nobody has.
     """
     if folder is None:
-        named = os.environ.get("KIT_WORKSPACE")
-        folder = Path(named).expanduser() if named else Path.home() / "robot-kit"
-    workspace = Workspace(folder.expanduser().absolute())
+        folder = Path(os.environ.get("KIT_WORKSPACE") or "~/robot-kit")
+    workspace = Workspace(at_home(folder).absolute())
+    if str(folder).startswith("~") and at_home(folder) == folder:
+        raise WorkspaceError(
+            f"{folder}: there is no such home folder here. Name another folder with --workspace FOLDER."
+        )
     if make:
         try:
-            for part in (workspace.controllers, workspace.packages, workspace.worlds, workspace.recordings, workspace.runs):
+            for part in (
+                workspace.controllers,
+                workspace.packages,
+                workspace.worlds,
+                workspace.recordings,
+                workspace.runs,
+            ):
                 part.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise WorkspaceError(
@@ -63,17 +79,39 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
     return workspace
 
 
+def check_writable(path: Path) -> None:
+    """To be asked before long work: raises OSError where ``path`` cannot be written. Writes nothing."""
+    with _blamed_on(path):
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+
+
 def write_atomically(path: Path, data: bytes) -> None:
-    """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one.
+
+    Raises OSError.
+    """
+    with _blamed_on(path):
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).chmod(0o644)
+            Path(name).replace(path)
+        except BaseException:
+            with suppress(OSError):
+                Path(name).unlink()
+            raise
+
+
+@contextmanager
+def _blamed_on(path: Path) -> Iterator[None]:
+    """What goes wrong names this file, not the one that stands in for it meanwhile."""
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException:
-        with suppress(OSError):
-            Path(name).unlink()
-        raise
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from None

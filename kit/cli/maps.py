@@ -11,10 +11,8 @@ from kit.cli import options
 
 @click.command()
 @click.argument("name", required=False)
-@click.option(
-    "--glyphs", type=click.Choice(("braille", "block", "ascii")), default="braille", show_default=True
-)
-def command(name: str | None, glyphs: str) -> None:
+@options.glyphs
+def command(name: str | None, glyphs: str | None) -> None:
     """List the maps, or show one as a picture with its starts and targets."""
     from kit.world.catalogue import UnknownMap, all_maps, find_map
 
@@ -35,11 +33,12 @@ def command(name: str | None, glyphs: str) -> None:
     from kit.session import Session
     from kit.showing import Showing
 
+    chosen = options.terminal(glyphs=glyphs).glyphs.value
     columns, rows = shutil.get_terminal_size()
     with Session(place_on_map(card)) as session:
         scene = Showing(session).view().scene
     click.echo(f"{card.title}: {card.summary}")
-    click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[glyphs](True))))
+    click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
         x, y, theta = case.start
         click.echo(

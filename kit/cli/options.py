@@ -32,6 +32,11 @@ def fail(message: str) -> NoReturn:
     raise SystemExit(BAD_INPUT)
 
 
+def reason(error: OSError) -> str:
+    """What could not be done with a file, in words."""
+    return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
 def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
     """What this terminal gets, decided once."""
     wish = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)

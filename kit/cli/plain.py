@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -10,18 +11,21 @@ from typing import Final, NamedTuple
 
 import click
 
-from kit.cli import options
-from kit.controllers import find, in_folder, shipped
+from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.picture.text import plain_rows, report
-from kit.places import find_place
+from kit.places import Place, find_place
+from kit.ros.log import LogRecord
 from kit.session import Session
-from kit.showing import Showing, clock
+from kit.showing import Showing, clock, said
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 
 LONGEST: Final = 3600.0
 """Seconds that one line may run."""
+
+LISTEN_EVERY: Final = 10
+"""Ticks between two looks at what the controller has printed."""
 
 WIDTH, HEIGHT = 78, 20
 
@@ -39,11 +43,15 @@ class Verb(NamedTuple):
 class Plain:
     """One session driven by lines of text. Time stands still between lines."""
 
-    def __init__(self, place: str, case: str | None, controller: str, seed: int, folder: Path) -> None:
+    def __init__(
+        self, place: Place, controller: ControllerFile, *, seed: int, folder: Path, root: Path | None = None
+    ) -> None:
+        """``root``: the folder that the world files named later may read; by default each its own."""
         self._seed = seed
         self._folder = folder
-        self._controller = find(controller, folder)
-        self._session = self._open(place, case)
+        self._root = root
+        self._controller = controller
+        self._session = self._open(place)
         self.is_over = False
 
     def run(self, seconds: float) -> None:
@@ -51,25 +59,33 @@ class Plain:
         session = self._session
         if not 0 < seconds <= LONGEST:
             raise Mistake(f"say how many seconds, above 0 and at most {LONGEST:g}")
-        heard = len(session.messages)
-        for _ in range(round(seconds / session.runner.simulation.step_size)):
+        if session.controller is not None and _modified(self._controller.file) not in (None, self._saved):
+            self._seat(session)
+        failure = session.failure
+        for tick in range(round(seconds / session.runner.simulation.step_size)):
             session.runner.tick()
-            if session.failure is not None:
+            if tick % LISTEN_EVERY == 0:
+                session.listen()
+            if session.failure is not failure:
                 break
-        for record in list(session.messages)[heard:]:
-            click.echo(f"{clock(record.time_ns / 1e9)} {record.name}: {record.text}")
-        if session.failure is not None:
+        session.look_around()
+        if session.failure is not failure:
             click.echo(f"the controller stopped: {session.failure}")
         self.look()
 
     def drive(self, forward: float, turn: float, seconds: float) -> None:
-        self._session.drive_with(None)
-        node = self._session.graph.create_node("plain_driver")
-        publisher = node.create_publisher(Twist, "/cmd_vel", 10)
-        publisher.publish(Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)))
-        self.run(seconds)
-        publisher.publish(Twist())
-        node.destroy_node()
+        session = self._session
+        topics = session.command_topics(session.place.robot or "")
+        if not topics:
+            raise Mistake("nothing here can be driven")
+        session.drive_with(None)
+        command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn))
+        for topic in topics:
+            session.runner.accept(topic, command)
+        try:
+            self.run(seconds)
+        finally:
+            session.stop_robot()
 
     def look(self) -> None:
         view = Showing(self._session).view()
@@ -85,17 +101,17 @@ class Plain:
 
     def use(self, name: str) -> None:
         self._controller = find(name, self._folder)
-        self._seat()
+        self._seat(self._session)
 
-    def open(self, place: str, case: str | None) -> None:
-        session = self._open(place, case)
+    def open(self, name: str, case: str | None) -> None:
+        place = find_place(name, case, self._root)
         self._session.close()
-        self._session = session
+        self._session = self._open(place)
         self.look()
 
     def reset(self) -> None:
         self._session.reset()
-        self._session.wait_until_driven()
+        _wait(self._session)
         self.look()
 
     def controllers(self) -> None:
@@ -105,19 +121,36 @@ class Plain:
     def close(self) -> None:
         self._session.close()
 
-    def _open(self, place: str, case: str | None) -> Session:
-        session = Session(find_place(place, case), seed=self._seed, watched=True)
-        self._session = session
-        self._seat()
+    def _open(self, place: Place) -> Session:
+        session = Session(place, seed=self._seed, watched=True, on_message=_say)
+        self._seat(session)
         return session
 
-    def _seat(self) -> None:
-        self._session.drive_with(self._controller)
-        self._session.wait_until_driven()
-        if self._session.failure is not None:
-            click.echo(f"the controller stopped: {self._session.failure}")
-        else:
-            click.echo(f"{self._controller.name} drives in {self._session.place.title}")
+    def _seat(self, session: Session) -> None:
+        """Has the controller drive, as its file is now. If that fails, who drove before goes on."""
+        self._saved = _modified(self._controller.file)
+        session.drive_with(self._controller)
+        _wait(session)
+
+
+def _wait(session: Session) -> None:
+    """Until the controller drives, or has failed to; says which."""
+    session.wait_until_driven()
+    if session.failure is not None:
+        click.echo(f"the controller does not run: {session.failure}")
+    elif session.controller is not None:
+        click.echo(f"{session.controller.name} drives in {session.place.title}")
+
+
+def _modified(file: Path) -> int | None:
+    try:
+        return file.stat().st_mtime_ns
+    except OSError:
+        return None
+
+
+def _say(record: LogRecord) -> None:
+    click.echo(said(record))
 
 
 def _help(plain: Plain, words: Sequence[str]) -> None:
@@ -169,9 +202,12 @@ def _numbers(words: Sequence[str], count: int) -> list[float]:
     try:
         numbers = [float(word) for word in words]
     except ValueError:
-        raise Mistake("numbers are wanted there, such as 0.5") from None
+        numbers = [math.nan]
+    if not all(map(math.isfinite, numbers)):
+        raise Mistake("numbers are wanted there, such as 0.5")
     if len(numbers) != count:
-        raise Mistake(f"{count} numbers are wanted, not {len(numbers)}")
+        wanted = "one number is" if count == 1 else f"{count} numbers are"
+        raise Mistake(f"{wanted} wanted there, not {len(numbers)}")
     return numbers
 
 
@@ -189,17 +225,12 @@ def obey(plain: Plain, line: str) -> None:
         click.echo(str(mistake))
 
 
-def play_plainly(place: str, case: str | None, controller: str, seed: int, folder: Path, reason: str) -> None:
+def play_plainly(plain: Plain) -> None:
     """Reads lines from standard input until ``quit`` or its end."""
-    click.echo(f"The kit, line by line. {reason}")
-    try:
-        plain = Plain(place, case, controller, seed, folder)
-    except (LookupError, WorldError) as error:
-        options.fail(str(error))
     try:
         plain.look()
         click.echo("Type help for what you can say, quit to leave.")
-        while not plain.is_over:
+        while not plain.is_over and sys.stdin is not None:
             if sys.stdin.isatty():
                 click.echo("> ", nl=False)
             line = sys.stdin.readline()

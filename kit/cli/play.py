@@ -15,6 +15,7 @@ from kit.cli import options
 @options.case
 @options.controller
 @options.seed
+@options.root
 @options.workspace
 @click.option(
     "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
@@ -26,6 +27,7 @@ def command(
     case: str | None,
     controller: str,
     seed: int,
+    root: Path | None,
     workspace: Path | None,
     plain: bool,
     glyphs: str | None,
@@ -46,14 +48,21 @@ def command(
 
     try:
         desk = open_desk(workspace)
-        find(controller, desk.controllers)
+        driver = find(controller, desk.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
-        from kit.cli.plain import play_plainly
+        from kit.cli.plain import Plain, play_plainly
+        from kit.places import find_place
+        from kit.world.problems import WorldError
 
-        play_plainly(place, case, controller, seed, desk.controllers, terminal.plain.reason)
+        click.echo(f"The kit, line by line. {terminal.plain.reason}")
+        try:
+            where = find_place(place, case, root)
+        except (LookupError, WorldError) as error:
+            options.fail(str(error))
+        play_plainly(Plain(where, driver, seed=seed, folder=desk.controllers, root=root))
         return
     os.environ.update(terminal.environment())
     from kit.inspection.sockets import sockets_folder
@@ -67,6 +76,7 @@ def command(
         place,
         controller,
         case=case,
+        root=root,
         folder=desk.controllers,
         runs=desk.runs,
         seed=seed,

@@ -32,8 +32,10 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
     try:
         recording = load(file)
         place = find_place(recording.place, recording.case, root)
-    except (RecordingError, LookupError, WorldError, OSError) as error:
+    except (RecordingError, LookupError, WorldError) as error:
         options.fail(str(error))
+    except OSError as error:
+        options.fail(options.reason(error))
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
         from kit.tui.app import KitApp
@@ -44,7 +46,10 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
         app.begin(ReplayScreen(app.look, place, recording, file.name))
         app.run()
         raise SystemExit(app.return_code or 0)
-    again = rerun(recording, place.world)
+    try:
+        again = rerun(recording, place.world)
+    except RecordingError as error:
+        options.fail(str(error))
     seconds = recording.ticks * recording.step_size
     click.echo(
         f"{place.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"

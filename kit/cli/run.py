@@ -11,6 +11,9 @@ import click
 from kit.cli import options
 from kit.cli.options import Storage
 
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it."""
+
 
 @click.command()
 @click.argument("place", metavar="MAP or WORLD.yaml")
@@ -61,24 +64,30 @@ def command(
     as_json: bool,
     workspace: Path | None,
 ) -> None:
-    """Run a world without a screen, as fast as it goes, and print a summary.
+    """Run a world without a screen, as fast as it goes, and print a summary; before it, on standard error, what
+    the controller says.
 
     The same place, controller, steps and seed give the same run, to the bit: the fingerprint says so.
 
     \b
     kit run maze --controller my_controller.py --steps 6000 --seed 1
 
-    Exit code: 0 the run went through; 1 the controller failed; 2 something named does not exist or is wrong.
+    Exit code: 0 the run went through; 1 the controller failed; 2 something named does not exist or is wrong; 130
+    Ctrl-C, after the summary of what was run.
     """
     from kit.controllers import find
     from kit.headless import Companion, run_headless
     from kit.pacing import MAXIMUM, REAL_TIME
     from kit.places import find_place
     from kit.ros.graph import Graph
+    from kit.showing import said
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
-    desk = open_workspace(workspace, make=False)
+    try:
+        desk = open_workspace(workspace, make=False)
+    except WorkspaceError as error:
+        options.fail(str(error))
     company: list[Callable[[Graph], Companion]] = []
     if serve:
         from kit.inspection.door import Door
@@ -100,9 +109,14 @@ def command(
             until_reached=until_reached,
             record=record,
             company=company,
+            on_message=lambda record: click.echo(said(record), err=True),
         )
-    except (LookupError, WorldError, WorkspaceError, OSError) as error:
+    except (LookupError, WorldError) as error:
         options.fail(str(error))
+    except OSError as error:
+        options.fail(options.reason(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else summary.text())
+    if summary.interrupted:
+        raise SystemExit(INTERRUPTED)
     if summary.failure is not None:
         raise SystemExit(1)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
+from kit.workspace import at_home
+
 FOLDER = Path(__file__).parent
 
 
@@ -23,7 +25,7 @@ def title_of(file: Path) -> str:
     """The first line of a Python file's docstring, or nothing. The file is read, never run."""
     try:
         return (ast.get_docstring(ast.parse(file.read_bytes())) or "").partition("\n")[0]
-    except (OSError, SyntaxError, ValueError):
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):  # the last two: nested too deeply
         return ""
 
 
@@ -36,20 +38,25 @@ def shipped() -> tuple[ControllerFile, ...]:
 
 def in_folder(folder: Path) -> tuple[ControllerFile, ...]:
     """The user's controllers: every ``.py`` file of ``folder``, by name."""
-    files = sorted(file for file in folder.glob("*.py") if not file.name.startswith((".", "_")))
+    files = sorted(
+        file for file in folder.glob("*.py") if not file.name.startswith((".", "_")) and file.is_file()
+    )
     return tuple(ControllerFile(file.stem, file, title_of(file)) for file in files)
 
 
 def find(name: str, folder: Path | None = None) -> ControllerFile:
-    """A controller by path, or by name: the user's ``folder`` first, then the kit's own.
+    """A controller by path, from here or from the user's ``folder``, or by name: theirs first, then the kit's own.
 
     Raises LookupError that names what there is.
     """
-    path = Path(name).expanduser()
+    path = at_home(name)
     if path.suffix == ".py" or "/" in name:
-        if not path.is_file():
-            raise LookupError(f"{name}: there is no such file.")
-        return ControllerFile(path.stem, path.absolute(), title_of(path))
+        places = [path, *([] if folder is None else [folder / path])]
+        for file in places:
+            if file.is_file():
+                return ControllerFile(file.stem, file.absolute(), title_of(file))
+        tried = "" if folder is None or path.is_absolute() else f", neither here nor in {folder}"
+        raise LookupError(f"{name}: there is no such file{tried}.")
     known = {item.name: item for item in (*shipped(), *(in_folder(folder) if folder else ()))}
     if name in known:
         return known[name]

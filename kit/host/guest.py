@@ -144,6 +144,10 @@ class Guest:
         self._attend(lambda: self._child.ask("tick", now, events))
         return True
 
+    def hang_up(self) -> None:
+        """From any thread: whoever waits for an answer gets a failure instead, at once. To be closed as ever."""
+        self._child.hang_up()
+
     def close(self) -> None:
         """Takes the nodes out of the graph and ends the process. May be called twice."""
         self._joined = False

@@ -181,6 +181,11 @@ class Child:
         self.close()
         return GuestError(failure)
 
+    def hang_up(self) -> None:
+        """Ends the conversation, from any thread: who waits in ``ask`` or ``started`` gets a GuestError."""
+        with suppress(OSError):  # it has ended already
+            self._pipe.shutdown(socket.SHUT_RDWR)
+
     def close(self) -> None:
         """Ends the child and everything that came out of it, and removes its folder. May be called twice."""
         self._pipe.close()  # the process above the child notices, and cleans up

@@ -18,8 +18,9 @@ Budget: TypeAlias = Literal["start", "reply", "total"]
 def too_slow(budget: Budget, limit_s: float, where: Position | None) -> Failure:
     """A deadline has passed."""
     function = f"{where.function}()" if where and where.function != "<module>" else "the program"
+    kept = "has not let the program start" if function != "the program" else "has not started"
     message = {
-        "start": f"{function} has not let the program start within {limit_s:g} s.",
+        "start": f"{function} {kept} within {limit_s:g} s.",
         "reply": f"{function} has not come back within {limit_s:g} s.",
         "total": f"the program has used up its {limit_s:g} s in all.",
     }[budget]

@@ -78,6 +78,11 @@ class Simulation:
         """Every topic that a device publishes or subscribes, as the world stands now."""
         return [endpoint for plugin in self._stage.plugins for endpoint in plugin.endpoints]
 
+    def endpoints_of(self, model: str) -> Sequence[Endpoint]:
+        """Those of one model's devices; none if it is not there."""
+        standing = self._stage.models.get(model)
+        return [] if standing is None else [end for plugin in standing.plugins for end in plugin.endpoints]
+
     def accept(self, topic: str, message: Any) -> None:
         """Hands a message to every device that subscribes to the topic; to none, if none does."""
         for plugin in self._stage.listeners.get(topic, ()):

@@ -61,19 +61,14 @@ class Running:
     def pacing(self) -> Pacing:
         return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
 
-    def open(
-        self, find: Callable[[], Place], controller: ControllerFile | None, prepare: Wish | None = None
-    ) -> None:
+    def open(self, find: Callable[[], Place], controller: ControllerFile) -> None:
         """Opens another world in place of the present one, which stays if that fails."""
 
         def job() -> None:
             from kit.session import Session
 
             session = Session(find(), seed=self._seed, watched=True)
-            if controller is not None:
-                session.drive_with(controller)
-            if prepare is not None:
-                prepare(session)
+            session.drive_with(controller)
             self._replace(session)
 
         self._jobs.put(job)
@@ -159,6 +154,8 @@ class Running:
     def _drop(self) -> None:
         live, session, door = self._live, self._session, self._door
         self._live = self._session = self._showing = self._door = None
+        if session is not None:
+            session.hang_up()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()
         if door is not None:

@@ -50,6 +50,7 @@ class PlayScreen(WatchScreen):
         controller: str,
         *,
         case: str | None = None,
+        root: Path | None = None,
         folder: Path,
         runs: Path,
         seed: int = 0,
@@ -59,7 +60,7 @@ class PlayScreen(WatchScreen):
         self._look = look
         self._runs = runs
         self._folder = folder
-        self._find = partial(_find_place, place, case)
+        self._find = partial(_find_place, place, case, root)
         self._controller = find(controller, folder)
         self._before_takeover: ControllerFile | None = None
         self._teleop = find(TELEOP)
@@ -148,8 +149,8 @@ def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:
     return found
 
 
-def _find_place(name: str, case: str | None) -> Place:
+def _find_place(name: str, case: str | None, root: Path | None = None) -> Place:
     """Called in the helper thread, which imports the physics while the frame is on the screen already."""
     from kit.places import find_place
 
-    return find_place(name, case)
+    return find_place(name, case, root)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kit.places import Place
 from kit.recording import Recording
 from kit.tui.look import Look
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
+
+if TYPE_CHECKING:
+    from kit.session import Session
 
 
 class ReplayScreen(WatchScreen):
@@ -22,7 +27,16 @@ class ReplayScreen(WatchScreen):
         self._recording = recording
 
     def open_world(self) -> None:
-        self.behind.open(lambda: self._place, None, lambda session: session.play_back(self._recording))
+        self.behind.open_session(self._session, lambda session: self.behind.pacing.factor)
+
+    def _session(self) -> Session:
+        """Called in the helper thread."""
+        from kit.session import Session
+
+        told = self._recording
+        session = Session(self._place, seed=told.seed, step_size=told.step_size, watched=True)
+        session.play_back(told)
+        return session
 
     def action_reset(self) -> None:
         """From the beginning."""
