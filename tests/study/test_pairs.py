@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from kit.controllers import find
-from kit.places import Place, find_place
+from kit.places import Place, find_place, place_in_file
 from kit.study.pairs import NUDGE, TABLE_46, TABLE_53, Outcome, Printed, Summary, nudged, repeat, try_once
+from kit.world.catalogue import maps_folder
 
 NINETY = {"pair_turn_left_90": 0.54, "pair_turn_right_90": 0.62}
 """The dissertation's adjacency."""
@@ -87,14 +89,18 @@ def test_a_collision_says_who_touched_what(tmp_path: Path) -> None:
     assert "touched a wall" in found.why
 
 
-def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive() -> None:
-    narrow = find_place("hall_center_door")
-    assert narrow.case is not None
-    pair = find_place("pair_straight")
-    walls = replace(pair.world, layers=narrow.world.layers, file=narrow.world.file)
-    # The world file has one robot only: a course for two is refused before anything moves.
-    with pytest.raises(LookupError, match="no model left"):
-        try_once(replace(pair, world=walls), find("abreast"))
+def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Path) -> None:
+    pair, door = find_place("pair_straight"), maps_folder() / "hall_center_door"
+    for file in (*door.glob("map.*"), *(maps_folder() / "robots").glob("*.yaml")):
+        shutil.copy(file, tmp_path)
+    text = pair.world.file.read_text()
+    (tmp_path / "world.yaml").write_text(text.replace("../hall_straight/", "").replace("../robots/", ""))
+    narrow = replace(place_in_file(tmp_path / "world.yaml"), case=pair.case, robot="left")
+    found = try_once(narrow, find("abreast"))
+    assert found.end == "stuck"
+    assert "Not driving. No way" in found.why
+    assert "wide enough for two robots side by side, 0.49 m wide" in found.why
+    assert found.path_m == 0
 
 
 def test_a_summary_counts_ways_to_fail() -> None:
