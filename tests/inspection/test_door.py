@@ -23,6 +23,7 @@ from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph import Graph
 from kit.ros.log import LogRecord
+from tests.inspection.conftest import until
 
 TICK_NS = 10_000_000
 
@@ -64,13 +65,6 @@ def begin(tmp_path: Path) -> Iterator[Callable[..., Ticking]]:
     yield start
     for each in made:
         each.close()
-
-
-def until(condition: Callable[[], object], seconds: float = 5.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "it did not come to that"
-        time.sleep(0.002)
 
 
 def test_only_the_owner_can_see_and_use_the_socket(begin: Callable[..., Ticking]) -> None:

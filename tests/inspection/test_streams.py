@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from tests.inspection.conftest import Stage
+from tests.inspection.conftest import Stage, until
 
 INTERRUPTED = 130
 
@@ -126,13 +125,10 @@ def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
         stage.workspace, "bag", "record", "/demo/chatter", "/demo/points", "-o", "drive", cwd=tmp_path
     ) as process:
         assert process.stderr is not None
-        while "Recording" not in process.stderr.readline():
-            pass
-        while not stage.graph.subscription_count("/demo/chatter"):
-            time.sleep(0.01)
-        before = stage.graph.now_ns
-        while stage.graph.now_ns < before + 2_000_000_000:
-            time.sleep(0.01)
+        assert any("Recording" in line for line in process.stderr)
+        until(lambda: stage.graph.subscription_count("/demo/chatter"))
+        enough = stage.graph.now_ns + 2_000_000_000
+        until(lambda: stage.graph.now_ns > enough)
         err, code = interrupted(process)
     assert code == INTERRUPTED
     assert "messages in drive" in err

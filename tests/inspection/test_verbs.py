@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-import time
 from pathlib import Path
 from textwrap import dedent
 
 import pytest
 
 from kit.cli.ros import VERBS
-from tests.inspection.conftest import Kit, Stage
+from tests.inspection.conftest import Kit, Stage, until
 
 NODE_INFO = """\
 /demo/talker
@@ -244,8 +243,7 @@ def test_parameters_are_set_kept_and_loaded(kit_ros: Kit, tmp_path: Path, stage:
 def test_a_paused_world_answers(kit_ros: Kit, stage: Stage) -> None:
     stage.live.set_paused(True)
     try:
-        while not stage.session.runner.paused:
-            time.sleep(0.001)
+        until(lambda: stage.session.runner.paused)
         before = stage.graph.now_ns
         assert kit_ros("param", "get", "/demo/talker", "level")[0] == "Integer value is: 4\n"
         assert kit_ros("node", "list", "-c")[0] == "3\n"

@@ -1,0 +1,163 @@
+"""What is missing or wrong in a package or its launch file: said, with the place, and nothing left running."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.inspection.conftest import until
+from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop, kit
+
+SERVER = "Node(package='flatland_server', executable='flatland_server', parameters=[{{{}}}]),"
+
+WRONG = {
+    "unknown package": ("Node(package='nav2', executable='planner'),", "bad.launch.py:12: package 'nav2' not found", 2),
+    "unknown program": ("Node(package='bad', executable='runn'),", "has no executable 'runn'; it has: run", 2),
+    "unknown command": ("ExecuteProcess(cmd=['no_such_program']),", "'no_such_program' cannot be started", 2),
+    "unknown argument": ("LogInfo(msg=LaunchConfiguration('x')),", "launch/bad.launch.py:12: launch configuration 'x'", 2),
+    "needed argument": ("DeclareLaunchArgument('x'),", "launch/bad.launch.py:12: Required launch argument 'x'", 2),
+    "no world path": (SERVER.format("'update_rate': 100.0"), "the parameter 'world_path' is missing", 2),
+    "no such world": (SERVER.format("'world_path': '/nowhere.yaml'"), "/nowhere.yaml", 2),
+    "bad rate": (SERVER.format("'world_path': 'x', 'update_rate': 'fast'"), "'update_rate' must be a number above 0", 2),
+    "bad show_viz": (SERVER.format("'world_path': 'x', 'show_viz': 'often'"), "'show_viz' must be true or false", 2),
+    "two worlds": (2 * SERVER.format("'world_path': 'x'"), "one flatland_server", 2),
+    "no transform": ("Node(package='tf2_ros', executable='static_transform_publisher', arguments=['1']),", "x y z yaw", 2),
+    "wrong types": ("Node(package='bad', executable='run', parameters=[{'speed': object()}]),", "no parameter can hold", 2),
+    "wrong keyword": ("Node(package='bad', executable='run', ouput='screen'),", "has no argument 'ouput'", 2),
+    "python error": ("LogInfo(msg=1 / 0),", "launch/bad.launch.py:12: ZeroDivisionError", 2),
+    "no entity": ("42,", "'int' object has no attribute 'visit'", 2),
+    "include cycle": ("IncludeLaunchDescription(ThisLaunchFile()),", "include each other without end", 2),
+    "name of a node": ("Node(package='bad', executable='run', name='9lives'),", "node name must not start with a number", 1),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_is_wrong_is_said(case: str, launch: Launched, workshop: Workshop) -> None:
+    body, message, expected = WRONG[case]
+    folder = workshop.package("bad", body, run="self.get_logger().info('runs')")
+    out, err, code = launch(folder, "--until", "0.2")
+    assert message in err, out + err
+    assert "Traceback" not in out + err
+    assert code == expected
+
+
+FAILING = {
+    "import": ("import no_such_library\ndef main(): pass\n", "bad/run.py:1: ModuleNotFoundError", "pip install no_such_library"),
+    "ros import": ("from nav2_msgs.msg import Path\ndef main(): pass\n", "No module named 'nav2_msgs'", "part of ROS 2"),
+    "missing name": ("from std_msgs.msg import Sting\ndef main(): pass\n", "cannot import name 'Sting'", "has no Sting"),
+    "syntax": ("def main(:\n    pass\n", "bad/run.py:1: SyntaxError", ""),
+    "callback": ("self.create_timer(0.01, lambda: 1 / 0)", "bad/run.py:9: ZeroDivisionError", ""),
+    "no main": ("x = 1\ndef main_(): pass\n", "There is no main() in bad.run", ""),
+    "exit code": ("def main():\n    return 7\n", "sys.exit(7)", ""),
+}
+
+
+@pytest.mark.parametrize("case", FAILING)
+def test_a_program_that_fails_is_named_and_the_rest_goes_on(case: str, launch: Launched, workshop: Workshop) -> None:
+    source, message, advice = FAILING[case]
+    folder = workshop.package(
+        "bad",
+        "Node(package='bad', executable='run'), Node(package='bad', executable='good'),",
+        run=source,
+        good="self.create_timer(0.1, lambda: self.get_logger().info('still here'))",
+    )
+    out, err, code = launch(folder, "--until", "0.5")
+    assert "[ERROR] [run-1]: process has died" in err
+    assert message in err
+    assert advice in err
+    assert "still here" in out + err
+    assert code == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("/nowhere",), "no such file, folder or package"),
+        ((TWO_ROBOTS, "other.launch.py"), "there are: two_robots.launch.py"),
+        ((TWO_ROBOTS / "setup.cfg",), "NAME.launch.py"),
+        ((TWO_ROBOTS, "a", "b"), "NAME:=VALUE"),
+        ((TWO_ROBOTS / "world",), "no package.xml"),
+        ((TWO_ROBOTS, "learn:=perhaps", "--plain"), "Valid options are"),
+    ],
+)
+def test_what_cannot_be_found_is_said(words: tuple[str | Path, ...], message: str, launch: Launched) -> None:
+    out, err, code = launch(*words)
+    assert message in err
+    assert "Traceback" not in out + err
+    assert code == 2
+
+
+def test_several_launch_files_must_be_chosen_from(launch: Launched, workshop: Workshop) -> None:
+    folder = workshop.package("many", "LogInfo(msg='one'),")
+    (folder / "launch" / "two.launch.py").write_text("")
+    _, err, code = launch(folder)
+    assert "many.launch.py, two.launch.py" in err
+    assert code == 2
+    out, _, code = launch(folder, "many.launch.py", "--plain")
+    assert "[launch]: one" in out
+    assert code == 0
+
+
+def children(pid: int) -> list[int]:
+    """A process's descendants."""
+    found = []
+    for task in Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in map(int, task.read_text().split()):
+            found += [child, *children(child)]
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's /proc")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("state", ["starting", "running", "busy", "stubborn"])
+def test_a_signal_ends_everything_in_every_state(
+    state: str, number: signal.Signals, workshop: Workshop, tmp_path: Path
+) -> None:
+    programs = {
+        "starting": "import time\ntime.sleep = None\nimport select\nselect.select([], [], [], 60)\ndef main(): pass\n",
+        "running": "self.get_logger().info('runs')",
+        "busy": "self.create_timer(0.01, self.work)\n\n    def work(self):\n        while True: pass",
+        "stubborn": "self.get_logger().info('runs')",
+    }
+    command = "trap '' INT TERM; sleep 60" if state == "stubborn" else "sleep 60"
+    folder = workshop.package(
+        "state",
+        f"ExecuteProcess(cmd=['sh', '-c', {command!r}]), Node(package='state', executable='run'),",
+        run=programs[state],
+    )
+    with kit(tmp_path / "workspace", "launch", folder, "--plain") as process:
+        assert process.stdout is not None
+        begun = any("process started" in line for line in process.stdout)
+        assert begun
+        if state != "starting":
+            time.sleep(0.5)
+        started = children(process.pid)
+        assert started
+        process.send_signal(number)
+        rest, _ = process.communicate(timeout=20)
+        assert "Traceback" not in rest
+        assert process.returncode == 128 + number
+    until(lambda: not any(Path(f"/proc/{pid}").exists() and not _is_zombie(pid) for pid in started))
+    assert not list((tmp_path / "workspace" / ".running").rglob("*.sock"))
+
+
+def _is_zombie(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def test_a_user_s_print_and_log_lines_cannot_steer_the_terminal(launch: Launched, workshop: Workshop) -> None:
+    folder = workshop.package(
+        "loud",
+        "ExecuteProcess(cmd=['printf', '\\x1b[2J\\x07hello\\n']),",
+    )
+    out, _, _ = launch(folder, "--plain")
+    assert "hello" in out
+    assert "\x1b" not in out
+    assert os.linesep in out
