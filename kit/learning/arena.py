@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from kit import kernels
 from kit.blocks import in_blocks
 from kit.geometry import Pose
+from kit.learning.enclosure import within_reach
 from kit.sim.keys import SpeedLimits
 from kit.sim.loading import load
 from kit.sim.plugins.bumper import BumperParams
@@ -51,7 +52,8 @@ class Ground:
 
     name: str
     walls: NDArray[np.float64]
-    """(n, 4) ``x1 y1 x2 y2`` [m]: touched by every robot and seen by every lidar."""
+    """(n, 4) ``x1 y1 x2 y2`` [m]: touched by every robot and seen by every lidar. Those that none can ever see or
+    touch are left out."""
     robot: Robot
     starts: tuple[Pose, ...]
     """Where the world file puts the robots."""
@@ -85,8 +87,9 @@ def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
         _check_pair(driving[0], driving[1])
         _check_pair(driving[1], driving[0])
     ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
-    walls = np.concatenate([np.zeros((0, 4)), *ends])
-    return Ground(name, walls, made[0], tuple(model.pose for model in driving))
+    starts = tuple(model.pose for model in driving)
+    walls = within_reach(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
+    return Ground(name, walls, made[0], starts)
 
 
 def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.Fleet:

@@ -1,0 +1,74 @@
+"""The walls that matter: without those beyond a closed ring of walls, which no robot inside ever sees or meets.
+
+Walls from a picture have two sides: a corridor's outer faces are half of all its walls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import networkx as nx
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Numbers = NDArray[np.intp]
+
+SAME = 9
+"""Decimals to which ends of walls must agree to be the same point."""
+
+
+def within_reach(walls: Floats, point: tuple[float, float]) -> Floats:
+    """Of the walls (n, 4) ``x1 y1 x2 y2``, those not wholly outside the smallest ring around ``point``; in their order.
+
+    A ring is a closed chain of walls that share ends two by two. All walls where there is none.
+    """
+    around = [ring for ring in _rings(walls) if _inside(np.array([point]), walls[ring])[0]]
+    if not around:
+        return walls
+    ring = min(around, key=lambda each: float(np.prod(np.ptp(walls[each].reshape(-1, 2), axis=0))))
+    kept = _inside(walls[:, :2], walls[ring]) | _inside(walls[:, 2:], walls[ring])
+    kept[ring] = True
+    outside = np.flatnonzero(~kept)
+    kept[outside] = _crossing(walls[outside], walls[ring])
+    return walls[kept]
+
+
+def _rings(walls: Floats) -> Iterator[Numbers]:
+    """The numbers of the walls of each ring."""
+    graph = nx.MultiGraph()
+    for number, (x1, y1, x2, y2) in enumerate(walls.round(SAME).tolist()):
+        graph.add_edge((x1, y1), (x2, y2), number=number)
+    for part in nx.connected_components(graph):
+        ring = graph.subgraph(part)
+        if len(part) > 2 and all(degree == 2 for _, degree in ring.degree):
+            yield np.array([number for *_, number in ring.edges(data="number")])
+
+
+def _inside(points: Floats, ring: Floats) -> Flags:
+    """(n,) which of the points (n, 2) a ring (m, 4) encloses: a ray from there to the right meets it an odd number of
+    times."""
+    x, y = points[:, :1], points[:, 1:]
+    x1, y1, x2, y2 = ring.T
+    level = (y1 > y) != (y2 > y)
+    rise = np.where(y2 == y1, 1.0, y2 - y1)
+    odd: Flags = (level & (x < x1 + (y - y1) / rise * (x2 - x1))).sum(axis=1) % 2 == 1
+    return odd
+
+
+def _crossing(walls: Floats, ring: Floats) -> Flags:
+    """(n,) which of the walls meet one of the ring's."""
+    a, b = walls[:, None, :2], walls[:, None, 2:]
+    c, d = ring[None, :, :2], ring[None, :, 2:]
+    apart = (_side(a, b, c) * _side(a, b, d) > 0) | (_side(c, d, a) * _side(c, d, b) > 0)
+    meets: Flags = np.logical_not(apart.all(axis=1))
+    return meets
+
+
+def _side(a: Floats, b: Floats, c: Floats) -> Floats:
+    """Positive where the points c lie to the left of the line from a to b, negative to the right."""
+    cross: Floats = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (
+        c[..., 0] - a[..., 0]
+    )
+    return cross
