@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -130,5 +129,3 @@ class Assignment:
 
 HINT_STEPS = 3
 """A criterion has at most so many hints: the first says where to look, the last nearly how."""
-
-Parameters = Mapping[str, Any]

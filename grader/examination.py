@@ -14,12 +14,14 @@ from grader import behaviours, planning
 from grader.assignment import Assignment, Criterion
 from grader.model import Floats, Model, build
 from grader.symmetry import Turned, mirrored, rotated
+from grader.trained import Budget, success
 from grader.transitions import KNOWN, Steps, transition
 from kit.host.batch import StudentFunctions
 from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.wire import printable
 from kit.learning.student import FUNCTION, RewardFileError, columns_of, parameters_of
+from kit.learning.transition import Transition
 from kit.world.problems import suggestion
 
 SHUFFLE: Final = 1234
@@ -44,6 +46,7 @@ class Exam:
         self._file = file
         self._limits = assignment.limits
         self._names: tuple[str, ...] = ()
+        self._trained: dict[Budget, float] = {}
         try:
             self._names = signature(file)
             self.rewards: Floats = self._asked(Steps.all(self.model)).reshape(self.model.states, -1)
@@ -107,6 +110,16 @@ class Exam:
     def loops(self) -> tuple[behaviours.Loop, ...]:
         return behaviours.loops(self.model, self.rewards)
 
+    def trained(self, budget: Budget) -> float:
+        """How well a robot drives that was trained with this reward; 0 where the reward fails on the way."""
+        if budget not in self._trained:
+            try:
+                with self._open() as functions:
+                    self._trained[budget] = success(lambda each: self._paid(functions, each), budget)
+            except GuestError:
+                self._trained[budget] = 0.0
+        return self._trained[budget]
+
     def remark(self, check: str) -> str:
         """What else there is to say in the light of a check."""
         if check == "ordered":
@@ -136,8 +149,11 @@ class Exam:
 
     def _call(self, functions: StudentFunctions, steps: Steps) -> Floats:
         self.steps += len(steps)
-        columns = columns_of(transition(steps), self._names)
-        return np.array(functions.call_columns(FUNCTION, columns), dtype=np.float64)
+        return self._paid(functions, transition(steps))
+
+    def _paid(self, functions: StudentFunctions, step: Transition) -> Floats:
+        """(n,) what the student's reward pays for n transitions."""
+        return np.array(functions.call_columns(FUNCTION, columns_of(step, self._names)), dtype=np.float64)
 
 
 class Examination:

@@ -11,6 +11,7 @@ import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
 from grader.examination import Exam
+from grader.trained import Budget
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,14 @@ def planned(exam: Exam, params: NoParams) -> float:
     return exam.judged.success
 
 
+@check(none=0.2, full=0.6, unit="%", params=Budget)
+def trained(exam: Exam, params: Budget) -> float:
+    """A robot that was trained with this reward reaches its target in {actual} of its episodes; {full} is wanted. A
+    reward may be right and still teach slowly: does every step tell the robot something?"""
+    return exam.trained(params)
+
+
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
-    {each.name: each for each in (contract, pure, symmetric, ordered, loops, planned)}
+    {each.name: each for each in (contract, pure, symmetric, ordered, loops, planned, trained)}
 )
 """Every check of a reward, by name."""

@@ -16,6 +16,7 @@ from grader.assignment import Assignment, GridTask, Kind
 from grader.examination import Exam
 from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
 from grader.symmetry import mirrored, rotated
+from grader.trained import Budget
 from grader.transitions import KNOWN, Steps, rewards_of, transition
 from kit.host.confine import Level
 from kit.host.failure import FailureKind
@@ -249,3 +250,24 @@ def test_a_longer_horizon_changes_what_pays() -> None:
     model = build(short)
     rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
     assert planning.judge(planning.plan(model, rewards)).success == pytest.approx(1.0)
+
+
+BRIEF = Budget(steps=20_000, seeds=1, episodes=30)
+
+
+def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: Path) -> None:
+    """Judged by the true goal: being paid for being there teaches nothing."""
+    good = examine(tmp_path, source("progress")).trained(BRIEF)
+    bad = examine(tmp_path, source("alive")).trained(BRIEF)
+    assert good > 0.25
+    assert bad < 0.1
+
+
+def test_training_ends_where_the_reward_fails(tmp_path: Path) -> None:
+    exam = examine(
+        tmp_path, "def reward(distance):\n    return 1.0 / (distance < 100) if distance != 1.6 else 0.0"
+    )
+    assert exam.failure is None
+    broken = examine(tmp_path, "n = [0]\ndef reward(distance):\n    n[0] += 1\n    return 1 / (n[0] != 5000)")
+    assert broken.failure is None
+    assert broken.trained(BRIEF) == 0.0
