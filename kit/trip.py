@@ -39,7 +39,11 @@ class Trip:
         self._case = case
         self._last_tick = -1
         self._simulation: Simulation | None = None
-        self._start()
+        self._at: tuple[float, float] | None = None
+        self._reached: float | None = None
+        self._touching = False
+        self._distance = self._time_s = 0.0
+        self._bumps = 0
 
     @property
     def score(self) -> Score:
@@ -90,11 +94,10 @@ class Trip:
         return simulation.hull_distance(self._robot, case.target) < case.target_radius
 
     def _start(self) -> None:
-        self._at: tuple[float, float] | None = None
+        self._at = self._reached = None
         self._touching = False
         self._distance = self._time_s = 0.0
         self._bumps = 0
-        self._reached: float | None = None
 
 
 def _reach(model: Model) -> float:

@@ -95,7 +95,14 @@ def show(
     app = KitApp(terminal)
     app.begin(
         FieldsScreen(
-            app.look, place, controller, case=case, folder=desk.controllers, seed=seed, derived=derived
+            app.look,
+            place,
+            controller,
+            case=case,
+            folder=desk.controllers,
+            runs=desk.runs,
+            seed=seed,
+            derived=derived,
         )
     )
     app.run()

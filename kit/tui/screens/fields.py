@@ -74,10 +74,11 @@ class FieldsScreen(PlayScreen):
         *,
         case: str | None = None,
         folder: Path,
+        runs: Path,
         seed: int = 0,
         derived: bool = False,
     ) -> None:
-        super().__init__(look, place, controller, case=case, folder=folder, seed=seed)
+        super().__init__(look, place, controller, case=case, folder=folder, runs=runs, seed=seed)
         self._derived = derived
         self._opened: _Opened | None = None
         self._traps: tuple[Trap, ...] = ()

@@ -29,7 +29,7 @@ def play(scene: Scene, folder: Path, *, place: str = "pair_turn_180", controller
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=(80, 24)) as pilot:
-            screen = FieldsScreen(Look.of(terminal), place, controller, folder=folder)
+            screen = FieldsScreen(Look.of(terminal), place, controller, folder=folder, runs=folder)
             await app.push_screen(screen)
             await scene(screen, pilot)
 
