@@ -36,7 +36,22 @@ def test_runs_are_counted_and_failures_explained() -> None:
     found = kit("test", "pair_turn_180", "--case", "pair_turn_left_180", "--runs", "1", "--seed", "3")
     assert found.exit_code == 1  # not all reached the target
     header, fields, reason, abreast = found.output.splitlines()
-    assert header.split() == ["case", "controller", "runs", "acc", "adj", "rays", "graded", "path", "m", "time", "s", "wall", "m", "jerk"]
+    assert header.split() == [
+        "case",
+        "controller",
+        "runs",
+        "acc",
+        "adj",
+        "rays",
+        "graded",
+        "path",
+        "m",
+        "time",
+        "s",
+        "wall",
+        "m",
+        "jerk",
+    ]
     assert fields.split()[:4] == ["pair_turn_left_180", "fields", "1", "0.00"]
     assert "1 of 1 stuck: no progress" in reason
     assert abreast.split()[:4] == ["pair_turn_left_180", "abreast", "1", "1.00"]
