@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from kit.controllers import ControllerFile
 from kit.geometry import Pose
@@ -19,10 +19,10 @@ from kit.places import Place
 from kit.recording import Recorder, save
 from kit.ros.graph import Graph
 from kit.ros.log import LogRecord
-from kit.runner import Guest
 from kit.session import Session
 from kit.sim.simulation import Simulation
 from kit.trip import Score
+from kit.turns import Companion
 from kit.workspace import check_writable
 
 CHECK_EVERY = 100
@@ -118,12 +118,6 @@ class Summary:
         if self.interrupted:
             rows.append(("stopped", "by Ctrl-C"))
         return "\n".join(f"{name:<12} {text}" for name, text in rows)
-
-
-class Companion(Guest, Protocol):
-    """Somebody who takes part in a run from its first tick to its last: a door, a bag."""
-
-    def close(self) -> None: ...
 
 
 def run_headless(

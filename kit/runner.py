@@ -15,17 +15,8 @@ from kit.ros.task import Future
 from kit.sim.plugin import Endpoint, Outgoing
 from kit.sim.simulation import Simulation
 from kit.sim.telling import tell
+from kit.turns import Guest, converse
 from kit.world_services import offer_world_services
-
-MAX_ROUNDS = 100
-"""Rounds of talk between nodes and guests within one tick; what is left goes on in the next."""
-
-
-class Guest(Protocol):
-    """Nodes that live in another process and take part in each tick."""
-
-    def exchange(self) -> bool:
-        """Hands over what is due and takes what comes back; false when nothing was due."""
 
 
 class Observer(Protocol):
@@ -77,11 +68,8 @@ class Runner:
             self._count_down()
 
     def converse(self) -> None:
-        """Lets nodes and guests talk until all is said, so that a key reaches the wheels within the tick."""
-        for _ in range(MAX_ROUNDS):
-            self.graph.run_due()
-            if not sum(guest.exchange() for guest in self.guests):  # every one of them, so no any()
-                return
+        """Lets nodes and guests talk until all is said."""
+        converse(self.graph, self.guests)
 
     def tell(self, service: str, *arguments: Any) -> None:
         """One of ``kit.sim.telling.SERVICES``. After a reset nothing of before is on its way any more.

@@ -76,11 +76,12 @@ def command(
     Ctrl-C, after the summary of what was run.
     """
     from kit.controllers import find
-    from kit.headless import Companion, run_headless
+    from kit.headless import run_headless
     from kit.pacing import MAXIMUM, REAL_TIME
     from kit.places import find_place
     from kit.ros.graph import Graph
     from kit.showing import said
+    from kit.turns import Companion
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 

@@ -5,15 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import ExitStack
 from itertools import repeat
+from typing import TYPE_CHECKING, Protocol
 
-from kit.headless import Companion
 from kit.launch.launching import Launch
-from kit.launch.session import LaunchedSession
 from kit.launch.worldless import Worldless
 from kit.pacing import MAXIMUM, REAL_TIME, Pace
 from kit.ros.graph import Graph
 from kit.ros.log import LogRecord
-from kit.runner import Runner
+from kit.turns import Companion, Guest
+
+if TYPE_CHECKING:
+    from kit.launch.session import LaunchedSession
+
+
+class Ticker(Protocol):
+    """A runner, or what stands in for it without a world."""
+
+    guests: list[Guest]
+
+    def tick(self) -> None: ...
 
 
 def run_plainly(
@@ -36,7 +46,7 @@ def run_plainly(
         launch.begin()
         worldless = Worldless(launch.graph)
         worldless.guests.append(launch)
-        ticker: Runner | Worldless = worldless
+        ticker: Ticker = worldless
         companion = company(launch.graph) if company is not None else None
         if companion is not None:
             stack.callback(companion.close)
@@ -51,6 +61,8 @@ def run_plainly(
                 if _is_done(launch, ticker, until_s):
                     break
                 if launch.world is not None and ticker is worldless:
+                    from kit.launch.session import LaunchedSession  # only now: it brings the physics
+
                     session = stack.enter_context(LaunchedSession(launch, seed=seed))
                     launch.graph.log.sink = log
                     ticker = session.runner
@@ -73,7 +85,7 @@ def _pace(session: LaunchedSession, factor: float | None) -> Pace:
     return pace
 
 
-def _is_done(launch: Launch, ticker: Runner | Worldless, until_s: float | None) -> bool:
+def _is_done(launch: Launch, ticker: Ticker, until_s: float | None) -> bool:
     if launch.is_over or (until_s is not None and launch.graph.now_ns >= round(until_s * 1e9)):
         return True
     return (

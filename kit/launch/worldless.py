@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kit.ros.graph import Graph
-from kit.runner import MAX_ROUNDS, Guest
+from kit.turns import Guest, converse
 
 
 class Worldless:
@@ -16,8 +16,5 @@ class Worldless:
 
     def tick(self) -> None:
         """All that is due now; then time goes on by a step."""
-        for _ in range(MAX_ROUNDS):
-            self.graph.run_due()
-            if not sum(guest.exchange() for guest in self.guests):  # every one of them, so no any()
-                break
+        converse(self.graph, self.guests)
         self.graph.advance(self.graph.now_ns + round(self.step_size * 1e9))

@@ -112,8 +112,17 @@ def children(pid: int) -> list[int]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's /proc")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("state", ["starting", "running", "busy", "stubborn"])
+@pytest.mark.parametrize(
+    ("state", "number"),
+    [
+        ("starting", signal.SIGINT),
+        ("running", signal.SIGINT),
+        ("busy", signal.SIGINT),
+        ("stubborn", signal.SIGINT),
+        ("running", signal.SIGTERM),
+        ("running", signal.SIGHUP),
+    ],
+)
 def test_a_signal_ends_everything_in_every_state(
     state: str, number: signal.Signals, workshop: Workshop, tmp_path: Path
 ) -> None:
