@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -208,6 +210,76 @@ def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     # the nose is 0.048 m ahead of the axle, from which the pose counts
     ahead = place.case.target[1] - summary.pose.y
     assert ahead == pytest.approx(place.case.target_radius + 0.048, abs=0.01)
+
+
+def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
+    with Session(place_on_map(find_map("pair_straight"))) as session:
+        session.drive_with(find(str(write(tmp_path))))
+        session.wait_until_driven()
+        run(session, 1.0)
+        assert session.trip.score.distance_m == pytest.approx(0.2, abs=0.03)
+        session.drive_with(find("teleop"))
+        session.wait_until_driven()
+        session.keys.publish(["p_up"])
+        run(session, 0.5)
+        assert session.trip.score.distance_m == pytest.approx(0.45, abs=0.06)
+
+
+def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> None:
+    both = (
+        "from rclpy.node import Node as N; "
+        "self.right = getattr(self, 'right', None) or self.create_publisher(Twist, '/right/cmd_vel', 10); "
+        "self.right.publish(command)"
+    )
+    with Session(place_on_map(find_map("pair_straight"))) as session:
+        session.drive_with(find(str(write(tmp_path, 0.2, both))))
+        session.wait_until_driven()
+        run(session, 0.5)
+        assert abs(session.runner.simulation.state().bodies[1].velocity[1]) > 0.1
+        session.drive_with(None)
+        run(session, 0.1)
+        assert [round(abs(body.velocity[1]), 6) for body in session.runner.simulation.state().bodies[:2]] == [
+            0,
+            0,
+        ]
+
+
+def test_hanging_up_frees_a_tick_that_waits_for_a_controller(tmp_path: Path) -> None:
+    with Session(place_on_map(find_map("simple"))) as session:
+        session.drive_with(find(str(write(tmp_path, 0.2, "while self.count == 3: pass"))))
+        session.wait_until_driven()
+        timer = threading.Timer(0.5, session.hang_up)
+        timer.start()
+        start = time.monotonic()
+        run(session, 1.0)
+        assert time.monotonic() - start < 2.5  # and not the three seconds that a reply may take
+        assert session.failure is not None
+
+
+def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
+    with Session(place_on_map(find_map("simple"))) as session:
+        run(session, 0.05)
+        for x in (0.01, 0.5, -0.5):
+            session.runner.tell("move_model", "serp", (x, 0.0, 0.0))
+            run(session, 0.02)
+        assert session.trip.score.distance_m == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_drivers_stand_in_the_order_of_the_file() -> None:
+    place = place_on_map(find_map("pair_straight"))
+    models = place.world.models
+    more = tuple(replace(models[0], name=f"r{i}", namespace=f"r{i}") for i in range(20))
+    crowd = replace(place, world=replace(place.world, models=(*more, *models)), case=None)
+    assert crowd.drivers == (crowd.robot, *(model.name for model in more), "right")
+    assert crowd.partners == (crowd.robot, "r0")
+
+
+def test_a_map_goes_before_a_folder_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "maze").mkdir()
+    (tmp_path / "maze" / "world.yaml").write_text("properties: {}\nlayers: []\n")
+    monkeypatch.chdir(tmp_path)
+    assert find_place("maze").case is not None
+    assert find_place("./maze").case is None
 
 
 def test_a_place_is_found_by_name_case_folder_or_file() -> None:

@@ -1,0 +1,155 @@
+"""The kit line by line: what is said to it, and what it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.cli.plain import Plain, obey, play_plainly
+from kit.controllers import find
+from kit.places import find_place
+
+DRIVER = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.go)
+
+    def go(self):
+        command = Twist()
+        command.linear.x = {speed}
+        self.drive.publish(command)
+        {more}
+"""
+
+Say = Callable[[str], str]
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    file = tmp_path / "driver.py"
+    file.write_text(DRIVER.format(speed=0.2, more="print('going')"))
+    return file
+
+
+@pytest.fixture
+def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
+    """Says a line to a kit on the simple map, driven by ``file``, and returns the answer."""
+    plain = Plain(find_place("simple"), find(str(file)), seed=0, folder=file.parent)
+
+    def answer(line: str) -> str:
+        capsys.readouterr()
+        obey(plain, line)
+        return capsys.readouterr().out
+
+    yield answer
+    plain.close()
+
+
+def test_a_run_tells_what_was_said_and_where_it_led(say: Say) -> None:
+    answer = say("run 1")
+    assert "0:00.5 driver: going" in answer or "0:00.6 driver: going" in answer
+    assert "way 0.2 m" in answer
+
+
+def test_nothing_that_is_said_is_lost_however_much_was_said_before(say: Say) -> None:
+    say("run 25")
+    assert say("run 1").count("driver: going") >= 9
+
+
+def test_on_another_map_the_controller_drives_too(say: Say) -> None:
+    assert "driver drives in Racetrack" in say("map racetrack")
+    assert "way 0.2 m" in say("run 1")
+
+
+def test_a_map_that_does_not_exist_leaves_everything_as_it_was(say: Say) -> None:
+    say("run 1")
+    assert "nowhere" in say("map nowhere")
+    assert "way 0.4 m" in say("run 1")
+
+
+@pytest.mark.parametrize("place", ["simple", "pair_straight"])
+def test_driving_by_hand_moves_the_robot_in_its_namespace_too_and_stops_it(say: Say, place: str) -> None:
+    say(f"map {place}")
+    assert "way 0.3 m" in say("drive 0.3 0 1")
+    assert "way 0.3 m" in say("run 1")
+    assert "driver drives" in say("controller driver")
+    assert "way 0.5 m" in say("run 1")
+
+
+def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one(say: Say, file: Path) -> None:
+    say("run 1")
+    file.write_text("def broken(:\n")
+    answer = say("run 1")
+    assert "driver.py:1" in answer
+    assert "way 0.4 m" in answer
+    file.write_text(DRIVER.format(speed=0.4, more="raise ValueError('enough')"))
+    answer = say("run 1")
+    assert "driver drives" in answer
+    assert "enough" in answer
+    assert "at 0:0" in say("run 1")  # the world goes on
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [
+        ("run", "one number"),
+        ("run a", "numbers"),
+        ("run -1", "above 0"),
+        ("run 1e9", "at most"),
+        ("drive inf 0 1", "numbers"),
+        ("drive 0.1 nan 1", "numbers"),
+        ("drive 0.1", "3 numbers"),
+        ("map", "name"),
+        ("map maze nowhere", "nowhere"),
+        ("controller nobody", "nobody"),
+        ('map "a', "quotation"),
+        ("dance", "help"),
+        ("", ""),
+        ("# run 1", ""),
+    ],
+)
+def test_a_line_that_cannot_be_done_says_why_and_changes_nothing(say: Say, line: str, word: str) -> None:
+    assert word in say(line)
+    assert "at 0:00.0" in say("look")
+
+
+def test_a_world_without_a_robot_cannot_be_driven_but_runs(say: Say, tmp_path: Path) -> None:
+    (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
+    say(f"map {tmp_path}")
+    assert "nothing here" in say("drive 1 0 1")
+    assert "no robot" in say("run 1")
+
+
+def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
+    desk = ["play", "--plain", "--workspace", str(tmp_path)]
+    ended = CliRunner().invoke(main, desk, input="run 1\nlook")
+    assert ended.exit_code == 0
+    assert ended.output.count("at 0:01.0") == 2
+    left = CliRunner().invoke(main, desk, input="quit\nrun 1\n")
+    assert left.exit_code == 0
+    assert "at 0:01.0" not in left.output
+
+
+def test_without_any_standard_input_it_just_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", None)
+    plain = Plain(find_place("simple"), find("forward"), seed=0, folder=tmp_path)
+    play_plainly(plain)
+    assert plain.is_over is False
+
+
+@pytest.mark.parametrize("arguments", [["nowhere"], ["maze", "--case", "x"], ["--controller", "nobody"]])
+def test_what_does_not_exist_ends_it_with_a_clear_word(tmp_path: Path, arguments: list[str]) -> None:
+    result = CliRunner().invoke(main, ["play", "--plain", "--workspace", str(tmp_path), *arguments])
+    assert result.exit_code == 2
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    assert arguments[-1] in result.output

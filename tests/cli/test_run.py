@@ -1,0 +1,194 @@
+"""``kit run``, ``kit replay`` and ``kit maps``, as they are typed."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from kit.cli import main
+
+TALKER = """
+import rclpy
+from rclpy.node import Node
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.create_timer(0.5, self.go)
+
+    def go(self):
+        self.get_logger().warning("logged")
+        print("printed")
+"""
+
+
+def kit(*words: str | Path) -> Result:
+    result = CliRunner().invoke(main, [str(word) for word in words])
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def test_the_same_words_give_the_same_run_to_the_bit() -> None:
+    words = ("run", "maze", "--steps", "700", "--json", "--seed")
+    runs = [json.loads(kit(*words, seed).stdout) for seed in ("1", "1", "2")]
+    assert runs[0] | {"wall_s": 0} == runs[1] | {"wall_s": 0}
+    assert runs[0]["fingerprint"] != runs[2]["fingerprint"]
+
+
+def test_what_the_controller_says_goes_to_standard_error(tmp_path: Path) -> None:
+    (tmp_path / "talker.py").write_text(TALKER)
+    result = kit("run", "simple", "--controller", tmp_path / "talker.py", "--steps", "120", "--json")
+    assert json.loads(result.stdout)["ticks"] == 120
+    assert result.stderr.count("logged") == 2
+    assert result.stderr.count("talker: printed") == 2
+    assert "0:00.5 talker: logged" in result.stderr
+
+
+def test_a_controller_of_the_workspace_is_found_from_anywhere(tmp_path: Path) -> None:
+    (tmp_path / "controllers").mkdir()
+    (tmp_path / "controllers" / "mine.py").write_text(TALKER)
+    for name in ("mine", "mine.py"):
+        words = ("--workspace", tmp_path, "--steps", "5", "--json", "--controller", name)
+        assert json.loads(kit("run", "simple", *words).stdout)["controller"] == "mine"
+    missing = kit("run", "simple", "--workspace", tmp_path, "--controller", "yours.py")
+    assert missing.exit_code == 2
+    assert str(tmp_path / "controllers") in missing.stderr
+
+
+@pytest.mark.parametrize("place", ["nowhere", "/nonexistent/world.yaml", "~nobody-of-that-name/world.yaml"])
+def test_a_place_that_does_not_exist_is_an_error_in_words(place: str) -> None:
+    result = kit("run", place)
+    assert result.exit_code == 2
+    assert "Traceback" not in result.stderr
+
+
+def test_a_home_that_nobody_has_is_an_error_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("KIT_WORKSPACE", raising=False)
+    monkeypatch.setattr("os.path.expanduser", lambda path: path)
+    result = kit("run", "maze")
+    assert result.exit_code == 2
+    assert "--workspace" in result.stderr
+
+
+@pytest.mark.parametrize("where", ["no/such/folder/run.npz", "file/run.npz"])
+def test_a_recording_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path, where: str) -> None:
+    (tmp_path / "file").touch()
+    start = time.monotonic()
+    result = kit("run", "maze", "--steps", "100000000", "--record", tmp_path / where)
+    assert result.exit_code == 2
+    assert str(tmp_path / where) in result.stderr
+    assert time.monotonic() - start < 20
+
+
+def test_a_run_is_kept_and_runs_again(tmp_path: Path) -> None:
+    file = tmp_path / "run.npz"
+    assert kit("run", "maze", "--steps", "300", "--record", file).exit_code == 0
+    again = kit("replay", "--check", file)
+    assert again.exit_code == 0
+    assert "to the bit" in again.stdout
+    _change(file, seed=7)  # other noise, other ranges; but what it was told is the same
+    assert kit("replay", "--check", file).exit_code == 0
+    _change(file, inputs=[])
+    other = kit("replay", "--check", file)
+    assert other.exit_code == 1
+    assert "not the same run" in other.stdout
+
+
+TWIST = "geometry_msgs/msg/Twist"
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"format": 99},
+        {"place": "nowhere"},
+        {"step_size": -1},
+        {"step_size": "nan"},
+        {"inputs": 5},
+        {"inputs": [[3, "explode", []]]},
+        {"inputs": [[3, "accept", ["/cmd_vel", "no/msg/Such", {}]]]},
+        {"inputs": [[3, "accept", ["/cmd_vel", "std_srvs/srv/Empty", {}]]]},
+        {"inputs": [[3, "accept", ["/cmd_vel", "std_msgs/msg/String", {}]]]},
+        {"inputs": [[3, "accept", ["/cmd_vel", TWIST, {"a": 1}]]]},
+        {"inputs": [[3, "accept", []]]},
+        {"inputs": [[3, "move_model", ["nobody", [0, 0, 0]]]]},
+        {"inputs": [[3, "spawn_model", ["/etc/passwd", "a", "", [0, 0, 0]]]]},
+    ],
+    ids=str,
+)
+def test_a_damaged_recording_is_an_error_in_words(tmp_path: Path, damage: dict[str, Any]) -> None:
+    file = tmp_path / "run.npz"
+    kit("run", "maze", "--steps", "20", "--record", file)
+    _change(file, **damage)
+    result = kit("replay", "--check", file)
+    assert result.exit_code == 2
+    assert result.stderr
+
+
+@pytest.mark.parametrize("content", [b"", b"text", b"PK\x03\x04" + bytes(200)])
+def test_a_foreign_file_is_no_recording(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / "run.npz"
+    file.write_bytes(content)
+    assert kit("replay", "--check", file).exit_code == 2
+    file.unlink()
+    assert "No such file" in kit("replay", "--check", file).stderr
+
+
+def test_a_recording_cut_short_is_no_recording(tmp_path: Path) -> None:
+    file = tmp_path / "run.npz"
+    kit("run", "maze", "--steps", "50", "--record", file)
+    whole = file.read_bytes()
+    for length in range(0, len(whole), 97):
+        file.write_bytes(whole[:length])
+        assert kit("replay", "--check", file).exit_code == 2
+
+
+def test_ctrl_c_ends_the_run_with_its_summary(tmp_path: Path) -> None:
+    words = [
+        sys.executable,
+        "-m",
+        "kit",
+        "run",
+        "maze",
+        "--steps",
+        "1000000000",
+        "--json",
+        "--speed",
+        "1",
+        "--serve",
+    ]
+    process = subprocess.Popen([*words, "--workspace", str(tmp_path)], stdout=subprocess.PIPE, text=True)
+    end = time.monotonic() + 30
+    while not any((tmp_path / ".running").glob("*/*.sock")):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    time.sleep(1.0)
+    os.kill(process.pid, signal.SIGINT)
+    out, _ = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert json.loads(out)["interrupted"] is True
+
+
+def test_a_map_in_characters_that_the_terminal_has() -> None:
+    assert "maze" in kit("maps").stdout
+    assert kit("maps", "maze", "--glyphs", "ascii").stdout.isascii()
+    assert kit("maps", "nowhere").exit_code == 2
+
+
+def _change(file: Path, **parts: Any) -> None:
+    """Replaces parts of a recording's header."""
+    arrays = dict(np.load(file))
+    header = json.loads(bytes(arrays["header"])) | parts
+    arrays["header"] = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    with file.open("wb") as opened:
+        np.savez(opened, **arrays)

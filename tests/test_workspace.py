@@ -1,0 +1,70 @@
+"""The user's folder: made once, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from kit.controllers import find, in_folder
+from kit.workspace import WorkspaceError, at_home, check_writable, open_workspace, write_atomically
+
+
+def test_the_folder_is_the_one_named_else_the_environments_else_in_the_home(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.delenv("KIT_WORKSPACE", raising=False)
+    assert open_workspace().folder == tmp_path / "robot-kit"
+    monkeypatch.setenv("KIT_WORKSPACE", "~/elsewhere")
+    assert open_workspace().folder == tmp_path / "elsewhere"
+    assert open_workspace(tmp_path / "named").folder == tmp_path / "named"
+    assert (tmp_path / "named" / "controllers").is_dir()
+    assert not open_workspace(tmp_path / "not made", make=False).folder.exists()
+
+
+def test_a_place_that_cannot_be_a_folder_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(WorkspaceError, match="--workspace"):
+        open_workspace(tmp_path / "file" / "below")
+    monkeypatch.setenv("KIT_WORKSPACE", "~nobody-of-that-name/kit")
+    with pytest.raises(WorkspaceError, match="home"):
+        open_workspace(make=False)
+    assert at_home("~nobody-of-that-name/x") == Path("~nobody-of-that-name/x")
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "file"
+    write_atomically(file, b"old")
+
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left on device") as caught:
+        write_atomically(file, b"new")
+    assert caught.value.filename == str(file)
+    assert file.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_what_cannot_be_written_is_known_beforehand(tmp_path: Path) -> None:
+    check_writable(tmp_path / "file")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(FileNotFoundError, match="below"):
+        check_writable(tmp_path / "no folder" / "below")
+    with pytest.raises(IsADirectoryError):
+        check_writable(tmp_path)
+
+
+@pytest.mark.timeout(20)
+def test_only_files_are_controllers(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.py")
+    (tmp_path / "folder.py").mkdir()
+    (tmp_path / "gone.py").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "deep.py").write_text("x = " + "(" * 5000 + ")" * 5000)
+    (tmp_path / "bytes.py").write_bytes(b"\xff\x00")
+    assert [each.name for each in in_folder(tmp_path)] == ["bytes", "deep"]
+    with pytest.raises(LookupError):
+        find("pipe.py", tmp_path)
