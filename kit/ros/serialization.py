@@ -100,7 +100,7 @@ class Serializer:
                 return lambda value: np.frombuffer(value, code)
             item = self._there_of(kind.item)
             if isinstance(kind.item, Scalar) and kind.item.python in (bool, bytes):
-                numbers = np.bool_ if kind.item.python is bool else np.uint8
+                numbers = np.bool_ if kind.item.python is bool else np.int8
                 return lambda values: np.array([item(value) for value in values], numbers)
             return lambda values: [item(value) for value in values]
         assert isinstance(kind, Scalar)
@@ -121,7 +121,7 @@ class Serializer:
             return lambda found: [item(value) for value in found]
         assert isinstance(kind, Scalar)
         if kind.python is bytes:
-            return lambda found: bytes([found])
+            return lambda found: bytes([found & 0xFF])
         return bool if kind.python is bool else _same
 
 
@@ -130,4 +130,5 @@ def _same(value: Any) -> Any:
 
 
 def _first(value: bytes) -> int:
-    return value[0]
+    """A byte as rosbags counts it: from -128."""
+    return (value[0] + 128) % 256 - 128

@@ -81,7 +81,9 @@ class Workshop:
         (folder / "launch").mkdir()
         (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
         points = [f"{program} = {name}.{program}:main" for program in programs]
-        (folder / "setup.py").write_text(f"setup(name='{name}', entry_points={{'console_scripts': {points}}})")
+        (folder / "setup.py").write_text(
+            f"setup(name='{name}', entry_points={{'console_scripts': {points}}})"
+        )
         (folder / name / "__init__.py").touch()
         for program, text in programs.items():
             if "def main" not in text:

@@ -24,7 +24,9 @@ Arguments (pass arguments as '<name>:=<value>'):
 def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     """With a service called in a callback, lambdas with arguments of their own, and a module below the package."""
     said: list[Line] = []
-    launch = Launch(find_launch(str(TWO_ROBOTS), None, ()), Graph(), arguments={"speed": "0.25"}, say=said.append)
+    launch = Launch(
+        find_launch(str(TWO_ROBOTS), None, ()), Graph(), arguments={"speed": "0.25"}, say=said.append
+    )
     try:
         launch.begin()
         assert launch.world is not None
@@ -39,7 +41,13 @@ def test_two_robots_of_one_model_file_are_driven_apart() -> None:
         names = {handle.full_name for handle in launch.graph.directory.nodes}
         assert {"/pair", "/tf", "/flatland_server"} <= names
         topics = {name for name, _ in launch.graph.directory.topic_names_and_types()}
-        assert {"/left/cmd_vel", "/right/cmd_vel", "/left/static_laser", "/right/static_laser", "/tf_static"} <= topics
+        assert {
+            "/left/cmd_vel",
+            "/right/cmd_vel",
+            "/left/static_laser",
+            "/right/static_laser",
+            "/tf_static",
+        } <= topics
         for _ in range(400):
             session.runner.tick()
         assert abs(session.runner.simulation.pose("left").y) < 1.0, "it was sent home at the wall"

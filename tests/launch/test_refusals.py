@@ -15,23 +15,59 @@ from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop, kit
 SERVER = "Node(package='flatland_server', executable='flatland_server', parameters=[{{{}}}]),"
 
 WRONG = {
-    "unknown package": ("Node(package='nav2', executable='planner'),", "bad.launch.py:12: package 'nav2' not found", 2),
-    "unknown program": ("Node(package='bad', executable='runn'),", "has no executable 'runn'; it has: run", 2),
+    "unknown package": (
+        "Node(package='nav2', executable='planner'),",
+        "bad.launch.py:12: package 'nav2' not found",
+        2,
+    ),
+    "unknown program": (
+        "Node(package='bad', executable='runn'),",
+        "has no executable 'runn'; it has: run",
+        2,
+    ),
     "unknown command": ("ExecuteProcess(cmd=['no_such_program']),", "'no_such_program' cannot be started", 2),
-    "unknown argument": ("LogInfo(msg=LaunchConfiguration('x')),", "launch/bad.launch.py:12: launch configuration 'x'", 2),
-    "needed argument": ("DeclareLaunchArgument('x'),", "launch/bad.launch.py:12: Required launch argument 'x'", 2),
+    "unknown argument": (
+        "LogInfo(msg=LaunchConfiguration('x')),",
+        "launch/bad.launch.py:12: launch configuration 'x'",
+        2,
+    ),
+    "needed argument": (
+        "DeclareLaunchArgument('x'),",
+        "launch/bad.launch.py:12: Required launch argument 'x'",
+        2,
+    ),
     "no world path": (SERVER.format("'update_rate': 100.0"), "the parameter 'world_path' is missing", 2),
     "no such world": (SERVER.format("'world_path': '/nowhere.yaml'"), "/nowhere.yaml", 2),
-    "bad rate": (SERVER.format("'world_path': 'x', 'update_rate': 'fast'"), "'update_rate' must be a number above 0", 2),
-    "bad show_viz": (SERVER.format("'world_path': 'x', 'show_viz': 'often'"), "'show_viz' must be true or false", 2),
+    "bad rate": (
+        SERVER.format("'world_path': 'x', 'update_rate': 'fast'"),
+        "'update_rate' must be a number above 0",
+        2,
+    ),
+    "bad show_viz": (
+        SERVER.format("'world_path': 'x', 'show_viz': 'often'"),
+        "'show_viz' must be true or false",
+        2,
+    ),
     "two worlds": (2 * SERVER.format("'world_path': 'x'"), "one flatland_server", 2),
-    "no transform": ("Node(package='tf2_ros', executable='static_transform_publisher', arguments=['1']),", "x y z yaw", 2),
-    "wrong types": ("Node(package='bad', executable='run', parameters=[{'speed': object()}]),", "no parameter can hold", 2),
+    "no transform": (
+        "Node(package='tf2_ros', executable='static_transform_publisher', arguments=['1']),",
+        "x y z yaw",
+        2,
+    ),
+    "wrong types": (
+        "Node(package='bad', executable='run', parameters=[{'speed': object()}]),",
+        "no parameter can hold",
+        2,
+    ),
     "wrong keyword": ("Node(package='bad', executable='run', ouput='screen'),", "has no argument 'ouput'", 2),
     "python error": ("LogInfo(msg=1 / 0),", "launch/bad.launch.py:12: ZeroDivisionError", 2),
     "no entity": ("42,", "'int' object has no attribute 'visit'", 2),
     "include cycle": ("IncludeLaunchDescription(ThisLaunchFile()),", "include each other without end", 2),
-    "name of a node": ("Node(package='bad', executable='run', name='9lives'),", "node name must not start with a number", 1),
+    "name of a node": (
+        "Node(package='bad', executable='run', name='9lives'),",
+        "node name must not start with a number",
+        1,
+    ),
 }
 
 
@@ -46,9 +82,21 @@ def test_what_is_wrong_is_said(case: str, launch: Launched, workshop: Workshop) 
 
 
 FAILING = {
-    "import": ("import no_such_library\ndef main(): pass\n", "bad/run.py:1: ModuleNotFoundError", "pip install no_such_library"),
-    "ros import": ("from nav2_msgs.msg import Path\ndef main(): pass\n", "No module named 'nav2_msgs'", "part of ROS 2"),
-    "missing name": ("from std_msgs.msg import Sting\ndef main(): pass\n", "cannot import name 'Sting'", "has no Sting"),
+    "import": (
+        "import no_such_library\ndef main(): pass\n",
+        "bad/run.py:1: ModuleNotFoundError",
+        "pip install no_such_library",
+    ),
+    "ros import": (
+        "from nav2_msgs.msg import Path\ndef main(): pass\n",
+        "No module named 'nav2_msgs'",
+        "part of ROS 2",
+    ),
+    "missing name": (
+        "from std_msgs.msg import Sting\ndef main(): pass\n",
+        "cannot import name 'Sting'",
+        "has no Sting",
+    ),
     "syntax": ("def main(:\n    pass\n", "bad/run.py:1: SyntaxError", ""),
     "callback": ("self.create_timer(0.01, lambda: 1 / 0)", "bad/run.py:9: ZeroDivisionError", ""),
     "no main": ("x = 1\ndef main_(): pass\n", "There is no main() in bad.run", ""),
@@ -57,7 +105,9 @@ FAILING = {
 
 
 @pytest.mark.parametrize("case", FAILING)
-def test_a_program_that_fails_is_named_and_the_rest_goes_on(case: str, launch: Launched, workshop: Workshop) -> None:
+def test_a_program_that_fails_is_named_and_the_rest_goes_on(
+    case: str, launch: Launched, workshop: Workshop
+) -> None:
     source, message, advice = FAILING[case]
     folder = workshop.package(
         "bad",

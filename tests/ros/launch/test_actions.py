@@ -108,7 +108,11 @@ def test_a_node_s_command_line(tmp_path: Path) -> None:
             arguments=["own", LaunchConfiguration("rate")],
             ros_arguments=["--log-level", "debug"],
             parameters=[
-                {"rate": LaunchConfiguration("rate"), "loud": LaunchConfiguration("loud"), "name": "yes it is"},
+                {
+                    "rate": LaunchConfiguration("rate"),
+                    "loud": LaunchConfiguration("loud"),
+                    "name": "yes it is",
+                },
                 {"a": {"b": 1, "c": [1.5, 2.0]}, "text": "'7'", "flag": True, "list": ["x", "y"]},
                 str(file),
             ],
@@ -172,9 +176,16 @@ def test_unknown_arguments_of_an_action_are_refused_at_once() -> None:
 
 
 def test_timers_go_off_in_the_launch_s_time() -> None:
-    later = TimerAction(period=2.0, actions=[LogInfo(msg="second"), TimerAction(period=1.0, actions=[LogInfo(msg="third")])])
+    later = TimerAction(
+        period=2.0, actions=[LogInfo(msg="second"), TimerAction(period=1.0, actions=[LogInfo(msg="third")])]
+    )
     cancelled = TimerAction(period=1.5, actions=[LogInfo(msg="never")])
-    run = Play(later, cancelled, TimerAction(period=LaunchConfiguration("wait"), actions=[LogInfo(msg="first")]), wait="1")
+    run = Play(
+        later,
+        cancelled,
+        TimerAction(period=LaunchConfiguration("wait"), actions=[LogInfo(msg="first")]),
+        wait="1",
+    )
     assert run.service.wake_ns == 1_000_000_000
     cancelled.cancel()
     run.go_on(1.0)
@@ -206,10 +217,17 @@ def test_what_happens_to_processes_is_reacted_to() -> None:
         server,
         RegisterEventHandler(OnProcessStart(target_action=server, on_start=[client])),
         RegisterEventHandler(
-            OnProcessExit(target_action=client, on_exit=lambda event, context: LogInfo(msg=f"{event.process_name} {event.returncode}"))
+            OnProcessExit(
+                target_action=client,
+                on_exit=lambda event, context: LogInfo(msg=f"{event.process_name} {event.returncode}"),
+            )
         ),
         RegisterEventHandler(
-            OnProcessIO(target_action=server, on_stdout=lambda event: None, on_stderr=lambda event, context: [LogInfo(msg=event.text.decode())])
+            OnProcessIO(
+                target_action=server,
+                on_stdout=lambda event: None,
+                on_stderr=lambda event, context: [LogInfo(msg=event.text.decode())],
+            )
         ),
     )
     run.go_on(0.0, ("started", 1, 11))
@@ -231,7 +249,11 @@ def test_a_process_is_started_again() -> None:
 
 def test_the_end_of_one_can_be_the_end_of_all() -> None:
     main = Node(executable="main", on_exit=Shutdown(reason="main is done"))
-    run = Play(main, RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="good bye")])), ExecuteProcess(cmd=["x"]))
+    run = Play(
+        main,
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="good bye")])),
+        ExecuteProcess(cmd=["x"]),
+    )
     run.go_on(1.0, ("exited", 1, 11, 0))
     assert run.said == ["good bye"]
     assert run.requests[-1] == ["shutdown", "main is done"]
@@ -262,7 +284,10 @@ def write(file: Path, body: str) -> str:
 
 
 def test_other_launch_files_are_included(tmp_path: Path) -> None:
-    inner = write(tmp_path / "inner.launch.py", "LaunchDescription([LogInfo(msg=['in ', LaunchConfiguration('room'), ' ', ThisLaunchFileDir()])])")
+    inner = write(
+        tmp_path / "inner.launch.py",
+        "LaunchDescription([LogInfo(msg=['in ', LaunchConfiguration('room'), ' ', ThisLaunchFileDir()])])",
+    )
     run = Play(
         IncludeLaunchDescription(LaunchDescriptionSource(inner), launch_arguments={"room": "maze"}.items()),
         IncludeLaunchDescription(inner, condition=IfCondition("false")),

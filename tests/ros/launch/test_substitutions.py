@@ -84,7 +84,9 @@ def test_a_package_s_share_is_its_folder(tmp_path: Path, monkeypatch: pytest.Mon
     (tmp_path / "src" / "mine").mkdir(parents=True)
     (tmp_path / "src" / "mine" / "package.xml").write_text("<package><name>my_package</name></package>")
     monkeypatch.setenv(SEARCH_VARIABLE, str(tmp_path))
-    run = Play(LogInfo(msg=FindPackageShare("my_package")), LogInfo(msg=FindPackageShare("my_package") / "world"))
+    run = Play(
+        LogInfo(msg=FindPackageShare("my_package")), LogInfo(msg=FindPackageShare("my_package") / "world")
+    )
     assert run.said == [str(tmp_path / "src/mine"), str(tmp_path / "src/mine/world")]
 
 
@@ -96,7 +98,7 @@ def test_arguments_have_defaults_choices_and_needs() -> None:
     ]
     assert Play(*declared).said == ["1x1"]
     assert Play(*declared, a="2").said == ["2x2"]
-    with pytest.raises(LaunchError, match="'speed'.*how fast.*speed:=VALUE"):
+    with pytest.raises(LaunchError, match=r"'speed'.*how fast.*speed:=VALUE"):
         Play(DeclareLaunchArgument("speed", description="how fast"))
     with pytest.raises(LaunchError, match=r"Valid options are: \['red', 'blue'\]"):
         Play(DeclareLaunchArgument("colour", choices=["red", "blue"]), colour="green")

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 import rclpy
-from rclpy.node import Node
-from rclpy.publisher import Publisher
-from geometry_msgs.msg import Pose2D, Twist
-from nav_msgs.msg import Odometry
 from flatland_msgs.msg import Collisions
 from flatland_msgs.srv import MoveModel
+from geometry_msgs.msg import Pose2D, Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.publisher import Publisher
 from tf_transformations import euler_from_quaternion
 
 from .driving.homing import *

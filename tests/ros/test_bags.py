@@ -1,0 +1,186 @@
+"""Bags: written as ROS 2 stores them, in the graph's time, and read by others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.rosbag2 import Reader, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from kit.msg.flatland_msgs import Collision, Collisions
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.msg.sensor_msgs import LaserScan
+from kit.msg.std_msgs import String
+from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
+from kit.ros.graph import Graph
+from kit.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+TICK_NS = 10_000_000
+
+
+def record(
+    folder: Path, storage: Storage = "mcap", topics: list[str] | None = None, ticks: int = 20
+) -> Graph:
+    """A second of scans, commands, collisions, and a topic that begins late."""
+    graph = Graph()
+    node = graph.create_node("robot")
+    scans = node.create_publisher(
+        LaserScan, "scan", QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    )
+    commands = node.create_publisher(Twist, "cmd_vel", 10)
+    bumps = node.create_publisher(Collisions, "collisions", 10)
+    lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_publisher(String, "map_name", lasting).publish(String(data="maze"))
+    late = None
+    with BagRecorder(graph, folder, storage=storage, topics=topics) as recorder:
+        for i in range(ticks):
+            scan = LaserScan(range_max=10.0, ranges=[0.1 * i, float("nan")])
+            scan.header.stamp.nanosec, scan.header.frame_id = graph.now_ns, "laser"
+            scans.publish(scan)
+            commands.hand_over(Twist(linear=Vector3(x=0.5 * i)))
+            bumps.publish(Collisions(collisions=[Collision(entity_a="serp", magnitude_forces=[1.5])]))
+            if i == ticks // 2:
+                late = node.create_publisher(String, "late", 10)
+            if late is not None:
+                late.publish(String(data=str(i)))
+            recorder.exchange()
+            graph.advance(graph.now_ns + TICK_NS)
+    return graph
+
+
+def test_an_independent_reader_decodes_what_was_said(tmp_path: Path) -> None:
+    record(tmp_path / "bag")
+    with (tmp_path / "bag" / "bag.mcap").open("rb") as opened:
+        messages = make_reader(opened, decoder_factories=[DecoderFactory()]).iter_decoded_messages()
+        found = [(channel.topic, message.log_time, decoded) for _, channel, message, decoded in messages]
+    by_topic: dict[str, list[Any]] = {}
+    for topic, time_ns, decoded in found:
+        by_topic.setdefault(topic, []).append((time_ns, decoded))
+    assert [time for time, _ in by_topic["/scan"]] == [i * TICK_NS for i in range(20)]
+    assert all(scan.header.stamp.nanosec == time for time, scan in by_topic["/scan"])
+    assert [scan.ranges[0] for _, scan in by_topic["/scan"]] == pytest.approx([0.1 * i for i in range(20)])
+    assert all(scan.ranges[1] != scan.ranges[1] for _, scan in by_topic["/scan"])
+    assert [twist.linear.x for _, twist in by_topic["/cmd_vel"]] == [0.5 * i for i in range(20)]
+    assert by_topic["/collisions"][0][1].collisions[0].magnitude_forces == [1.5]
+    assert [text.data for _, text in by_topic["/map_name"]] == ["maze"]
+    assert [text.data for _, text in by_topic["/late"]] == [str(i) for i in range(11, 20)]
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_what_is_written_is_read(storage: Storage, tmp_path: Path) -> None:
+    record(tmp_path / "bag", storage)
+    bag = read_bag(tmp_path / "bag")
+    assert (bag.storage, bag.start_ns, bag.duration_ns) == (storage, 0, 19 * TICK_NS)
+    counts = {topic.name: topic.count for topic in bag.topics}
+    assert counts["/scan"] == counts["/cmd_vel"] == counts["/collisions"] == 20
+    qos = {topic.name: topic.qos for topic in bag.topics}
+    assert qos["/scan"].is_best_effort
+    assert qos["/map_name"].is_transient_local
+    found = list(read_messages(tmp_path / "bag", ["/cmd_vel", "/collisions"]))
+    assert [time for time, topic, _ in found if topic == "/cmd_vel"] == [i * TICK_NS for i in range(20)]
+    assert sorted(found, key=lambda entry: entry[0]) == found
+    twists: list[Any] = [message for _, topic, message in found if topic == "/cmd_vel"]
+    assert twists == [Twist(linear=Vector3(x=0.5 * i)) for i in range(20)]
+    with Reader(tmp_path / "bag") as reader:
+        assert reader.message_count == bag.count
+
+
+def test_humble_reads_sqlite3_with_its_own_definitions(tmp_path: Path) -> None:
+    record(tmp_path / "bag", "sqlite3")
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with Reader(tmp_path / "bag") as reader:
+        connection = next(each for each in reader.connections if each.topic == "/scan")
+        assert connection.digest == store.hash_rihs01("sensor_msgs/msg/LaserScan")
+        _, _, data = next(iter(reader.messages([connection])))
+        scan: Any = store.deserialize_cdr(data, "sensor_msgs/msg/LaserScan")
+    assert scan.header.frame_id == "laser"
+    assert "version: 8" in (tmp_path / "bag" / "metadata.yaml").read_text()
+
+
+def test_chosen_topics_alone_are_recorded_and_missing_ones_known(tmp_path: Path) -> None:
+    record(tmp_path / "bag", topics=["/cmd_vel"])
+    assert [topic.name for topic in read_bag(tmp_path / "bag").topics] == ["/cmd_vel"]
+    graph = Graph()
+    with BagRecorder(graph, tmp_path / "none", topics=["/x", "/y"]) as recorder:
+        assert recorder.missing == ("/x", "/y")
+    assert read_bag(tmp_path / "none").count == 0
+    assert list(read_messages(tmp_path / "none")) == []
+    assert [handle.name for handle in graph.directory.nodes] == []
+
+
+def test_nothing_is_overwritten_and_nothing_appears_before_it_is_complete(tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    recorder = BagRecorder(Graph(), folder)
+    assert not folder.exists()
+    recorder.close()
+    recorder.close()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bag"]
+    with pytest.raises(BagError, match="is there already"):
+        BagRecorder(Graph(), folder)
+    with pytest.raises(BagError, match="no bag can be written there"):
+        BagRecorder(Graph(), Path("/proc/nowhere/bag"))
+
+
+def test_what_a_killed_recording_left_is_no_hindrance(tmp_path: Path) -> None:
+    killed = BagRecorder(Graph(), tmp_path / "bag")
+    killed._writer.abort()  # as if the process were gone: no index, no summary
+    record(tmp_path / "bag")
+    assert read_bag(tmp_path / "bag").count > 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bag"]
+
+
+def test_a_full_disk_ends_the_bag_and_not_the_publisher(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    graph = Graph()
+    publisher = graph.create_node("robot").create_publisher(String, "words", 10)
+    recorder = BagRecorder(graph, tmp_path / "bag")
+    publisher.publish(String(data="one"))
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Writer, "write", full)
+    publisher.publish(String(data="two"))
+    publisher.publish(String(data="three"))
+    assert recorder.failure is not None
+    assert "No space left on device" in recorder.failure
+    with pytest.raises(BagError, match="ends early"):
+        recorder.close()
+    assert read_bag(tmp_path / "bag").count == 1
+
+
+def test_unknown_types_are_left_out_by_name(tmp_path: Path) -> None:
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(tmp_path / "bag", version=9) as writer:
+        goal: Any = store.types["actionlib_msgs/msg/GoalID"]
+        stamp: Any = store.types["builtin_interfaces/msg/Time"]
+        connection = writer.add_connection("/goal", "actionlib_msgs/msg/GoalID", typestore=store)
+        data = store.serialize_cdr(goal(stamp(0, 0), "one"), "actionlib_msgs/msg/GoalID")
+        writer.write(connection, 5, bytes(data))
+    skipped: list[tuple[str, str]] = []
+    found = list(read_messages(tmp_path / "bag", skipped=lambda *about: skipped.append(about)))
+    assert (found, skipped) == ([], [("/goal", "actionlib_msgs/msg/GoalID")])
+
+
+@pytest.mark.parametrize("damage", ["no metadata", "broken metadata", "no data", "cut data", "no folder"])
+def test_damaged_bags_are_refused(damage: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder)
+    metadata, data = folder / "metadata.yaml", folder / "bag.mcap"
+    if damage == "no metadata":
+        metadata.unlink()
+    elif damage == "broken metadata":
+        metadata.write_text("rosbag2_bagfile_information: [")
+    elif damage == "no data":
+        data.unlink()
+    elif damage == "cut data":
+        data.write_bytes(data.read_bytes()[:200])
+    else:
+        folder = tmp_path / "other"
+    with pytest.raises(BagError, match=r"bag|other"):
+        list(read_messages(folder))
