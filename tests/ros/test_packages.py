@@ -8,7 +8,9 @@ import pytest
 
 from kit.ros.packages import Executable, PackageError, find_packages, read_package
 
-XML = "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
+XML = (
+    "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
+)
 SETUP = """
 from setuptools import setup
 package_name = 'pkg'
@@ -33,7 +35,11 @@ def package(folder: Path, setup: str = "", **files: str) -> Path:
     [
         ("entry_points={'console_scripts': ['run = pkg.main:main']}", "run", "pkg.main"),
         ("entry_points={'console_scripts': ['run=pkg.__init__:main',],}", "run", "pkg.__init__"),
-        ("entry_points={'console_scripts': [package_name + ' = ' + package_name + '.a:main']}", "pkg", "pkg.a"),
+        (
+            "entry_points={'console_scripts': [package_name + ' = ' + package_name + '.a:main']}",
+            "pkg",
+            "pkg.a",
+        ),
         ("entry_points={'console_scripts': [f'{package_name} = {package_name}.b:main']}", "pkg", "pkg.b"),
         ("entry_points={'console_scripts': 'run = pkg.c:main'}", "run", "pkg.c"),
     ],
@@ -47,11 +53,15 @@ def test_programs_are_read_from_setup_py_without_running_it(
 
 
 def test_programs_may_stand_in_other_files(tmp_path: Path) -> None:
-    configured = package(tmp_path / "a", setup__cfg="[options.entry_points]\nconsole_scripts =\n    run = pkg.m:go\n")
+    configured = package(
+        tmp_path / "a", setup__cfg="[options.entry_points]\nconsole_scripts =\n    run = pkg.m:go\n"
+    )
     assert read_package(configured).executables == (Executable("run", "pkg.m", "go"),)
     project = package(tmp_path / "b", pyproject__toml="[project.scripts]\nrun = 'pkg.m:go'\n")
     assert read_package(project).executables == (Executable("run", "pkg.m", "go"),)
-    moved = package(tmp_path / "c", "package_dir={'': 'src'}, entry_points={'console_scripts': ['r = pkg.m:go']}")
+    moved = package(
+        tmp_path / "c", "package_dir={'': 'src'}, entry_points={'console_scripts': ['r = pkg.m:go']}"
+    )
     assert read_package(moved).source == moved / "src"
 
 
@@ -81,7 +91,9 @@ def test_broken_manifests_are_refused(tmp_path: Path) -> None:
 
 
 def test_programs_and_their_files_are_found_by_name(tmp_path: Path) -> None:
-    found = read_package(package(tmp_path / "p", "entry_points={'console_scripts': ['run = pkg.m:go', 'x = pkg.n:go']}"))
+    found = read_package(
+        package(tmp_path / "p", "entry_points={'console_scripts': ['run = pkg.m:go', 'x = pkg.n:go']}")
+    )
     (tmp_path / "p" / "pkg").mkdir()
     (tmp_path / "p" / "pkg" / "m.py").touch()
     assert found.file_of(found.executable("run")) == tmp_path / "p/pkg/m.py"
