@@ -77,6 +77,6 @@ def _write_names(frame: Frame, shares: Shares, parts: Sequence[Part]) -> None:
     newest = shares.counts[-1] / shares.counts[-1].sum() if len(shares.x) else np.full(len(parts), np.nan)
     column = 0
     for part, share in zip(parts, newest.tolist(), strict=True):
-        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {share:.0%}")
+        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}")
         write(frame, 0, column, text, part.role)
         column += len(text) + 1

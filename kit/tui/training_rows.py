@@ -173,7 +173,7 @@ def _cases(standing: Standing, width: int, height: int) -> tuple[Row, list[Row]]
         bar = max(0, width - wide - 13)
         title = row((f"{'case':{wide}} {'of late':{bar}} train  test"[:width], "dim"))
         return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
-    per_row = max(1, width // (NAME + 4))
+    per_row = max(1, (width + 1) // (NAME + 5))
     tested = any(sum(case.tested) for case in standing.cases)
     title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
     cells = [_cell(name, case.tested if tested else case.trained, standing.plan.goal) for name, case in cases]
@@ -198,7 +198,7 @@ def _bar(counts: Sequence[int], width: int) -> tuple[tuple[str, str], ...]:
 
 def _cell(name: str, counts: Sequence[int], goal: float | None) -> Row:
     enough = sum(counts) and goal is not None and counts[0] / sum(counts) >= goal
-    return row(f"{name:{NAME}.{NAME}}", (f"{_percent(counts):>3} ", "good" if enough else "bold"))
+    return row(f"{name:{NAME}.{NAME}}", (f"{_percent(counts):>4}", "good" if enough else "bold"), " ")
 
 
 def _percent(counts: Sequence[int]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import time
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -34,6 +35,9 @@ def kit() -> Iterator[Open]:
         terminal.close()
     for training in all_runs(Path(os.environ["KIT_WORKSPACE"]) / "runs"):
         training.ask("stop")
+        end = time.monotonic() + 30
+        while training.alive and time.monotonic() < end:
+            time.sleep(0.05)
 
 
 def the_run(name: str = "mine") -> Run:
@@ -128,7 +132,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
 def test_a_network_learns_and_its_policy_drives_without_torch_in_the_face(kit: Open) -> None:
     terminal = kit("train", "turn", "--steps", "40000", "--name", "deep")
     terminal.until(
-        lambda: "finished" in terminal.text and ROBOT.search(terminal.text), "the end and the robot"
+        lambda: "finished" in terminal.text and ROBOT.search(terminal.text), "the end and the robot", 90
     )
     terminal.send(b"n")
     terminal.until(lambda: "best" in terminal.text, "the best policy at the wheel")

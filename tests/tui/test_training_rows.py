@@ -45,7 +45,7 @@ def test_outcomes_are_called_as_in_the_learning_side() -> None:
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-@pytest.mark.parametrize(("width", "height"), [(38, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
+@pytest.mark.parametrize(("width", "height"), [(39, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
 def test_every_case_and_every_term_is_on_some_page(task: object, width: int, height: int) -> None:
     cases = tuple(case.name for _, case in task.courses())  # type: ignore[attr-defined]  # a Task
     pages = say.pages(full(cases, 17), width, height)
@@ -71,7 +71,7 @@ def test_bars_show_what_the_counts_say() -> None:
 
 
 def test_a_hundred_means_all() -> None:
-    assert "99 " in text(say.pages(standing(Examined(1, 1.0, {"a": [999, 1, 0]}, True)), 38, 9)[0][1])
+    assert "99 " in text(say.pages(standing(Examined(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1])
 
 
 def test_short_names_drop_the_words_that_all_begin_with() -> None:

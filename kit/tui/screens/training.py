@@ -78,8 +78,8 @@ class TrainingScreen(StillScreen[None]):
     TrainingScreen #heading, TrainingScreen #figures, TrainingScreen #caption {{ height: 1; }}
     TrainingScreen #note, TrainingScreen #keys {{ height: 1; }}
     TrainingScreen #middle {{ height: 1fr; }}
-    TrainingScreen #left {{ width: 41fr; }}
-    TrainingScreen #right {{ width: 39fr; padding: 0 0 0 1; }}
+    TrainingScreen #left {{ width: 1fr; }}
+    TrainingScreen #right {{ width: 1fr; padding: 0 0 0 1; }}
     TrainingScreen CurveView {{ height: 11fr; }}
     TrainingScreen SharesView {{ height: 9fr; }}
     TrainingScreen #panel {{ height: {PANEL_ROWS}; }}
