@@ -13,8 +13,8 @@ import numpy as np
 from grader.checks.contract import Check, NoParams, check
 from grader.drive import Drive
 
-SAME_WAY: Final = 1e-3
-"""Commands that differ by less [m/s, rad/s] are the same."""
+LONGEST_STRIDE: Final = 0.1
+"""A robot that is farther [m] from where it was one tick ago was moved by hand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +104,14 @@ def moves(drive: Drive, params: NoParams) -> float:
     return drive.score.distance_m
 
 
+@check(none=2, full=1, unit="m/s")
+def top_speed(drive: Drive, params: NoParams) -> float:
+    """The robot was told to drive as no robot can: it went up to {actual} ({where}); {full} is the limit."""
+    strides = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) if drive.steps > 1 else np.zeros(1)
+    driven = strides[strides <= LONGEST_STRIDE]
+    return float(driven.max(initial=0.0)) / drive.recording.step_size
+
+
 @check(none=2.0, full=1.2)
 def short_way(drive: Drive, params: NoParams) -> float:
     """The way was {actual} times as long as the straight line to the target ({where}); {full} or less earns all
@@ -148,7 +156,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
         each.name: each
         for each in (
             *(runs, reached, in_time, approach, bumps, clearance),
-            *(keeps_distance, smooth, moves, short_way, rate, topics, obeys),
+            *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys),
         )
     }
 )

@@ -73,6 +73,7 @@ def test_what_a_drive_measures(forward: Drive) -> None:
     assert measure("topics", forward) == 1.0
     assert measure("topics", forward, Topics(("/cmd_vel std_msgs/msg/String", "/cmd_vel"))) == 0.5
     assert measure("bumps", forward) == 0.0
+    assert measure("top_speed", forward) == pytest.approx(0.3, abs=0.01)
     assert measure("obeys", forward) == 0.0
     assert measure("short_way", forward) == math.inf
     assert 0.1 < measure("approach", forward) < 0.9

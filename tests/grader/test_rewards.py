@@ -264,10 +264,6 @@ def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: P
 
 
 def test_training_ends_where_the_reward_fails(tmp_path: Path) -> None:
-    exam = examine(
-        tmp_path, "def reward(distance):\n    return 1.0 / (distance < 100) if distance != 1.6 else 0.0"
-    )
-    assert exam.failure is None
     broken = examine(tmp_path, "n = [0]\ndef reward(distance):\n    n[0] += 1\n    return 1 / (n[0] != 5000)")
     assert broken.failure is None
     assert broken.trained(BRIEF) == 0.0
