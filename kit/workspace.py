@@ -72,11 +72,16 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
             ):
                 part.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise WorkspaceError(
-                f"{workspace.folder}: cannot be used as the workspace ({error.strerror}). "
-                "Name another folder with --workspace FOLDER."
-            ) from None
+            raise unusable(workspace.folder, error) from None
     return workspace
+
+
+def unusable(folder: Path, error: OSError) -> WorkspaceError:
+    """What to say of a workspace in which something could not be made."""
+    return WorkspaceError(
+        f"{folder}: cannot be used as the workspace ({error.strerror}). "
+        "Name another folder with --workspace FOLDER."
+    )
 
 
 def check_writable(path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find, in_folder
+from kit.desk import open_desk
 from kit.workspace import WorkspaceError, at_home, check_writable, open_workspace, write_atomically
 
 
@@ -47,6 +48,15 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert caught.value.filename == str(file)
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_desk_on_a_full_disk_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(WorkspaceError, match="No space left on device"):
+        open_desk(tmp_path)
 
 
 def test_what_cannot_be_written_is_known_beforehand(tmp_path: Path) -> None:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Final
 
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
+
+WIDTH: Final = 76
+LINE: Final = WIDTH - 6
+"""Characters of a line, beside the border and the scroll bar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +39,13 @@ class Picker(ModalScreen[str | None]):
         Binding("pagedown", "move(10)", show=False),
         Binding("pageup", "move(-10)", show=False),
     ]
-    DEFAULT_CSS = """
-    Picker { align: center middle; }
-    Picker > Vertical {
-        width: 76; max-width: 100%; height: auto; max-height: 22; border: solid $foreground; padding: 0 1;
-    }
-    Picker Input, Picker Input:focus { border: none; padding: 0; height: 1; background: transparent; }
-    Picker OptionList { border: none; padding: 0; height: auto; max-height: 19; background: transparent; }
+    DEFAULT_CSS = f"""
+    Picker {{ align: center middle; }}
+    Picker > Vertical {{
+        width: {WIDTH}; max-width: 100%; height: auto; max-height: 22; border: solid $foreground; padding: 0 1;
+    }}
+    Picker Input, Picker Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
+    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: 19; background: transparent; }}
     """
 
     def __init__(self, title: str, choices: Sequence[Choice], chosen: str | None = None) -> None:
@@ -87,10 +93,12 @@ class Picker(ModalScreen[str | None]):
         shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
         options = self.query_one(OptionList)
         options.clear_options()
-        options.add_options(
-            Option(f"{choice.name:{self._width}}{choice.text}".replace("[", "\\["), id=choice.key)
-            for choice in shown
-        )
+        options.add_options(Option(self._line(choice), id=choice.key) for choice in shown)
         keys = [choice.key for choice in shown]
         if shown:
             options.highlighted = keys.index(self._chosen) if self._chosen in keys else 0
+
+    def _line(self, choice: Choice) -> Text:
+        """Name and text; what does not fit on a line stands below the text."""
+        lines = textwrap.wrap(choice.text, max(20, LINE - self._width)) or [""]
+        return Text(f"{choice.name:{self._width}}" + ("\n" + " " * self._width).join(lines))

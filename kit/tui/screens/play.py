@@ -93,7 +93,7 @@ class PlayScreen(WatchScreen):
         from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
 
         if self.view is not None:
-            self.app.push_screen(GraphScreen(self._look, self.behind, self.place_name))
+            self.app.push_screen(GraphScreen(self._look, self.behind, self.view.place))
 
     @work
     async def action_maps(self) -> None:
