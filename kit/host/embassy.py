@@ -6,15 +6,16 @@ two processes: a student's node beside the kit, a second terminal beside a runni
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import MappingProxyType
 from typing import Any, Final, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
-from kit.host.pump import PipePump
+from kit.host.pump import Exchange, PipePump
 from kit.host.remote import Census, Mirror
 from kit.host.wire import Json
 from kit.msg.message import Message
-from kit.ros.graph import Graph
+from kit.ros.graph import Graph, Pump
 from kit.ros.node import Node
 from kit.ros.service import Call
 
@@ -32,8 +33,10 @@ class Conversation(Protocol):
 class Embassy:
     """The child's graph, and what goes to and fro between it and the kit's."""
 
-    def __init__(self, conversation: Conversation, now_ns: int) -> None:
-        self.graph = Graph(now_ns, pump=PipePump(self))
+    def __init__(
+        self, conversation: Conversation, now_ns: int, pump: Callable[[Exchange], Pump] = PipePump
+    ) -> None:
+        self.graph = Graph(now_ns, pump=pump(self))
         self._conversation = conversation
         self._codec = Codec(in_child=True)
         self._mirror = Mirror(self.graph, self)

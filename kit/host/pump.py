@@ -27,6 +27,17 @@ class Exchange(Protocol):
         """Answers that the program waits, until ``wake_ns`` at the latest, and takes in the next question."""
 
 
+class LonePump:
+    """The pump of a program that has one thread in its graph, whatever others there are in its process."""
+
+    def __init__(self, exchange: Exchange) -> None:
+        self._exchange = exchange
+
+    def wait(self, graph: Graph, until_ns: int | None) -> None:
+        """Called by that thread when it waits."""
+        self._exchange.turn(until_ns)
+
+
 class PipePump:
     """The ``Pump`` of a graph whose time and messages come through the pipe."""
 

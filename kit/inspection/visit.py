@@ -14,6 +14,7 @@ from typing import Any, Final, Self
 
 import kit
 from kit.host.embassy import Embassy
+from kit.host.pump import LonePump
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.line import Line
 from kit.inspection.sockets import RunningWorld, connect
@@ -58,7 +59,7 @@ class Visit:
                 f"{world.name} runs with version {start['version']} of the kit, this is {kit.__version__}."
             )
         self.world: str = start["world"]
-        self._embassy = Embassy(self._talk, start["now"])
+        self._embassy = Embassy(self._talk, start["now"], LonePump)
         self._embassy.hear(start["events"])
 
     def __enter__(self) -> Self:
@@ -119,6 +120,10 @@ class Visit:
                     executor.spin_once()
                 else:
                     executor.spin_once_until_future_complete(future)
+
+    def catch_up(self) -> None:
+        """Waits for the world's next tick: ``graph`` has its present time then, and not that of the last news."""
+        self._embassy.turn(self.graph.now_ns)
 
     def close(self) -> None:
         """Leaves. May be called twice."""

@@ -207,7 +207,7 @@ def test_a_visitor_that_vanishes_takes_its_nodes_along(begin: Callable[..., Tick
     world = begin()
     visit = Visit(find_world(sockets_folder(tmp_path)))
     visit.make_node("ghost").create_service(Trigger, "/haunt", lambda request, response: response)
-    visit._embassy.turn(visit.graph.now_ns)  # tells of the node
+    visit.catch_up()
     until(lambda: "/haunt" in world.graph.directory.services)
     visit._talk.hang_up()
     until(lambda: "/haunt" not in world.graph.directory.services)
@@ -222,7 +222,7 @@ def test_a_visitor_that_stops_listening_is_let_go(
     publisher = world.node.create_publisher(String, "/much", 10)
     visit = Visit(find_world(sockets_folder(tmp_path)))
     visit.node.create_subscription(String, "/much", lambda message: None, 10)
-    visit._embassy.turn(visit.graph.now_ns)
+    visit.catch_up()
     for i in range(60):
         publisher.publish(String(data=str(i)))
     until(lambda: world.door.visitors == 0)

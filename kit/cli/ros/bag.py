@@ -137,6 +137,7 @@ def play(
 
     try:
         while True:
+            visit.catch_up()
             began_ns = graph.now_ns
             for time_ns, topic, message in read_messages(folder, topics or None, skipped=skipped):
                 graph.wait(lambda: False, began_ns + int((time_ns - bag.start_ns) / rate))

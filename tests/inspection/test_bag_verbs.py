@@ -1,0 +1,91 @@
+"""``kit ros bag``: a summary as ROS 2 prints it, and a bag said again in the running world."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from kit.msg.std_msgs import String
+from kit.ros.bags import BagRecorder, Storage
+from kit.ros.graph import Graph
+from tests.inspection.conftest import SPEED, Kit, Stage
+
+INFO = """
+Files:             words.mcap
+Bag size:          {size}
+Storage id:        mcap
+ROS Distro:        rosbags
+Duration:          0.400000000s
+Start:             Jan  1 1970 00:00:01.500000000 (1.500000000)
+End:               Jan  1 1970 00:00:01.900000000 (1.900000000)
+Messages:          5
+Topic information: Topic: /more | Type: std_msgs/msg/String | Count: 0 | Serialization Format: cdr
+                   Topic: /words | Type: std_msgs/msg/String | Count: 5 | Serialization Format: cdr
+"""
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    return write(tmp_path / "words")
+
+
+def write(folder: Path, storage: Storage = "mcap") -> Path:
+    """Five words, a tenth of a second apart, from 1.5 s on."""
+    graph = Graph(1_500_000_000)
+    node = graph.create_node("writer")
+    publisher = node.create_publisher(String, "words", 10)
+    node.create_publisher(String, "more", 10)
+    with BagRecorder(graph, folder, topics=["/words", "/more"], storage=storage):
+        for word in "abcde":
+            publisher.publish(String(data=word))
+            graph.advance(graph.now_ns + 100_000_000)
+    return folder
+
+
+def test_a_bag_s_summary(kit_ros: Kit, bag: Path) -> None:
+    out, err, code = kit_ros("bag", "info", str(bag))
+    size = f"{(bag / 'words.mcap').stat().st_size / 1024:.1f} KiB"
+    assert (out, err, code) == (INFO.format(size=size), "", 0)
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_a_bag_is_said_again_at_its_own_pace(
+    storage: Storage, kit_ros: Kit, stage: Stage, tmp_path: Path
+) -> None:
+    times: list[int] = []
+    node = stage.graph.create_node("clock_watcher")
+    node.create_subscription(String, "/demo/orders", lambda message: times.append(stage.graph.now_ns), 10)
+    folder = write(tmp_path / "again", storage)
+    stage.live.set_factor(1.0)  # a busy machine is late by wall time: the slower the world, the less that is
+    try:
+        out, err, code = kit_ros(
+            "bag", "play", str(folder), "-r", "0.5", "-m", "/words:=/demo/orders", "--topics", "/words"
+        )
+    finally:
+        stage.live.set_factor(SPEED)
+        node.destroy_node()
+    assert code == 0, out + err
+    assert stage.talker.heard[-5:] == list("abcde")
+    gaps = [(b - a) / 1e9 for a, b in pairwise(times)]
+    assert gaps == pytest.approx([0.2] * 4, abs=0.15), "half as fast, in the world's time"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("record",), "all of them with -a"),
+        (("record", "-a", "/x"), "all of them with -a"),
+        (("record", "-a", "-o", "{bag}", "-s", "sqlite3"), "is there already"),
+        (("play", "/nowhere"), "not a bag"),
+        (("play", "{bag}", "--topics", "/other"), "there is no /other in it; there are: /more, /words"),
+        (("play", "{bag}", "-m", "/words"), "--remap needs FROM:=TO"),
+        (("info", "/nowhere"), "not a bag"),
+    ],
+)
+def test_what_cannot_be_done_is_said(words: tuple[str, ...], message: str, kit_ros: Kit, bag: Path) -> None:
+    out, err, code = kit_ros("bag", *(word.format(bag=bag) for word in words))
+    assert message in err
+    assert code == 1
+    assert "Traceback" not in out + err
