@@ -70,7 +70,7 @@ def show(
 ) -> None:
     """Show the field of a map: arrows over the floor, charges, traps, what acts on each robot.
 
-    On the full screen, `i` chooses an intensity, `[` and `]` change it, `f` shows the planner's field instead.
+    On the full screen, `i` chooses an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
     from kit.desk import open_desk
     from kit.workspace import WorkspaceError

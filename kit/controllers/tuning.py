@@ -11,9 +11,9 @@ from kit.ros.graph import Graph
 class Tuner:
     """Of one node, by its service ``set_parameters``. Never waits; a node without the service is left alone."""
 
-    def __init__(self, graph: Graph, node: str) -> None:
-        self._node = graph.create_node(f"{node}_tuner")
-        self._client = self._node.create_client(SetParameters, f"/{node}/set_parameters")
+    def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:
+        self._node = graph.create_node(f"{node}_tuner", namespace)
+        self._client = self._node.create_client(SetParameters, f"{node}/set_parameters")
         self._told: dict[str, float] | None = None
 
     def look(self, wanted: Mapping[str, float]) -> None:

@@ -63,7 +63,7 @@ class FieldsScreen(PlayScreen):
         Binding("i", "next_intensity", show=False),
         Binding("left_square_bracket", f"scale({1 / STEP})", show=False),
         Binding("right_square_bracket", f"scale({STEP})", show=False),
-        Binding("t", "next_field", show=False),
+        Binding("o", "next_field", show=False),
     ]
 
     def __init__(
@@ -160,7 +160,8 @@ class FieldsScreen(PlayScreen):
             return None
         picture = FieldPicture(course)
         self._traps = picture.traps()
-        self._opened = _Opened(place, picture, Tuner(session.graph, "fields"))
+        namespace = place.driven.namespace if place.driven else ""
+        self._opened = _Opened(place, picture, Tuner(session.graph, "fields", namespace))
         return self._opened
 
     # In the face's

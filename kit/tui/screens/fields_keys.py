@@ -10,7 +10,7 @@ from kit.tui.screens.watch_keys import PLAY_HELP
 FIELDS_KEYS: Final = key_line(
     ("i", "which"),
     ("[ ]", "less, more"),
-    ("t", "field"),
+    ("o", "other"),
     ("c", "controller"),
     ("m", "map"),
     ("p", "pause"),
@@ -23,7 +23,7 @@ FIELDS_HELP: Final = (
         (
             ("i", "the next intensity: walls, target, robot, tension"),
             ("[  ]", "less of it, more of it; the controller hears of it at once"),
-            ("t", "the forces, the planner's ways, or no arrows"),
+            ("o", "other arrows: the forces, the planner's ways, or no arrows"),
             ("→ ⇒  · ", "which way, strong, next to nothing"),
             ("-  !", "a charge on a wall; a trap, where forces cancel"),
             ("lines at robots", "the force on each, and on their middle"),

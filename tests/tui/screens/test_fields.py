@@ -63,7 +63,7 @@ def test_the_field_is_over_the_floor_with_its_traps(tmp_path: Path) -> None:
         assert {"→", "⇐", "⇓"} <= set(seen(screen))
         assert "46%" in panel(screen)
         assert "walls" in panel(screen)
-        await pilot.press("t", "t")
+        await pilot.press("o", "o")
         await until(pilot, lambda: arrows(screen) == 0)
 
     play(scene, tmp_path)
@@ -92,7 +92,7 @@ class Asked:
     def __call__(self, session: Session) -> None:
         if self.client is None:
             node = session.graph.create_node("asker")
-            self.client = node.create_client(GetParameters, "/fields/get_parameters")
+            self.client = node.create_client(GetParameters, "/left/fields/get_parameters")
         if self.client.service_is_ready():
             future = self.client.call_async(GetParameters.Request(names=["intensity.target"]))
             future.add_done_callback(
