@@ -40,8 +40,8 @@ class Shapes(NamedTuple):
 class Beams(NamedTuple):
     """The directions of a lidar's rays in its own frame, ``(rays,)`` each."""
 
-    cos: Floats
-    sin: Floats
+    cos: Singles
+    sin: Singles
 
 
 class Fleet(NamedTuple):

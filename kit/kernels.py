@@ -276,7 +276,7 @@ def meet_shapes(
 @jit
 def turn_beams(theta: float, beams: Beams, cos: Singles, sin: Singles) -> None:
     """Fills ``cos``, ``sin`` with the rays' directions in the world, for a sensor that points to ``theta``."""
-    turn_cos, turn_sin = math.cos(theta), math.sin(theta)
+    turn_cos, turn_sin = Single(math.cos(theta)), Single(math.sin(theta))
     for i in range(beams.cos.shape[0]):
         cos[i] = turn_cos * beams.cos[i] - turn_sin * beams.sin[i]
         sin[i] = turn_sin * beams.cos[i] + turn_cos * beams.sin[i]
@@ -352,15 +352,14 @@ def placed_hulls(fleet: Fleet) -> Shapes:
 
 
 @jit
-def nearest_wall(
-    pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats, squares: Floats
-) -> tuple[float, bool]:
+def nearest_wall(pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats) -> tuple[float, bool]:
     """A distance from a robot's origin within which there is no wall, and whether one meets its hull.
 
     The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin. A wall counts
-    as near as the upright rectangle around it: to be sure, that is enough. ``squares`` (walls): scratch.
+    as near as the upright rectangle around it: to be sure, that is enough.
     """
     x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
+    squares = np.empty(walls.shape[0])
     for j in range(walls.shape[0]):
         ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
         dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
@@ -402,29 +401,20 @@ def hulls_meet(hulls: Shapes) -> bool:
 
 @jit
 def stop_robots(
-    fleet: Fleet,
-    number: int,
-    before: Floats,
-    room: Shapes,
-    squares: Floats,
-    poses: Floats,
-    free: Floats,
-    hit: Flags,
+    fleet: Fleet, walls: Floats, before: Floats, room: Shapes, poses: Floats, free: Floats, hit: Flags
 ) -> None:
-    """Puts the robots of one world, on the map of that number, back where they meet something; they are hit.
+    """Puts the robots of one world, among these walls, back where they meet something; they are hit.
 
-    ``before``: where they were. ``room`` for the hulls and ``squares`` for the walls: scratch.
+    ``before``: where they were. ``room``: for the hulls where they are now.
     """
-    first, end = fleet.walls.starts[fleet.blocks[number]], fleet.walls.starts[fleet.blocks[number + 1]]
-    together = False
     if poses.shape[0] > 1:
         place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, room)
-        together = hulls_meet(room)
+    together = poses.shape[0] > 1 and hulls_meet(room)
     for k in range(poses.shape[0]):
-        meets, walls = together, fleet.walls.ends[first:end]
+        meets = together
         if free[k] <= fleet.radius:
-            free[k], meets = nearest_wall(poses[k], fleet.hulls, 1 << k, fleet.radius, walls, squares)
-        if together or meets:
+            free[k], meets = nearest_wall(poses[k], fleet.hulls, 1 << k, fleet.radius, walls)
+        if meets or together:
             poses[k], free[k], hit[k] = before[k], 0.0, True
 
 
@@ -437,7 +427,7 @@ def drive_worlds(
     ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``free`` (n, r): no wall
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
-    room, before, squares = placed_hulls(fleet), np.empty_like(poses[0]), np.empty(fleet.walls.ends.shape[0])
+    room, before, starts = placed_hulls(fleet), np.empty_like(poses[0]), fleet.walls.starts
     for i in range(poses.shape[0]):
         near = False
         for k in range(poses.shape[1]):
@@ -449,7 +439,9 @@ def drive_worlds(
             near |= free[i, k] <= fleet.radius
             near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
         if near:
-            stop_robots(fleet, maps[i], before, room, squares, poses[i], free[i], hit[i])
+            first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
+            walls = fleet.walls.ends[starts[first] : starts[end]]
+            stop_robots(fleet, walls, before, room, poses[i], free[i], hit[i])
 
 
 @jit
@@ -478,30 +470,35 @@ def look_worlds(
 
     The noise of world i is number ``drawn[i]`` and following of ``keys[i]``.
     """
-    robots, rays = ranges.shape[1], ranges.shape[2]
-    hulls, cos, sin = placed_hulls(fleet), np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
+    robots, rays, ends = ranges.shape[1], ranges.shape[2], fleet.walls.ends
+    cos, sin, near = np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
+    hulls = placed_hulls(fleet)
     for i in range(ranges.shape[0]):
+        first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
         if robots > 1:
             place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
         for k in range(robots):
-            x, y, near = poses[i, k, 0], poses[i, k, 1], ranges[i, k]
+            x, y = poses[i, k, 0], poses[i, k, 1]
             turn_beams(poses[i, k, 2], fleet.beams, cos, sin)
             near[:] = Single(1.0 / fleet.reach)
-            first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
-            meet_walls(x, y, cos, sin, fleet.walls, first, end, near)
+            if end - first == 1:  # what meet_walls does; here the compiler knows the arrays apart
+                for j in range(fleet.walls.starts[first], fleet.walls.starts[end]):
+                    ax, ay, bx, by = ends[j, 0] - x, ends[j, 1] - y, ends[j, 2] - x, ends[j, 3] - y
+                    meet_segment(cos, sin, ax, ay, bx, by, near)
+            else:
+                meet_walls(x, y, cos, sin, fleet.walls, first, end, near)
             if robots > 1:
                 meet_shapes(x, y, cos, sin, hulls, ~(1 << k), near)
             for j in range(rays):
-                near[j] = Single(1) / near[j]
-            add_noise(near, fleet.noise, keys[i], drawn[i] + k * rays)
+                ranges[i, k, j] = Single(1) / near[j]
+            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)
 
 
 @jit
 def sense_worlds(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
     """Limits ``ranges`` (n, r, rays) to 0..``far``, and fills ``sensed`` (n, r, numbers) with some rays and minima.
 
-    ``single`` (r, s): rays given as they are, first. ``sectors`` (m, 3): of a sector, from 0, the first ray and the
-    end; a sector may have several such stretches.
+    ``single`` (r, s): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
     """
     s, nothing, most = single.shape[1], Single(0), Single(far)
     sensed[:] = most
@@ -524,8 +521,7 @@ def look_up(
 ) -> None:
     """Fills ``found`` (n, r) from a table each case has, between the four nearest cells.
 
-    ``tables`` (cases, rows, columns): values at the middles of square cells; ``corners`` (cases, 2): where the first
-    middle is.
+    ``tables`` (cases, rows, columns): values at the middles of square cells; ``corners`` (cases, 2): the first middle.
     """
     for i in range(poses.shape[0]):
         table = tables[cases[i]]
@@ -584,7 +580,15 @@ def warm() -> None:
     ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
     walls = Segments(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
     shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
-    scan((0.0, 0.0, 0.0), Beams(np.ones(2), np.zeros(2)), 2.0, walls, shapes, 1, ranges)
+    scan(
+        (0.0, 0.0, 0.0),
+        Beams(np.ones(2, dtype=np.float32), np.zeros(2, dtype=np.float32)),
+        2.0,
+        walls,
+        shapes,
+        1,
+        ranges,
+    )
     add_noise(ranges, 0.0, 1, 0)
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)

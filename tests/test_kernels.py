@@ -29,7 +29,7 @@ def singles(*values: float) -> list[np.float32]:
 
 
 def beams(*angles: float) -> kernels.Beams:
-    return kernels.Beams(np.cos(angles), np.sin(angles))
+    return kernels.Beams(np.cos(angles).astype(np.float32), np.sin(angles).astype(np.float32))
 
 
 # Motion

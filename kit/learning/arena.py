@@ -126,7 +126,9 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
 def _beams(directions: tuple[float, ...]) -> kernels.Beams:
     """The rays, and as many more as make the number a multiple of VECTOR."""
     missing = -len(directions) % VECTOR
-    return kernels.Beams(*(np.pad(each(directions), (0, missing)) for each in (np.cos, np.sin)))
+    return kernels.Beams(
+        *(np.pad(each(directions), (0, missing)).astype(np.float32) for each in (np.cos, np.sin))
+    )
 
 
 def _hulls(robot: Robot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:

@@ -123,7 +123,7 @@ class Laser(Plugin):
         self._body = site.bodies[params.sight.body]
         self._timer = UpdateTimer(params.rate, site.clock)
         directions = np.array(params.directions)
-        self._beams = kernels.Beams(np.cos(directions), np.sin(directions))
+        self._beams = kernels.Beams(*(each(directions).astype(np.float32) for each in (np.cos, np.sin)))
         self._frame = site.model.frame(params.frame or site.name)
         self._scan = site.publisher(params.topic, LaserScan)
         self._tf = site.publisher(TF_TOPIC, TFMessage)
