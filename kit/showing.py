@@ -166,5 +166,5 @@ def _nearest(scan: ScanView) -> tuple[tuple[str, float | None], ...]:
     for side, middle in SIDES:
         quarter = scan.ranges[np.abs(np.angle(np.exp(1j * (angles - middle)))) <= math.pi / 4]
         seen = quarter[~np.isnan(quarter)]
-        found.append((side, float(seen.min()) if len(seen) else None))
+        found.append((side, max(0.0, float(seen.min())) if len(seen) else None))  # noise goes below 0
     return tuple(found)

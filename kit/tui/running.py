@@ -53,6 +53,9 @@ class Running:
         self._shown = 0.0
         self._beams = False
         self._listener: Wish | None = None
+        self._is_closed = False
+        self._exchange = threading.Lock()
+        """Held while one world takes the place of another, or of none."""
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._helper = threading.Thread(target=self._do_jobs, name="helper", daemon=True)
         self._helper.start()
@@ -114,23 +117,30 @@ class Running:
         self.wish(lambda session: None)
 
     def close(self) -> None:
-        """Ends the world and its controller, and waits for both."""
+        """Ends the world and its controller, and waits for both; not for a world that is being opened."""
+        self._is_closed = True
         self._jobs.put(None)
-        self._helper.join(timeout=10)
-        self._drop()
+        with self._exchange:
+            self._drop()
 
     def _do_jobs(self) -> None:
-        while (job := self._jobs.get()) is not None:
+        while (job := self._jobs.get()) is not None and not self._is_closed:
             try:
                 job()
             except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
                 self._on_trouble(str(error))
 
     def _replace(self, session: Session, factor: float | None = None) -> None:
+        with self._exchange:
+            if self._is_closed:
+                session.close()
+            else:
+                self._install(session, self.pacing.factor if factor is None else factor)
+
+    def _install(self, session: Session, factor: float) -> None:
         from kit.live import LiveRun
 
         runner = session.runner
-        factor = self.pacing.factor if factor is None else factor
         self._drop()
         self._session, self._showing = session, Showing(session)
         self._live = live = LiveRun(runner, factor=factor, on_change=self._changed)
