@@ -121,12 +121,13 @@ def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 
 def _show_arguments(target: LaunchTarget) -> None:
     from kit.host.failure import GuestError
+    from kit.launch.advice import explained
     from kit.launch.launch_file import declared_arguments
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
     except GuestError as error:
-        options.fail(str(error.failure))
+        options.fail(explained(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     for argument in declared:
         choices = "" if argument.choices is None else f" valid choices are: {list(argument.choices)}"
@@ -149,6 +150,7 @@ def _run_plainly(
     from kit.host.failure import GuestError
     from kit.inspection.door import Door
     from kit.inspection.sockets import sockets_folder
+    from kit.launch.advice import explained
     from kit.launch.launching import Launch
     from kit.launch.plain import run_plainly
     from kit.launch.problems import CannotStart
@@ -176,7 +178,7 @@ def _run_plainly(
             log=lambda record: click.echo(str(record), err=True),
         )
     except GuestError as error:
-        options.fail(str(error.failure))
+        options.fail(explained(error.failure))
     except (CannotStart, WorldError, OSError) as problem:
         options.fail(str(problem))
     except KeyboardInterrupt:

@@ -6,6 +6,8 @@ import re
 import sys
 from typing import Final
 
+from kit.host.failure import Failure
+
 _MISSING: Final = re.compile(r"No module named '([\w.]+)'")
 _NOT_IN: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
 
@@ -25,6 +27,12 @@ OTHER_NAMES: Final = {
     "sklearn": "scikit-learn",
 }
 """What some modules are called in the package index."""
+
+
+def explained(failure: Failure) -> str:
+    """A failure, and on the next line the way out, if there is one."""
+    hint = advice(failure.message)
+    return f"{failure}\n{hint}" if hint else str(failure)
 
 
 def advice(reason: str) -> str | None:

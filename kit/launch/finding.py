@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from kit.ros.packages import PackageError, find_packages, read_package
+
+SHARE: Final = Path(__file__).parent / "share"
+"""What the kit has of Flatland's own packages: looked up last, so that real ones come first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +35,7 @@ def find_launch(where: str, file: str | None, more: Iterable[Path]) -> LaunchTar
     WHERE is a launch file, the folder of a package or of several, or a package's name. Raises PackageError.
     """
     path = Path(where).expanduser()
+    more = (*more, SHARE)
     here = [Path.cwd(), Path.cwd() / "src", *more]
     if path.is_file():
         if path.suffix != ".py":

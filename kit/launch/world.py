@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +14,20 @@ from kit.ros.arguments import parse_ros_arguments
 from kit.ros.exceptions import InvalidRosArguments
 
 NODE: Final = "flatland_server"
+
+KNOWN: Final = frozenset(
+    {
+        "world_path",
+        "update_rate",
+        "step_size",
+        "show_viz",
+        "viz_pub_rate",
+        "use_sim_time",
+        "use_rviz",
+        "simplify_map",
+    }
+)
+"""Its parameters; those of the picture and of ROS 2's clock make no difference here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +56,10 @@ def world_wanted(request: Start) -> WorldWanted:
     except InvalidRosArguments as problem:
         raise CannotStart(f"{request.where}flatland_server: {problem}") from None
     values = {name: parameter.value for name, parameter in given.items()}
+    for name in sorted(values.keys() - KNOWN):
+        near = get_close_matches(name, KNOWN, 1)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise CannotStart(f"{request.where}flatland_server has no parameter '{name}'{hint}")
     if "world_path" not in values:
         raise CannotStart(
             f"{request.where}flatland_server: the parameter 'world_path' is missing: "

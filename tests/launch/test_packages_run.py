@@ -190,3 +190,26 @@ def test_packages_beside_it_are_found(launch: Launched, workshop: Workshop) -> N
     assert f"from the library in {workshop.folder / 'library'}" in out + err
     assert f"[launch]: {workshop.folder / 'library'}" in out
     assert code == 0
+
+
+def test_flatland_s_own_launch_file_is_included(launch: Launched, workshop: Workshop, tmp_path: Path) -> None:
+    """As packages of that time do it, with arguments of their own."""
+    world = tmp_path / "world.yaml"
+    world.write_text("properties: {}\nlayers: []\n")
+    folder = workshop.package(
+        "outer",
+        f"""
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource([FindPackageShare('flatland_server'), '/launch/server.launch.py']),
+            launch_arguments={{'world_path': {str(world)!r}, 'update_rate': '50.0'}}.items(),
+        ),
+        """,
+    )
+    file = folder / "launch" / "outer.launch.py"
+    file.write_text(
+        "from launch.launch_description_sources import PythonLaunchDescriptionSource\n" + file.read_text()
+    )
+    out, err, code = launch(folder, "--steps", "3")
+    assert f"stands in for flatland_server: {world}" in out
+    assert code == 0, err
+    assert launch("flatland_server", f"world_path:={world}", "--steps", "3")[2] == 0

@@ -48,6 +48,7 @@ WRONG = {
         "'show_viz' must be true or false",
         2,
     ),
+    "typing error": (SERVER.format("'world_path': 'x', 'updaterate': 9.0"), "did you mean 'update_rate'?", 2),
     "two worlds": (2 * SERVER.format("'world_path': 'x'"), "one flatland_server", 2),
     "no transform": (
         "Node(package='tf2_ros', executable='static_transform_publisher', arguments=['1']),",
@@ -61,7 +62,16 @@ WRONG = {
     ),
     "wrong keyword": ("Node(package='bad', executable='run', ouput='screen'),", "has no argument 'ouput'", 2),
     "python error": ("LogInfo(msg=1 / 0),", "launch/bad.launch.py:12: ZeroDivisionError", 2),
-    "no entity": ("42,", "'int' object has no attribute 'visit'", 2),
+    "no entity": (
+        "42,",
+        "launch/bad.launch.py:11: TypeError: an action, or a list of actions, is needed here",
+        2,
+    ),
+    "part of ROS 2": (
+        "LifecycleNode(package='bad', executable='run'),",
+        "name 'LifecycleNode' is not defined",
+        2,
+    ),
     "include cycle": ("IncludeLaunchDescription(ThisLaunchFile()),", "include each other without end", 2),
     "name of a node": (
         "Node(package='bad', executable='run', name='9lives'),",

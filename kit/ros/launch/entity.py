@@ -52,7 +52,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         *,
         deprecated_reason: str | None = None,
     ) -> None:
-        self.entities = list(initial_entities or ())
+        self.entities = entities(initial_entities)
         self.deprecated_reason = deprecated_reason
 
     def add_action(self, action: Action) -> None:

@@ -87,6 +87,7 @@ class LaunchScreen(WatchScreen):
 
     def _open(self) -> Session:
         from kit.host.failure import GuestError
+        from kit.launch.advice import explained
         from kit.launch.launching import Launch
         from kit.launch.problems import CannotStart
         from kit.launch.session import LaunchedSession
@@ -112,7 +113,7 @@ class LaunchScreen(WatchScreen):
                 launch.start()
                 return session
         except GuestError as error:
-            self.refusal = str(error.failure)
+            self.refusal = explained(error.failure)
         except (CannotStart, WorldError, OSError) as problem:
             self.refusal = str(problem)
         launch.close()
