@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -174,6 +175,16 @@ def test_normal_noise_is_normal() -> None:
     assert abs(np.corrcoef(draws[1:], draws[:-1])[0, 1]) < 0.02
     neighbour = np.array([kernels.normal(8, i) for i in range(40_000)])
     assert abs(np.corrcoef(draws, neighbour)[0, 1]) < 0.02
+
+
+def test_normal_noise_is_as_rare_as_it_should_be() -> None:
+    draws = np.sort([kernels.normal(3, i) for i in range(200_000)])
+    for share in (0.001, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95, 0.999):
+        expected = NormalDist().inv_cdf(share)
+        assert draws[int(share * len(draws))] == pytest.approx(
+            expected, abs=0.07 if abs(expected) > 3 else 0.02
+        )
+    assert np.abs(draws).max() < 4.9
 
 
 def test_uniform_noise_fills_its_range() -> None:

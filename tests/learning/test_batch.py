@@ -266,6 +266,19 @@ def test_both_robots_must_be_in_the_target_at_once() -> None:
     assert one_only
 
 
+@pytest.mark.parametrize("task", [HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
+def test_to_spare_the_search_for_walls_changes_nothing(task: Task) -> None:
+    batch, searching = (BatchEnv(task, 40, seed=6) for _ in range(2))
+    batch.reset()
+    searching.reset()
+    chance = np.random.default_rng(6)
+    for _ in range(60):
+        actions = actions_of(batch, chance)
+        searching.state.free[:] = 0.0
+        step, other = batch.step(actions), searching.step(actions)
+        assert [bits(step, i) for i in range(40)] == [bits(other, i) for i in range(40)]
+
+
 # What is seen
 
 
