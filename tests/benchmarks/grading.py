@@ -27,7 +27,7 @@ SHEET = """
 title: Round the corner
 submit: controller.py
 level: 1
-budget: {reply: 1, total: 10, cpu: 20}
+budget: {reply: 3, total: 30, cpu: 20}
 trials:
   - {name: there, place: turn, case: turn_a_to_b, time: 10, seeds: [1], shift: [0.05, 0.05, 0.2]}
   - {name: back, place: turn, case: turn_b_to_a, time: 10, seeds: [1], shift: [0.05, 0.05, 0.2]}
