@@ -14,6 +14,9 @@ from pathlib import Path
 import pytest
 
 import kit as kit_package
+from kit.controllers import find
+from kit.headless import run_headless
+from kit.places import find_place
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
 from tests.tui.test_world_view_pty import run_on
@@ -230,3 +233,32 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
     terminal.send(b"?")
     terminal.until(lambda: "any key leaves" in terminal.text, "the help")
     assert terminal.text.isascii()
+
+
+def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, tmp_path: Path) -> None:
+    file = tmp_path / "run.npz"
+    run_headless(find_place("maze"), find("random_walk"), steps=150, seed=2, record=file)
+    terminal = kit("replay", str(file))
+    assert "run.npz" in terminal.text or "maze" in terminal.text
+    terminal.until(lambda: "0:01.50" in terminal.text, "the end")
+    assert "paused" in terminal.text
+    terminal.send(b"r")
+    terminal.until(lambda: "0:01.50" not in terminal.text, "the beginning")
+    terminal.until(lambda: "0:01.50" in terminal.text, "the end again")
+
+
+def test_the_keys_drive_a_robot_in_a_namespace(kit: Open) -> None:
+    terminal = kit("play", "pair_straight", "--controller", "teleop")
+    terminal.until(lambda: "exact" in terminal.text, "the terminal's answer")
+    terminal.send(b"\x1b[1;1:1A")
+    terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
+
+
+@pytest.mark.parametrize("key", [b"?", b"m", b"c", b"n"])
+def test_ctrl_c_leaves_from_wherever_one_is(kit: Open, key: bytes) -> None:
+    terminal = kit("play")
+    terminal.send(key)
+    run_on(terminal, 0.5)
+    terminal.send(b"\x03")
+    assert terminal.wait() == 0
+    terminal.assert_sane()
