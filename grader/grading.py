@@ -31,6 +31,12 @@ STATUS_OF: Final[Mapping[FailureKind, Status]] = MappingProxyType(
 )
 """What a failure of the program means for a test; any other kind is the student's error."""
 
+FROM_OUTSIDE: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
+"""What a signal does to a program: perhaps one that was meant for everything that runs here."""
+LAST_WORD_S: Final = 0.5
+"""How long to wait then before saying so: whoever shuts a machine down ends the grader too, a moment later, and what a
+program lost by that is not its author's fault."""
+
 COARSE: Final[Mapping[Status, str]] = MappingProxyType(
     {
         Status.TIMEOUT: "Your program took too long",
@@ -113,6 +119,9 @@ class Grading:
     def result(self) -> Result:
         """All criteria judged."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
+        seen = self._gatherer.all()
+        if any(each.failure is not None and each.failure.kind in FROM_OUTSIDE for each in seen):
+            time.sleep(LAST_WORD_S)
         return Result(
             assignment=self.assignment.id,
             assignment_version=self.assignment.version,
@@ -123,7 +132,7 @@ class Grading:
             platform=_platform(),
             tests=tests,
             notices=tuple(self._notices(tests)),
-            steps=sum(each.steps for each in self._gatherer.all()),
+            steps=sum(each.steps for each in seen),
             timing=Timing(self._started, round(time.perf_counter() - self._began, 3)),
         )
 

@@ -204,6 +204,28 @@ def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
         assert grading.worst() is drive
 
 
+def test_a_shutdown_that_ends_the_program_first_leaves_no_result(tmp_path: Path) -> None:
+    """The program gets the signal before the grader does: nobody is told that it crashed."""
+    folder = write_assignment(tmp_path / "q")
+    file, out = tmp_path / "ada.py", tmp_path / "result.json"
+    file.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGTERM)\n")
+    grader = [sys.executable, "-P", "-m", "grader", "check", str(file), "--assignment", str(folder), "--json"]
+    running = subprocess.Popen([*grader, "--output", str(out)], stderr=subprocess.PIPE)
+    assert running.wait(60) == 1, "left alone, it says so"
+    assert out.exists()
+    out.unlink()
+    source = (
+        "import sys; from pathlib import Path; from grader import grading; import grader.__main__ as command\n"
+        "grading.time.sleep = lambda seconds: sys.exit(143)  # here the signal comes\n"
+        "command.main()"
+    )
+    cut = subprocess.run([sys.executable, "-P", "-c", source, *grader[4:], "--output", str(out)], check=False)
+    assert cut.returncode == 143
+    assert not out.exists()
+    assert running.stderr is not None
+    running.stderr.close()
+
+
 # The command line
 
 
