@@ -152,7 +152,7 @@ def _run_plainly(
     from kit.inspection.sockets import sockets_folder
     from kit.launch.advice import explained
     from kit.launch.launching import Launch
-    from kit.launch.plain import run_plainly
+    from kit.launch.plain import Limit, run_plainly
     from kit.launch.problems import CannotStart
     from kit.ros.graph import Graph
     from kit.world.problems import WorldError
@@ -171,8 +171,7 @@ def _run_plainly(
         run_plainly(
             launch,
             seed=seed,
-            ticks=steps,
-            until_s=until,
+            limit=Limit(steps, until),
             factor=speed,
             company=lambda graph: Door(graph, sockets_folder(desk.folder), name),
             log=lambda record: click.echo(str(record), err=True),

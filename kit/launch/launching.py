@@ -16,7 +16,7 @@ from kit.launch.launch_file import LaunchFile
 from kit.launch.problems import CannotStart
 from kit.launch.processes import Ended, Process
 from kit.launch.programs import Means, is_ours, start
-from kit.launch.requests import End, EndAll, Request, Say, Start
+from kit.launch.requests import End, EndAll, Listen, Request, Say, Start
 from kit.launch.world import WorldWanted
 from kit.ros.graph import Graph
 
@@ -90,6 +90,7 @@ class Launch:
         self._waiting: list[Start] = []
         self._running: dict[int, _Running] = {}
         self._happened: list[Json] = []
+        self._listens = False
         self._clock_ns = 0
         self._seen_ns = graph.now_ns
         self._looked_s = 0.0
@@ -182,6 +183,8 @@ class Launch:
                 self._waiting.append(request)
             elif isinstance(request, Say):
                 self._tell(request.text, request.severity)
+            elif isinstance(request, Listen):
+                self._listens = True
             elif isinstance(request, End):
                 self._end(request.number)
             elif isinstance(request, EndAll):
@@ -232,6 +235,8 @@ class Launch:
     def _print(self, running: _Running) -> None:
         for text, stream in running.process.take_lines():
             self._say(Line(running.request.name, text, stream))
+            if self._listens:
+                self._happened.append(["printed", running.request.number, f"{text}\n", stream == "out"])
 
     def _tell(self, text: str, severity: str = "INFO", *, name: str = "launch") -> None:
         self._say(Line(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity))

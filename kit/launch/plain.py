@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
-from itertools import repeat
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 from kit.launch.launching import Launch
 from kit.launch.worldless import Worldless
@@ -13,9 +13,6 @@ from kit.pacing import MAXIMUM, REAL_TIME, Pace
 from kit.ros.graph import Graph
 from kit.ros.log import LogRecord
 from kit.turns import Companion, Guest
-
-if TYPE_CHECKING:
-    from kit.launch.session import LaunchedSession
 
 
 class Ticker(Protocol):
@@ -26,70 +23,82 @@ class Ticker(Protocol):
     def tick(self) -> None: ...
 
 
+@dataclass(slots=True)
+class Limit:
+    """How long a launch may go on; None: as long as it likes."""
+
+    ticks: int | None = None
+    """So many ticks, of a world or without one."""
+    until_s: float | None = None
+    """So many simulated seconds."""
+
+    @property
+    def is_set(self) -> bool:
+        return self.ticks is not None or self.until_s is not None
+
+    def is_reached(self, now_ns: int) -> bool:
+        return self.ticks == 0 or (self.until_s is not None and now_ns >= round(self.until_s * 1e9))
+
+    def ticked(self) -> None:
+        if self.ticks is not None:
+            self.ticks -= 1
+
+
 def run_plainly(
     launch: Launch,
     *,
     seed: int = 0,
-    ticks: int | None = None,
-    until_s: float | None = None,
+    limit: Limit | None = None,
     factor: float | None = None,
     company: Callable[[Graph], Companion] | None = None,
     log: Callable[[LogRecord], None] = lambda record: None,
 ) -> None:
-    """Carries the launch out in this thread. ``ticks``, ``until_s``: for so many ticks or simulated seconds, as fast
-    as they go unless ``factor`` says otherwise. ``log`` gets what the kit's own nodes say.
+    """Carries the launch out in this thread: with a limit as fast as it goes, unless ``factor`` says otherwise.
 
-    Raises GuestError, CannotStart, WorldError, OSError; KeyboardInterrupt after the launch file has heard of it.
+    ``log`` gets what the kit's own nodes say. Raises GuestError, CannotStart, WorldError, OSError; and
+    KeyboardInterrupt after the launch file has heard of it.
     """
+    limit = limit or Limit()
+    factor = factor or (MAXIMUM if limit.is_set else None)
     with ExitStack() as stack:
         stack.callback(launch.close)
         launch.begin()
-        worldless = Worldless(launch.graph)
-        worldless.guests.append(launch)
-        ticker: Ticker = worldless
-        companion = company(launch.graph) if company is not None else None
-        if companion is not None:
+        company_there: list[Guest] = []
+        if company is not None:
+            companion = company(launch.graph)
             stack.callback(companion.close)
-            worldless.guests.append(companion)
-        launch.graph.log.sink = log
-        is_limited = ticks is not None or until_s is not None
-        pace = Pace(worldless.step_size, factor or (MAXIMUM if is_limited else REAL_TIME))
+            company_there.append(companion)
         if launch.world is None:
+            launch.graph.log.sink = log
             launch.start()
-        try:
-            for _ in repeat(None) if ticks is None else repeat(None, ticks):
-                if _is_done(launch, ticker, until_s):
-                    break
-                if launch.world is not None and ticker is worldless:
-                    from kit.launch.session import LaunchedSession  # only now: it brings the physics
+            worldless = Worldless(launch.graph)
+            worldless.guests += [launch, *company_there]
+            pace = Pace(worldless.step_size, factor or REAL_TIME)
+            _go_on(launch, worldless, pace, limit, lambda: launch.world is not None or _is_idle(launch))
+        if launch.world is not None and not launch.is_over:
+            from kit.launch.session import LaunchedSession  # only now: it brings the physics
 
-                    session = stack.enter_context(LaunchedSession(launch, seed=seed))
-                    launch.graph.log.sink = log
-                    ticker = session.runner
-                    if companion is not None:
-                        ticker.guests.append(companion)
-                    pace = _pace(session, MAXIMUM if is_limited and factor is None else factor)
-                    launch.start()
-                pace.wait()
-                ticker.tick()
-        except KeyboardInterrupt:
-            launch.interrupt("ctrl-c")
-            raise
+            session = stack.enter_context(LaunchedSession(launch, seed=seed))
+            launch.graph.log.sink = log
+            step_size = launch.world.step_size
+            pace = Pace(step_size, factor or launch.world.factor)
+            session.runner.on_rate = lambda rate: pace.set_factor(rate * step_size)
+            session.runner.guests += company_there
+            launch.start()
+            _go_on(launch, session.runner, pace, limit, lambda: False)
 
 
-def _pace(session: LaunchedSession, factor: float | None) -> Pace:
-    wanted, runner = session.launch.world, session.runner
-    assert wanted is not None
-    pace = Pace(wanted.step_size, factor or wanted.factor)
-    runner.on_rate = lambda rate: pace.set_factor(rate * wanted.step_size)
-    return pace
+def _go_on(launch: Launch, ticker: Ticker, pace: Pace, limit: Limit, is_enough: Callable[[], bool]) -> None:
+    try:
+        while not (launch.is_over or is_enough() or limit.is_reached(launch.graph.now_ns)):
+            pace.wait()
+            ticker.tick()
+            limit.ticked()
+    except KeyboardInterrupt:
+        launch.interrupt("ctrl-c")
+        raise
 
 
-def _is_done(launch: Launch, ticker: Ticker, until_s: float | None) -> bool:
-    if launch.is_over or (until_s is not None and launch.graph.now_ns >= round(until_s * 1e9)):
-        return True
-    return (
-        isinstance(ticker, Worldless)
-        and launch.world is None
-        and not (launch.has_programs or launch.wants_time)
-    )
+def _is_idle(launch: Launch) -> bool:
+    """Whether nothing will happen any more by itself."""
+    return not (launch.has_programs or launch.wants_time)

@@ -23,6 +23,11 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
+class Listen:
+    """The launch file wants to know what processes print."""
+
+
+@dataclass(frozen=True, slots=True)
 class Start:
     """A process to be started."""
 
@@ -69,7 +74,7 @@ class Argument:
     choices: tuple[str, ...] | None
 
 
-Request = Say | Start | End | EndAll | Argument
+Request = Say | Listen | Start | End | EndAll | Argument
 
 
 def parse_request(event: Event) -> Request:
@@ -132,6 +137,7 @@ def _any_text(value: Json) -> str:
 _KINDS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
     {
         "log": _say,
+        "listen": Listen,
         "process": _start,
         "end": lambda number: End(integer(number)),
         "shutdown": lambda reason: EndAll(text(reason)),

@@ -141,12 +141,15 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
             ExecuteProcess(cmd=[FindExecutable(name='ros2'), 'interface', 'show', 'std_srvs/srv/Empty'], on_exit=Shutdown(reason='done')),
         ])),
         RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg='good bye')])),
+        RegisterEventHandler(OnProcessIO(target_action=first, on_stderr=lambda event, context:
+            LogInfo(msg=f'it said {event.text.decode().strip()}'))),
         ExecuteProcess(cmd=['sleep', '60']),
         """,
     )
     out, err, code = launch(folder, "--plain")
     assert "[first-1] good day" in out
     assert "[first-1] oh" in err
+    assert "it said oh" in out
     assert "first-1 ended with 3" in out
     assert "[ros2-3] ---" in out
     assert out.index("good bye") < out.index("everything is ended: done")

@@ -77,6 +77,8 @@ class LaunchContext:
 
     def register_event_handler(self, event_handler: EventHandler) -> None:
         self.handlers.insert(0, event_handler)
+        if event_handler.hears_output:
+            self.request("listen")
 
     def unregister_event_handler(self, event_handler: EventHandler) -> None:
         if event_handler not in self.handlers:

@@ -23,6 +23,9 @@ Reaction = Callable[..., Any] | LaunchDescriptionEntity | Iterable[LaunchDescrip
 class EventHandler:
     """Reacts to the events that ``matcher`` picks."""
 
+    hears_output = False
+    """Whether it wants to know of every line that a process prints."""
+
     def __init__(
         self, *, matcher: Callable[[Any], bool], entities: Reaction | None = None, handle_once: bool = False
     ) -> None:
@@ -85,6 +88,7 @@ class OnProcessIO(_OnProcess):
     """When a process has printed something."""
 
     kind = ProcessIO
+    hears_output = True
 
     def __init__(
         self,

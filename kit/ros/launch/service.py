@@ -3,6 +3,7 @@
 Time and events come from outside; requests go outside, as plain data::
 
     log        level, text
+    listen                                        tell of what processes print, from now on
     process    number, specification              start it; ``processes`` says what a specification holds
     end        number                             end it
     shutdown   reason                             end everything
