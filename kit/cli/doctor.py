@@ -119,7 +119,8 @@ def _packages() -> Iterator[Finding]:
             "in all",
             "incomplete",
             "Driving, controllers, worlds, layers and grading work; training does not. "
-            f"To have it: pip install '{_DISTRIBUTION}[learn]'",
+            "To have it, in the kit's folder: pip install -c constraints.txt -e '.[learn]' --extra-index-url "
+            "https://download.pytorch.org/whl/cpu",
         )
 
 

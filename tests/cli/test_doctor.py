@@ -70,7 +70,7 @@ def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pyt
     sections = json.loads(report("--json"))
     assert sections["Learning"]["torch"]["value"] == "missing"
     assert sections["Learning"]["tensorboard"]["value"] == "1.0"
-    assert "robot-learning-kit[learn]" in sections["Learning"]["in all"]["meaning"]
+    assert "-e '.[learn]'" in sections["Learning"]["in all"]["meaning"]
     assert sections["Packages"]["pymunk"] == {"value": "missing", "meaning": "Install the kit again."}
 
 
