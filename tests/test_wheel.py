@@ -28,7 +28,9 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     shipped = {path.name for path in (ROOT / "maps").iterdir() if path.is_dir()}
-    assert {name.split("/")[3] for name in names if name.count("/") > 3 and name.startswith("kit/data/maps/")} >= shipped
+    assert {
+        name.split("/")[3] for name in names if name.count("/") > 3 and name.startswith("kit/data/maps/")
+    } >= shipped
     assert not [name for name in names if name.startswith(("tests/", "maps/", "lessons/"))]
 
 
