@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeAlias, TypeVar, cast
 
 import numba
@@ -26,12 +27,15 @@ Bits: TypeAlias = np.uint64
 
 
 def jit(function: Function) -> Function:
-    """Compiles on first use and remembers it on disk.
+    """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start.
 
     A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
     ``fastmath`` stays off, for it gives other bits on other processors.
     """
-    return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
+    compiled = numba.njit(error_model="numpy")(function)
+    with suppress(RuntimeError):  # neither beside this file nor in the user's cache
+        compiled.enable_caching()
+    return cast(Function, compiled)
 
 
 # --- motion -----------------------------------------------------------------------------------------------

@@ -311,3 +311,17 @@ def test_warm_compiles_all_that_a_world_calls() -> None:
     world = "tests/sim/worlds/laser/driven.world.yaml"
     run = subprocess.run([sys.executable, "-c", code, world], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+def test_without_a_place_to_remember_it_a_formula_is_compiled_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def nowhere(function: object) -> None:
+        raise RuntimeError("cannot cache function: no locator available")
+
+    monkeypatch.setattr("numba.core.dispatcher.FunctionCache", nowhere)
+
+    def twice(value: float) -> float:
+        return 2.0 * value
+
+    assert kernels.jit(twice)(21.0) == 42.0
