@@ -84,8 +84,6 @@ def command(
         _show_arguments(target)
         return
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _leave)
     if terminal.plain.value or steps is not None or until is not None:
         _run_plainly(target, arguments, desk, seed, steps, until, speed)
         return
@@ -157,6 +155,8 @@ def _run_plainly(
     from kit.ros.graph import Graph
     from kit.world.problems import WorldError
 
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
     name = target.name
     launch = Launch(
         target,

@@ -5,10 +5,10 @@ Times are those of the graph: in a simulation, simulation time. Not imported by 
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from types import MappingProxyType, TracebackType
 from typing import Any, Final, Literal, Self
@@ -113,9 +113,7 @@ class BagRecorder:
         """Messages so far."""
         if self._folder.exists():
             raise BagError(f"{folder} is there already. Name another folder, or remove it.")
-        self._part = self._folder.parent / f".{self._folder.name}.part"
-        if self._part.exists():
-            shutil.rmtree(self._part)
+        self._part = _free(self._folder.parent, f".{self._folder.name}.part")
         self._writer = Writer(
             self._part / self._folder.name, version=self._kind.version, storage_plugin=self._kind.plugin
         )
@@ -197,6 +195,12 @@ class BagRecorder:
                 self.failure = f"{self._folder}: the bag ends early: {_reason(problem)}."
             else:
                 self.count += 1
+
+
+def _free(folder: Path, name: str) -> Path:
+    """A path that nothing is at: what a killed recording left is not touched."""
+    numbered = (f"{name}{number}" for number in count(2))
+    return next(folder / each for each in chain([name], numbered) if not (folder / each).exists())
 
 
 def _offered(profile: QoSProfile) -> Qos:

@@ -125,12 +125,12 @@ def test_nothing_is_overwritten_and_nothing_appears_before_it_is_complete(tmp_pa
         BagRecorder(Graph(), Path("/proc/nowhere/bag"))
 
 
-def test_what_a_killed_recording_left_is_no_hindrance(tmp_path: Path) -> None:
+def test_what_a_killed_recording_left_is_no_hindrance_and_stays(tmp_path: Path) -> None:
     killed = BagRecorder(Graph(), tmp_path / "bag")
     killed._writer.abort()  # as if the process were gone: no index, no summary
     record(tmp_path / "bag")
     assert read_bag(tmp_path / "bag").count > 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["bag"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".bag.part", "bag"]
 
 
 def test_a_full_disk_ends_the_bag_and_not_the_publisher(

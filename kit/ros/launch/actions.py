@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from kit.ros.launch.conditions import Condition
@@ -179,14 +179,15 @@ class IncludeLaunchDescription(Action):
         self,
         launch_description_source: LaunchDescriptionSource | SomeText,
         *,
-        launch_arguments: Iterable[tuple[SomeText, SomeText]] | None = None,
+        launch_arguments: Mapping[Any, SomeText] | Iterable[tuple[SomeText, SomeText]] | None = None,
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = LaunchDescriptionSource(launch_description_source)
         self.source = launch_description_source
-        self.launch_arguments = list(launch_arguments or ())
+        pairs = launch_arguments.items() if isinstance(launch_arguments, Mapping) else launch_arguments
+        self.launch_arguments = list(pairs or ())
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         given = [SetLaunchConfiguration(name, value) for name, value in self.launch_arguments]
