@@ -74,14 +74,3 @@ def test_cases_by_name_and_by_group() -> None:
     assert len(names(HALLWAY)) == 15
     assert names(HALLWAY.on("doors", "straight")) == ["straight", "left_door", "center_door", "right_door"]
     assert names(HALLWAY.on("90_turns").on("turn_left_90")) == ["turn_left_90"]
-
-
-@pytest.mark.parametrize(
-    ("one_number", "space", "pair"), [(True, "Discrete(16)", [7]), (False, "MultiDiscrete([4 4])", [[1, 3]])]
-)
-def test_two_robots_moves_as_one_number_or_two(one_number: bool, space: str, pair: list[object]) -> None:
-    import numpy as np
-
-    actions = replace(WHEELCHAIRS_SEED.actions, one_number=one_number)
-    assert str(actions.space(2)) == space
-    assert actions.chosen(np.array(pair), 2).tolist() == [[1, 3]]

@@ -1,0 +1,87 @@
+"""Many worlds for stable-baselines3: the same as one by one, and an algorithm takes them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from kit.learning.env import TaskEnv
+from kit.learning.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, Task
+
+pytestmark = pytest.mark.skipif(
+    find_spec("stable_baselines3") is None, reason="the extra learn is not installed"
+)
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
+def test_one_world_of_stable_baselines_is_the_environment(task: Task) -> None:
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    from kit.learning.vecenv import make_vec
+
+    task = replace(task, max_steps=25)
+    plain, ours = DummyVecEnv([lambda: TaskEnv(task)]), make_vec(task, 1, seed=9)
+    plain.seed(9)
+    ours.seed(9)
+    assert np.array_equal(plain.reset(), ours.reset())
+    ours.action_space.seed(0)
+    for _ in range(80):
+        actions = np.array([ours.action_space.sample()])
+        one, other = plain.step(actions), ours.step(actions)
+        for a, b in zip(one[:3], other[:3], strict=True):
+            assert np.array_equal(a, b)
+        if one[2][0]:
+            (expected,), (info,) = one[3], other[3]
+            assert np.array_equal(info["terminal_observation"], expected["terminal_observation"])
+            assert info["TimeLimit.truncated"] == expected["TimeLimit.truncated"]
+            assert (info["case"], info["outcome"]) == (expected["case"], expected["outcome"])
+
+
+def test_infos_tell_of_the_episode() -> None:
+    from kit.learning.vecenv import make_vec
+
+    env = make_vec(replace(WHEELCHAIRS, max_steps=10), 5, seed=1)
+    env.reset()
+    rewards, told = np.zeros(5), 0
+    for _ in range(25):
+        _, earned, dones, infos = env.step(np.array([env.action_space.sample() for _ in range(5)]))
+        rewards += earned
+        assert [bool(info) for info in infos] == dones.tolist()
+        for world in np.flatnonzero(dones).tolist():
+            info = infos[world]
+            assert info["episode"]["r"] == pytest.approx(rewards[world], abs=1e-5)
+            assert sum(info["terms"].values()) == pytest.approx(rewards[world], abs=1e-4)
+            assert info["is_success"] == (info["outcome"] == "reached")
+            assert info["TimeLimit.truncated"] == (info["outcome"] == "timed out")
+            assert 0.0 <= info["adjacency"] <= 1.0
+            rewards[world] = 0.0
+            told += 1
+    assert told >= 5
+
+
+@pytest.mark.parametrize("task", [TURN, HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
+def test_ppo_takes_it(task: Task) -> None:
+    from stable_baselines3 import PPO
+
+    from kit.learning.vecenv import make_vec
+
+    model = PPO(
+        "MlpPolicy", make_vec(task, 8, seed=0), n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0
+    )
+    model.learn(256)
+    assert model.num_timesteps == 256
+
+
+def test_what_would_set_one_world_apart_is_refused() -> None:
+    from kit.learning.vecenv import make_vec
+
+    env = make_vec(TURN, 2)
+    assert env.get_attr("n") == [2, 2]
+    assert env.env_is_wrapped(object) == [False, False]
+    with pytest.raises(AttributeError, match="one"):
+        env.set_attr("n", 3)
+    with pytest.raises(AttributeError, match="one"):
+        env.env_method("reset")
