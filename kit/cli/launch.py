@@ -178,8 +178,10 @@ def _run_plainly(
         )
     except GuestError as error:
         options.fail(explained(error.failure))
-    except (CannotStart, WorldError, OSError) as problem:
+    except (CannotStart, WorldError) as problem:
         options.fail(str(problem))
+    except OSError as problem:
+        options.fail(options.reason(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
     if launch.failures:

@@ -17,6 +17,7 @@ from kit.tui.terminal import (
     TerminalWishes,
     decide,
 )
+from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -35,6 +36,14 @@ def fail(message: str) -> NoReturn:
 def reason(error: OSError) -> str:
     """What could not be done with a file, in words."""
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
+def desk(folder: Path | None) -> Workspace:
+    """The workspace, without making it; or the end of the verb."""
+    try:
+        return open_workspace(folder, make=False)
+    except WorkspaceError as error:
+        fail(str(error))
 
 
 def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:

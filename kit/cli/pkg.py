@@ -9,6 +9,7 @@ import click
 
 from kit.cli import options
 from kit.ros.packages import Package, PackageError, find_packages, read_package
+from kit.workspace import Workspace
 
 where = click.option(
     "--in",
@@ -29,9 +30,7 @@ def command(ctx: click.Context, workspace: Path | None) -> None:
     kit pkg create my_robot
     kit launch my_robot
     """
-    from kit.workspace import open_workspace
-
-    ctx.obj = open_workspace(workspace, make=False)
+    ctx.obj = options.desk(workspace)
     if ctx.invoked_subcommand is None:
         ctx.invoke(executables)
 
@@ -48,16 +47,14 @@ def command(ctx: click.Context, workspace: Path | None) -> None:
 @click.option("--node-name", default="driver", show_default=True, help="What its program is called.")
 @click.option("--map", "map_name", default="simple", show_default=True, help="The map its world begins with.")
 @click.pass_obj
-def create(desk: object, name: str, destination: Path | None, node_name: str, map_name: str) -> None:
+def create(desk: Workspace, name: str, destination: Path | None, node_name: str, map_name: str) -> None:
     """Make a package with a world, a robot, a program that drives it, and a launch file.
 
     `kit launch` carries it out as it lies; in a ROS 2 workspace `colcon build` builds it.
     """
     from kit.launch.creating import create_package
-    from kit.workspace import Workspace
     from kit.world.catalogue import UnknownMap
 
-    assert isinstance(desk, Workspace)
     try:
         folder = create_package(name, destination or desk.packages, node=node_name, map_name=map_name)
     except (PackageError, UnknownMap) as problem:
@@ -70,7 +67,7 @@ def create(desk: object, name: str, destination: Path | None, node_name: str, ma
 @command.command("list")
 @where
 @click.pass_obj
-def list_packages(desk: object, folders: Sequence[Path]) -> None:
+def list_packages(desk: Workspace, folders: Sequence[Path]) -> None:
     """The names of the packages found."""
     for name in sorted(_found(desk, folders)):
         click.echo(name)
@@ -80,7 +77,7 @@ def list_packages(desk: object, folders: Sequence[Path]) -> None:
 @click.argument("name", required=False, metavar="[PACKAGE]")
 @where
 @click.pass_obj
-def executables(desk: object, name: str | None = None, folders: Sequence[Path] = ()) -> None:
+def executables(desk: Workspace, name: str | None = None, folders: Sequence[Path] = ()) -> None:
     """The programs of all packages, or of one: package and program."""
     found = _found(desk, folders)
     names = [name] if name else sorted(found)
@@ -93,7 +90,7 @@ def executables(desk: object, name: str | None = None, folders: Sequence[Path] =
 @click.argument("name", metavar="PACKAGE")
 @where
 @click.pass_obj
-def prefix(desk: object, name: str, folders: Sequence[Path]) -> None:
+def prefix(desk: Workspace, name: str, folders: Sequence[Path]) -> None:
     """The folder of a package."""
     click.echo(_package(_found(desk, folders), name).folder)
 
@@ -102,17 +99,14 @@ def prefix(desk: object, name: str, folders: Sequence[Path]) -> None:
 @click.argument("name", metavar="PACKAGE")
 @where
 @click.pass_obj
-def xml(desk: object, name: str, folders: Sequence[Path]) -> None:
+def xml(desk: Workspace, name: str, folders: Sequence[Path]) -> None:
     """A package's package.xml."""
     click.echo(
         (_package(_found(desk, folders), name).folder / "package.xml").read_text(encoding="utf-8"), nl=False
     )
 
 
-def _found(desk: object, folders: Sequence[Path]) -> dict[str, Path]:
-    from kit.workspace import Workspace
-
-    assert isinstance(desk, Workspace)
+def _found(desk: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
     return find_packages(folders or (Path.cwd(), Path.cwd() / "src", desk.packages))
 
 

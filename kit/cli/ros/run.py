@@ -38,9 +38,8 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     from kit.launch.processes import Printed
     from kit.launch.requests import Start
     from kit.launch.single import Single
-    from kit.workspace import open_workspace
 
-    desk = open_workspace(workspace, make=False)
+    desk = options.desk(workspace)
     search = (Path.cwd(), Path.cwd() / "src", desk.packages)
     if package.endswith(".py"):
         request = Start(
@@ -66,8 +65,10 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         else:
             with Visit(found) as visit:
                 ended = single.run_beside(visit, say)
-    except (CannotStart, NoWorld, OSError) as problem:
+    except (CannotStart, NoWorld) as problem:
         options.fail(str(problem))
+    except OSError as problem:
+        options.fail(options.reason(problem))
     except WorldGone as problem:
         refuse(str(problem))
     except KeyboardInterrupt:

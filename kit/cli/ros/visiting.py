@@ -14,7 +14,6 @@ import click
 from kit.cli import options
 from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
 from kit.inspection.visit import NoAnswer, Visit, WorldGone
-from kit.workspace import open_workspace
 
 NOT_DONE = 1
 INTERRUPTED = 128 + signal.SIGINT
@@ -30,7 +29,7 @@ def refuse(message: str) -> NoReturn:
 def visit_world(world: str | None, workspace: Path | None) -> Iterator[Visit]:
     """A visit; when the world ends, or Ctrl-C is pressed, one line and the exit code say so."""
     try:
-        with Visit(find_world(sockets_folder(open_workspace(workspace, make=False).folder), world)) as visit:
+        with Visit(find_world(sockets_folder(options.desk(workspace).folder), world)) as visit:
             yield visit
     except NoWorld as problem:
         options.fail(str(problem))
