@@ -382,24 +382,18 @@ def nearest_wall(pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Fl
 
 
 @jit
-def polygons_meet(one: Floats, other: Floats) -> bool:
-    """Whether two convex polygons have a point in common: an edge of one and the other, or one lies inside."""
-    for i in range(one.shape[0]):
-        if segment_meets_polygon(one[i - 1, 0], one[i - 1, 1], one[i, 0], one[i, 1], other):
-            return True
-    return point_in_polygon(other[0, 0], other[0, 1], one)
-
-
-@jit
 def hulls_meet(hulls: Shapes) -> bool:
-    """Whether polygons of different robots meet."""
+    """Whether convex polygons of different robots meet: an edge of one and the other, or one lies inside."""
     for i in range(hulls.polygon_bits.shape[0]):
-        for j in range(i):
-            if hulls.polygon_bits[i] != hulls.polygon_bits[j] and polygons_meet(
-                hulls.corners[hulls.starts[i] : hulls.starts[i + 1]],
-                hulls.corners[hulls.starts[j] : hulls.starts[j + 1]],
-            ):
-                return True
+        one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
+        for j in range(hulls.polygon_bits.shape[0]):
+            other = hulls.corners[hulls.starts[j] : hulls.starts[j + 1]]
+            if hulls.polygon_bits[i] != hulls.polygon_bits[j]:
+                if point_in_polygon(other[0, 0], other[0, 1], one):
+                    return True
+                for k in range(one.shape[0]):
+                    if segment_meets_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
+                        return True
     return False
 
 
