@@ -146,7 +146,7 @@ def _run_plainly(
     speed: float | None,
 ) -> None:
     from kit.host.failure import GuestError
-    from kit.inspection.door import Door
+    from kit.inspection.door import open_door
     from kit.inspection.sockets import sockets_folder
     from kit.launch.advice import explained
     from kit.launch.launching import Launch
@@ -173,7 +173,7 @@ def _run_plainly(
             seed=seed,
             limit=Limit(steps, until),
             factor=speed,
-            company=lambda graph: Door(graph, sockets_folder(desk.folder), name),
+            company=lambda graph: open_door(graph, sockets_folder(desk.folder), name),
             log=lambda record: click.echo(str(record), err=True),
         )
     except GuestError as error:

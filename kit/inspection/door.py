@@ -21,7 +21,9 @@ MOST_VISITORS: Final = 32
 NAME: Final = "door"
 
 
-def open_door(graph: Graph, folder: Path, world: str, wake: Callable[[], object]) -> Door | None:
+def open_door(
+    graph: Graph, folder: Path, world: str, wake: Callable[[], object] = lambda: None
+) -> Door | None:
     """A door, or a line in the graph's log that says why there can be none: a world runs without one too."""
     try:
         return Door(graph, folder, world, wake=wake)

@@ -50,7 +50,7 @@ def run_plainly(
     seed: int = 0,
     limit: Limit | None = None,
     factor: float | None = None,
-    company: Callable[[Graph], Companion] | None = None,
+    company: Callable[[Graph], Companion | None] = lambda graph: None,
     log: Callable[[LogRecord], None] = lambda record: None,
 ) -> None:
     """Carries the launch out in this thread: with a limit as fast as it goes, unless ``factor`` says otherwise.
@@ -63,13 +63,13 @@ def run_plainly(
     with ExitStack() as stack:
         stack.callback(launch.close)
         launch.begin()
+        launch.graph.log.sink = log
         company_there: list[Guest] = []
-        if company is not None:
-            companion = company(launch.graph)
+        companion = company(launch.graph)
+        if companion is not None:
             stack.callback(companion.close)
             company_there.append(companion)
         if launch.world is None:
-            launch.graph.log.sink = log
             launch.start()
             worldless = Worldless(launch.graph)
             worldless.guests += [launch, *company_there]

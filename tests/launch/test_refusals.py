@@ -230,3 +230,14 @@ def test_a_user_s_print_and_log_lines_cannot_steer_the_terminal(launch: Launched
     assert "hello" in out
     assert "\x1b" not in out
     assert os.linesep in out
+
+
+def test_a_workspace_without_a_place_for_a_socket_is_no_hindrance(
+    launch: Launched, workshop: Workshop, tmp_path: Path
+) -> None:
+    (tmp_path / "workspace").mkdir()
+    (tmp_path / "workspace" / ".running").write_text("no folder")
+    out, err, code = launch(workshop.package("small", "LogInfo(msg='goes on'),"), "--plain")
+    assert "goes on" in out
+    assert "other terminals cannot look in" in err
+    assert code == 0
