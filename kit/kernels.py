@@ -486,7 +486,9 @@ def look_worlds(
             else:
                 meet_walls(x, y, cos, sin, fleet.walls, first, end, near)
             if robots > 1:
-                meet_shapes(x, y, cos, sin, hulls, ~(1 << k), near)
+                dx, dy = Single(poses[i, 1 - k, 0] - x), Single(poses[i, 1 - k, 1] - y)
+                ray, last = rays_meeting(cos, sin, dx, dy, Single(fleet.radius), near)
+                meet_shapes(x, y, cos[ray:last], sin[ray:last], hulls, ~(1 << k), near[ray:last])
             for j in range(rays):
                 ranges[i, k, j] = Single(1) / near[j]
             add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)

@@ -127,7 +127,10 @@ def _beams(directions: tuple[float, ...]) -> kernels.Beams:
     """The rays, and as many more as make the number a multiple of VECTOR."""
     missing = -len(directions) % VECTOR
     return kernels.Beams(
-        *(np.pad(each(directions), (0, missing)).astype(np.float32) for each in (np.cos, np.sin))
+        *(
+            np.pad(each(directions), (0, missing), constant_values=np.nan).astype(np.float32)
+            for each in (np.cos, np.sin)
+        )
     )
 
 
