@@ -51,7 +51,9 @@ def test_the_play_screen_has_a_door_that_moves_with_the_map(kit: Open, workspace
     terminal = kit("play", "maze")
     (world,) = running_worlds(sockets_folder(workspace))
     assert world.name.startswith("maze-")
-    assert "/random_walk" in second_terminal("node", "list").splitlines()
+    terminal.until(
+        lambda: "/random_walk" in second_terminal("node", "list").splitlines(), "the controller's node"
+    )
     terminal.send(b"\x03")
     assert terminal.wait() == 0
     assert running_worlds(sockets_folder(workspace)) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Awaitable, Callable
 
 import pytest
@@ -42,7 +43,7 @@ def test_a_press_shows_as_a_line_and_as_a_bar() -> None:
     async def scene(app: App[None], pilot: Pilot[None]) -> None:
         assert "[####]" not in row(app, "Up or W")
         await pilot.press("w", "k")
-        assert "[####] p_up" in row(app, "Up or W")
+        assert re.search(r"\[#+ *\] p_up", row(app, "Up or W"))  # full, or fading on a busy machine
         assert row(app, "press    w").endswith("p_up")
         assert "press    k" in "\n".join(rows(app))
 
