@@ -259,7 +259,9 @@ def test_a_gap_a_robot_fits_through_stays_open() -> None:
 def test_a_field_gives_way_to_what_is_there() -> None:
     scene = Scene(
         np.array([(-1, 0.0, 1, 0.0)]),
-        arrows=np.array([(-0.5, 0.0, 1, 0, 1), (0.5, 0.6, 0, 1, 0.4), (1, 0.6, 0, -1, 1), (0, -0.6, 1, 0, 0)]),
+        arrows=np.array(
+            [(-0.5, 0.0, 1, 0, 1), (0.5, 0.6, 0, 1, 0.4), (1, 0.6, 0, -1, 1), (0, -0.6, 1, 0, 0)]
+        ),
     )
     frame = Painter(Braille()).paint(scene, Camera(0, 0, 0.1, 30, 12))
     text = "".join(frame.rows())
