@@ -1,0 +1,298 @@
+"""What a student has done: a journal of events that only grows, in ``progress.db`` of the workspace.
+
+Everything shown of progress (lessons done, stars, what to ask next) is folded from these events, so there is nothing
+that could contradict them. An event counts when ``add`` has returned: by then it is on the disk, and a kill at any
+later instant does not lose it. A damaged file is set aside, never overwritten, and what can be read of it is taken over.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+import uuid
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing, suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from enum import StrEnum
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+from kit.workspace import write_atomically
+
+FILE: Final = "progress.db"
+FORMAT: Final = "robot-learning-kit progress"
+VERSION: Final = 1
+WAIT_S: Final = 10.0
+"""How long to wait for another process of the same student that is writing."""
+LONGEST: Final = 64 * 1024
+"""Characters of one event's content: a student's answer fits, a file that was read by mistake does not."""
+
+_SCHEMA: Final = """
+CREATE TABLE IF NOT EXISTS events (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    uid TEXT NOT NULL UNIQUE,
+    at TEXT NOT NULL,
+    kind TEXT NOT NULL,
+    subject TEXT NOT NULL,
+    content TEXT NOT NULL
+)
+"""
+
+
+class ProgressError(Exception):
+    """Progress cannot be read or written; the message says why and what to do."""
+
+
+class Kind(StrEnum):
+    """What an event tells."""
+
+    STEP = "step"
+    PREDICTION = "prediction"
+    ATTEMPT = "attempt"
+    HINT = "hint"
+    SOLUTION = "solution"
+    ANSWER = "answer"
+    FORM = "form"
+    FINISH = "finish"
+    ABOUT = "about"
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One thing that happened."""
+
+    uid: str
+    """Made once, anywhere: the same event imported twice stays one."""
+    at: str
+    """UTC, ISO 8601 with microseconds."""
+    kind: Kind
+    subject: str
+    """What it is about: a lesson's step, an exercise, an item, a level."""
+    content: Mapping[str, Any]
+    """JSON values."""
+
+    @property
+    def time(self) -> datetime:
+        return datetime.fromisoformat(self.at)
+
+
+class Progress:
+    """The journal of one student. Every method raises ProgressError where the disk refuses."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = folder / FILE
+        self.notice = ""
+        """What a student has to be told of what was found at opening; empty: nothing."""
+        try:
+            self._connection = self._connect()
+            self._check()
+        except sqlite3.OperationalError as error:
+            raise self._unusable(error) from None
+        except sqlite3.DatabaseError:
+            self._set_aside()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._connection.close()
+
+    def add(
+        self,
+        kind: Kind,
+        subject: str,
+        content: Mapping[str, Any] | None = None,
+        *,
+        now: datetime | None = None,
+    ) -> Event:
+        """Notes one event. When this returns, it is on the disk."""
+        at = (now or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="microseconds")
+        event = Event(uuid.uuid4().hex, at, kind, subject, dict(content or {}))
+        self._write([event])
+        return event
+
+    def events(self, kind: Kind | None = None, subject: str | None = None) -> list[Event]:
+        """All events in the order of their time, or those of one kind, or about one subject."""
+        wanted = [("kind", kind), ("subject", subject)]
+        conditions = " AND ".join(f"{column} = ?" for column, value in wanted if value is not None)
+        query = "SELECT uid, at, kind, subject, content FROM events"
+        query += f" WHERE {conditions}" if conditions else ""
+        try:
+            rows = self._connection.execute(
+                f"{query} ORDER BY at, number", [str(value) for _, value in wanted if value is not None]
+            )
+            return [event for row in rows if (event := _of_row(row)) is not None]
+        except sqlite3.Error as error:
+            raise self._unusable(error) from None
+
+    def export(self, file: Path) -> int:
+        """Writes everything to one file, whole or not at all. Returns the number of events."""
+        events = self.events()
+        content = {
+            "format": FORMAT,
+            "version": VERSION,
+            "events": [
+                {
+                    "uid": each.uid,
+                    "at": each.at,
+                    "kind": each.kind.value,
+                    "subject": each.subject,
+                    "content": each.content,
+                }
+                for each in events
+            ],
+        }
+        try:
+            write_atomically(
+                file.absolute(), (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode()
+            )
+        except OSError as error:
+            raise ProgressError(f"{file}: cannot be written ({error.strerror}).") from None
+        return len(events)
+
+    def take_over(self, events: Iterable[Event]) -> int:
+        """Adds events of another journal, all or none; those that are here already are left. Returns how many are new."""
+        return self._write(events)
+
+    def _write(self, events: Iterable[Event]) -> int:
+        rows = [
+            (
+                each.uid,
+                each.at,
+                each.kind.value,
+                each.subject,
+                json.dumps(dict(each.content), ensure_ascii=False),
+            )
+            for each in events
+        ]
+        too_long = next((row for row in rows if len(row[4]) > LONGEST), None)
+        if too_long is not None:
+            raise ProgressError(f"{too_long[3]}: {len(too_long[4])} characters are too many; {LONGEST} fit.")
+        try:
+            with self._connection:
+                before = self._connection.total_changes
+                self._connection.executemany(
+                    "INSERT OR IGNORE INTO events (uid, at, kind, subject, content) VALUES (?, ?, ?, ?, ?)",
+                    rows,
+                )
+            return self._connection.total_changes - before
+        except sqlite3.Error as error:
+            raise self._unusable(error) from None
+
+    def _connect(self) -> sqlite3.Connection:
+        # Other threads of one face may ask; SQLite serialises them itself.
+        connection = sqlite3.connect(self._file, timeout=WAIT_S, check_same_thread=False)
+        try:
+            # Not the write-ahead log: it needs shared memory, which network homes do not have.
+            connection.execute("PRAGMA synchronous = FULL")
+            connection.execute(_SCHEMA)
+            connection.commit()
+        except sqlite3.Error:
+            connection.close()
+            raise
+        return connection
+
+    def _check(self) -> None:
+        found = self._connection.execute("PRAGMA quick_check(1)").fetchone()
+        columns = {row[1] for row in self._connection.execute("PRAGMA table_info(events)")}
+        if found != ("ok",) or not {"uid", "at", "kind", "subject", "content"} <= columns:
+            raise sqlite3.DatabaseError("damaged")
+
+    def _set_aside(self) -> None:
+        """Keeps the damaged file under another name and begins a new one with what can be read of it."""
+        with suppress(AttributeError):
+            self._connection.close()
+        stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S-%f")
+        aside = self._file.with_name(f"{self._file.stem}.damaged-{stamp}{self._file.suffix}")
+        saved = list(_salvaged(self._file))
+        try:
+            for ending in ("-journal", "-wal", "-shm"):
+                with suppress(FileNotFoundError):
+                    os.replace(f"{self._file}{ending}", f"{aside}{ending}")  # noqa: PTH105
+            self._file.replace(aside)
+            self._connection = self._connect()
+        except (OSError, sqlite3.Error) as error:
+            raise self._unusable(error) from None
+        self._write(saved)
+        self.notice = (
+            f"{self._file.name} was damaged. It was kept as {aside.name}; "
+            f"{len(saved)} entries could be read of it and were taken over."
+        )
+
+    def _unusable(self, error: Exception) -> ProgressError:
+        return ProgressError(
+            f"{self._file}: progress cannot be kept there ({error}). "
+            "Is the disk full, or the folder another user's? `--workspace FOLDER` names another."
+        )
+
+
+def read_export(file: Path) -> list[Event]:
+    """The events of an exported file. Raises ProgressError with what is wrong with it."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
+    except ValueError as error:
+        raise ProgressError(f"{file}: is not an export of progress, or is cut off ({error}).") from None
+    if (
+        not isinstance(content, dict)
+        or content.get("format") != FORMAT
+        or not isinstance(content.get("events"), list)
+    ):
+        raise ProgressError(f"{file}: is not an export of progress; `kit progress export FILE` makes one.")
+    if content.get("version") != VERSION:
+        raise ProgressError(
+            f"{file}: is of version {content.get('version')}; this kit reads version {VERSION}."
+        )
+    return [_of_export(each, index, file) for index, each in enumerate(content["events"], 1)]
+
+
+def _of_export(content: Any, index: int, file: Path) -> Event:
+    try:
+        event = Event(
+            str(content["uid"]),
+            str(content["at"]),
+            Kind(content["kind"]),
+            str(content["subject"]),
+            dict(content["content"]),
+        )
+        if event.time.tzinfo is None:
+            raise ValueError("a time without its zone")
+    except (KeyError, TypeError, ValueError) as error:
+        raise ProgressError(f"{file}: entry {index} cannot be understood ({error!r}).") from None
+    return event
+
+
+def _of_row(row: tuple[str, str, str, str, str]) -> Event | None:
+    """The event of a row; None for one of a newer kit, which is kept and not understood."""
+    uid, at, kind, subject, content = row
+    try:
+        return Event(uid, at, Kind(kind), subject, json.loads(content))
+    except ValueError:
+        return None
+
+
+def _salvaged(file: Path) -> Iterator[Event]:
+    """What can be read of a damaged file, row by row, until nothing can."""
+    seen: set[int] = set()
+    with suppress(sqlite3.Error), closing(sqlite3.connect(file, timeout=WAIT_S)) as connection:
+        for order in ("ASC", "DESC"):
+            with suppress(sqlite3.Error, UnicodeDecodeError):
+                for number, *row in connection.execute(
+                    f"SELECT number, uid, at, kind, subject, content FROM events ORDER BY number {order}"
+                ):
+                    if number in seen:
+                        break
+                    seen.add(number)
+                    with suppress(TypeError, ValueError):
+                        event = _of_row(tuple(row))
+                        if event is not None:
+                            yield event
