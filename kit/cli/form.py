@@ -1,0 +1,231 @@
+"""``kit form``: the evaluation form, question by question; each answer is on the disk before the next is asked."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.progress import Progress
+    from kit.school.survey.answering import Answers
+    from kit.school.survey.questions import Form, Phase, Question, Value
+
+WIDTH: Final = 78
+
+BACK, LEAVE, BLANK = "b", "q", "-"
+
+
+@click.command()
+@click.argument("phase", required=False, type=click.Choice(["before", "after"]))
+@click.option("--again", is_flag=True, help="Ask everything again; what you change counts from then on.")
+@click.option("--show", is_flag=True, help="Show what you answered, and ask nothing.")
+@options.workspace
+def command(phase: str | None, again: bool, show: bool, workspace: Path | None) -> None:
+    """Say what you knew before, what you learned, and how the kit served you.
+
+    \b
+    kit form before      a few minutes, before the first lesson
+    kit form after       when you are through; about ten minutes
+
+    Without a word it goes on where you stopped. Each answer is kept at once; leave whenever you like. Enter leaves
+    a question blank, and blank it stays: nobody counts it as anything else. What you say goes to your teacher only
+    when you export your progress and hand it in.
+    """
+    from kit.school.progress import Kind, Progress
+    from kit.school.survey.answering import Answers
+    from kit.school.survey.questions import Phase
+    from kit.school.survey.reading import read_form
+    from kit.workspace import open_workspace
+
+    with _mistakes_explained():
+        form = read_form()
+        with Progress(open_workspace(workspace).folder) as progress:
+            if progress.notice:
+                click.echo(progress.notice, err=True)
+            answers = Answers.of(form, progress.events(Kind.FORM))
+            chosen = Phase(phase) if phase else _phase_now(form, answers, progress)
+            if show:
+                _show(form, answers, [Phase(phase)] if phase else list(Phase))
+            else:
+                _ask_all(form, chosen, progress, again=again)
+
+
+def _phase_now(form: Form, answers: Answers, progress: Progress) -> Phase:
+    """Before, until that is done or a lesson was begun without it; then after."""
+    from kit.school.progress import Kind
+    from kit.school.survey.answering import still_open
+    from kit.school.survey.questions import Phase
+
+    if answers.started(Phase.AFTER) or not still_open(form, answers, Phase.BEFORE):
+        return Phase.AFTER
+    begun = answers.started(Phase.BEFORE) or not progress.events(Kind.ATTEMPT)
+    return Phase.BEFORE if begun else Phase.AFTER
+
+
+def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> None:
+    """Asks what is open. Which questions come can change with each answer, so they are looked up each time."""
+    from kit.school.progress import Kind
+    from kit.school.survey.answering import Answers, asked, still_open
+
+    done: list[Question] = []
+    """In this sitting, for going back."""
+    lead = ""
+    back_to: Question | None = None
+    introduced = False
+    while True:
+        answers = Answers.of(form, progress.events(Kind.FORM))
+        ahead = asked(form, answers, phase) if again else still_open(form, answers, phase)
+        question = back_to or next((each for each in ahead if each not in done), None)
+        if question is None:
+            break
+        if not introduced:
+            _introduce(form, phase, len(ahead))
+            introduced = True
+        if question.lead and question.lead != lead:
+            _lead(question)
+        lead = question.lead
+        number = asked(form, answers, phase).index(question) + 1
+        reply = _ask(question, answers.value(question.id, phase), number, len(asked(form, answers, phase)))
+        back_to = None
+        if reply is None:
+            left = len(still_open(form, answers, phase))
+            click.echo(f"Kept. {_count(left)} left; `kit form {phase.value}` goes on here.")
+            return
+        if reply.back:
+            back_to = done.pop() if done else question
+            lead = ""
+            if back_to is question:
+                click.echo("  This is the first of this sitting.")
+            continue
+        progress.add(Kind.FORM, question.id, {"phase": phase.value, "value": reply.value})
+        done.append(question)
+    click.echo(
+        "Thank you, that was all."
+        if introduced
+        else f"Everything of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
+        "`kit form --show` shows it."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Reply:
+    """What came back from one question: an answer, or the wish to go back."""
+
+    value: Value = None
+    back: bool = False
+
+
+def _ask(question: Question, was: Value, number: int, of: int) -> _Reply | None:
+    """One question until it is answered; None where the student leaves."""
+    from kit.school.survey.answering import NotAnAnswer, parse
+
+    head = f"{number}/{of}  "
+    if question.lead:
+        _say(head, question.text)
+    else:
+        _lead(question, head)
+    if was is not None:
+        click.echo(f"  so far: {shown(was)} (Enter keeps it, {BLANK} makes it blank)")
+    while True:
+        click.echo(f"  {_HINTS[question.shape.value]}> ", nl=False)
+        line = _line()
+        word = line.strip().lower()
+        if not line or word == LEAVE:
+            return None
+        if word == BACK:
+            return _Reply(back=True)
+        if word == BLANK:
+            return _Reply(None)
+        if not word and was is not None:
+            return _Reply(was)
+        try:
+            return _Reply(parse(question, line))
+        except NotAnAnswer as error:
+            click.echo(f"  {error}")
+
+
+def _line() -> str:
+    """What was typed; empty at the end of the input, and where Ctrl-C was pressed."""
+    try:
+        line = sys.stdin.readline() if sys.stdin is not None else ""
+    except KeyboardInterrupt:
+        line = ""
+    except UnicodeDecodeError:
+        return "\ufffd\n"
+    if not line or not sys.stdin.isatty():
+        click.echo()
+    return line
+
+
+_HINTS: Final = {"scale": "1-7", "choice": "number", "yes_no": "y/n", "text": "your words"}
+
+
+def _introduce(form: Form, phase: Phase, count: int) -> None:
+    click.echo(f"{form.title} ({phase.value} the lessons): {_count(count)}.")
+    click.echo("Enter leaves one blank, b goes back, q leaves; each answer is kept at once.")
+
+
+def _lead(question: Question, head: str = "") -> None:
+    """What is asked of a group of rows, with its scale; or one question that stands alone."""
+    click.echo()
+    _say(head, question.lead or question.text)
+    if question.low:
+        click.echo(f"  1 {question.low} ... 7 {question.high}")
+    for number, option in enumerate(question.options, 1):
+        click.echo(f"  {number} {option}")
+
+
+def _say(head: str, text: str) -> None:
+    click.echo("\n".join(wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))))
+
+
+def _show(form: Form, answers: Answers, phases: list[Phase]) -> None:
+    from kit.school.survey.answering import asked
+
+    for phase in phases:
+        if not answers.started(phase):
+            click.echo(f"{phase.value}: nothing answered yet.")
+            continue
+        click.echo(f"{phase.value}:")
+        lead = ""
+        for question in asked(form, answers, phase):
+            if question.lead and question.lead != lead:
+                click.echo("\n".join(wrap(question.lead, WIDTH, initial_indent="  ", subsequent_indent="  ")))
+            lead = question.lead
+            value = answers.value(question.id, phase)
+            said = shown(value) if answers.has(question.id, phase) else "not asked yet"
+            indent = "    " if question.lead else "  "
+            text = f"{question.text}: {said}"
+            click.echo("\n".join(wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent + "  ")))
+
+
+def shown(value: Value) -> str:
+    """An answer as it is told."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "blank" if value is None else str(value)
+
+
+def _count(number: int) -> str:
+    return "1 question" if number == 1 else f"{number} questions"
+
+
+@contextmanager
+def _mistakes_explained() -> Iterator[None]:
+    from kit.school.progress import ProgressError
+    from kit.workspace import WorkspaceError
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
+        options.fail(str(error))
