@@ -15,13 +15,6 @@ from kit.host.limits import Limits
 from kit.places import Place
 
 
-class Kind(Enum):
-    """What is handed in."""
-
-    CONTROLLER = "controller"
-    REWARD = "reward"
-
-
 class Seeds(Enum):
     """Which seeds a criterion is judged on."""
 
@@ -105,7 +98,8 @@ class Assignment:
     folder: Path
     id: str
     title: str
-    kind: Kind
+    kind: str
+    """What is handed in: a module of ``grader.kinds``."""
     submit: str
     """The name of the file that is handed in."""
     level: Level
@@ -113,8 +107,8 @@ class Assignment:
     limits: Limits
     trials: tuple[Trial, ...]
     criteria: tuple[Criterion, ...]
-    grid: GridTask | None
-    """Of an assignment about rewards."""
+    task: Any
+    """The kind's own record: a ``GridTask`` for a reward."""
     version: str
     """A digest of the folder's files: any change makes another one."""
     has_secrets: bool

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,7 +131,7 @@ class Drive:
         )
         return Body(model.name, pose, polygons, discs, robot=True)
 
-    def remark(self, check: str) -> str:
+    def remark(self, check: str, params: Any = None) -> str:
         """What else there is to say; the check's own sentence says all."""
         return ""
 

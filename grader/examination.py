@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
@@ -37,8 +37,7 @@ class Exam:
     secret = False
 
     def __init__(self, file: Path, assignment: Assignment, level: Level) -> None:
-        assert assignment.grid is not None
-        self.model: Model = build(assignment.grid)
+        self.model: Model = build(assignment.task)
         self.level = level
         self.failure: Failure | None = None
         self.printed: tuple[str, ...] = ()
@@ -120,7 +119,7 @@ class Exam:
                 self._trained[budget] = 0.0
         return self._trained[budget]
 
-    def remark(self, check: str) -> str:
+    def remark(self, check: str, params: Any = None) -> str:
         """What else there is to say in the light of a check."""
         if check == "ordered":
             wrong = next((pair for pair in self.pairs if not pair.is_right), None)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
-from grader.assignment import Assignment, Criterion, Kind, Seeds
-from grader.reading import checks_for
+from grader.assignment import Assignment, Criterion, Seeds
+from grader.kinds.contract import sort_of
 from grader.result import Episode, Result, Status, Test, Timing
 from grader.submission import Submission
 from kit.host.confine import Level
@@ -63,7 +63,7 @@ class Evidence(Protocol):
     def steps(self) -> int: ...
     @property
     def printed(self) -> tuple[str, ...]: ...
-    def remark(self, check: str) -> str:
+    def remark(self, check: str, params: Any) -> str:
         """What else there is to say of it in the light of a check, in a sentence; may be empty."""
 
     def picture(self, check: str = "") -> str:
@@ -100,7 +100,7 @@ class Grading:
         self.submission = submission
         self._gatherer = gatherer
         self._secret = secret
-        self._checks = checks_for(assignment.kind)
+        self._checks = sort_of(assignment.kind).checks
         self._looks: dict[str, tuple[_Look, ...]] = {}
         self._tests: dict[str, Test] = {}
         self._began = time.perf_counter()
@@ -237,7 +237,7 @@ class Grading:
             passed=sum(look.share == 1.0 for look in looks),
             count=len(looks),
         )
-        return f"{said} {evidence.remark(criterion.check)}".strip()
+        return f"{said} {evidence.remark(criterion.check, criterion.params)}".strip()
 
     def _broken(self, criterion: Criterion, log: str) -> Test:
         return Test(
@@ -257,7 +257,7 @@ class Grading:
         notices = []
         if later:
             notices.append(f"{len(later)} more tests run when you hand in.")
-        if not self._secret and self.assignment.kind is Kind.CONTROLLER and seeds:
+        if not self._secret and self.assignment.trials and seeds:
             notices.append("These are the practice seeds; the grade uses others.")
         if not self._secret and self._gatherer.level < self.assignment.level:
             notices.append(

@@ -9,46 +9,24 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, replace
-from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
-from grader.assignment import HINT_STEPS, Assignment, Criterion, GridTask, Kind, Seeds, Shift, Trial
+from grader.assignment import HINT_STEPS, Assignment, Criterion, Seeds, Trial
 from grader.checks.contract import Check
+from grader.kinds.contract import Sheet, kinds, sort_of
 from grader.result import Visibility
 from grader.scoring import Anchors
-from kit.geometry import Pose
 from kit.host.confine import Level
 from kit.host.limits import GRADER, MIB, Limits
-from kit.places import Place as Where
-from kit.places import find_place
-from kit.sim.telling import SERVICES
-from kit.world.catalogue import Case
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError, quoted, suggestion
+from kit.world.problems import Problems, quoted, suggestion
 from kit.world.records import Place
 from kit.world.section import Section
 
 SHEET: Final = "assignment.yaml"
 SECRET: Final = "secret.yaml"
-LONGEST_EPISODE: Final = 3600.0
-"""s"""
-LARGEST_PLAN: Final = 40
-"""Rows and columns of a grid."""
-
-
-TABLES: Final[Mapping[Kind, str]] = {
-    Kind.CONTROLLER: "grader.checks.drives",
-    Kind.REWARD: "grader.checks.rewards",
-}
-"""The module that holds the table of checks, by what is handed in; imported only when needed."""
-
-
-def checks_for(kind: Kind) -> Mapping[str, Check]:
-    """The table of checks for what is handed in."""
-    checks: Mapping[str, Check] = import_module(TABLES[kind]).CHECKS
-    return checks
 
 
 def read(folder: Path) -> Assignment:
@@ -63,6 +41,7 @@ def read(folder: Path) -> Assignment:
     assert section is not None  # None is noted as a problem
     made = _assignment(section, secrets, folder)
     problems.raise_if_any()
+    assert made is not None  # likewise
     return made
 
 
@@ -71,31 +50,36 @@ def digest(folder: Path) -> str:
     made = hashlib.sha256()
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
-        if name.parts[0] in NOT_GRADING or any(part.startswith((".", "__")) for part in name.parts):
+        if Path(name.parts[0]).stem in NOT_GRADING or any(
+            part.startswith((".", "__")) for part in name.parts
+        ):
             continue
         made.update(repr((name.as_posix(), file.stat().st_size)).encode())
         made.update(file.read_bytes())
     return made.hexdigest()[:16]
 
 
-NOT_GRADING: Final = ("README.md", "starter.py", "solution.py", "wrong")
-"""What may change without making another assignment of it."""
+NOT_GRADING: Final = ("README", "starter", "solution", "wrong")
+"""What may change without making another assignment of it, whatever its ending."""
 
 
-def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment:
-    kind = section.choice("kind", {each.value: each for each in Kind}, Kind.CONTROLLER.value)
-    trials = tuple(_trials(section, secrets, folder)) if kind is Kind.CONTROLLER else ()
+def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment | None:
+    kind = section.text("kind", "controller", choices=kinds())
+    if kind not in kinds():
+        return None  # what the rest should say depends on the kind
+    sort = sort_of(kind)
+    task = sort.read(Sheet(folder, section, secrets))
     made = Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
         kind=kind,
-        submit=_file_name(section),
+        submit=_file_name(section, sort.endings),
         level=Level(section.integer("level", int(Level.FILTERED), minimum=0, maximum=max(Level))),
         limits=_limits(section.section("budget", None)),
-        trials=trials,
-        criteria=tuple(_criteria(section, checks_for(kind), trials)),
-        grid=_grid(section.section("grid")) if kind is Kind.REWARD else None,
+        trials=task.trials,
+        criteria=tuple(_criteria(section, sort.checks, task.trials)),
+        task=task.content,
         version=digest(folder),
         has_secrets=secrets is not None,
     )
@@ -105,10 +89,13 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
     return made
 
 
-def _file_name(section: Section) -> str:
+def _file_name(section: Section, endings: tuple[str, ...]) -> str:
     name = section.name("submit")
-    if name and (not name.endswith(".py") or "/" in name or name.startswith(".")):
-        section.error(f"{quoted('submit')} must be the plain name of a Python file", "submit")
+    if name and (not name.endswith(endings) or "/" in name or name.startswith(".")):
+        section.error(
+            f"{quoted('submit')} must be the plain name of a file that ends with {' or '.join(endings)}",
+            "submit",
+        )
     return name
 
 
@@ -125,66 +112,6 @@ def _limits(section: Section | None) -> Limits:
     )
     section.finish()
     return made
-
-
-def _trials(section: Section, secrets: Section | None, folder: Path) -> Iterator[Trial]:
-    seen: set[str] = set()
-    hidden = None if secrets is None else secrets.section("seeds")
-    for each in section.sections("trials", at_least=1):
-        name = each.name("name")
-        if name in seen:
-            each.error(f"a trial named {quoted(name)} already exists", "name")
-        seen.add(name)
-        place = _place(each, folder)
-        time_s = each.number("time", 60.0, above=0, maximum=LONGEST_EPISODE)
-        seeds = _seeds(each, "seeds", (1, 2, 3))
-        shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
-        noise = each.number("noise", minimum=0, maximum=10) if each.has("noise") else None
-        until = each.flag("until_reached", True)
-        services = each.texts("services", ("move_model",))
-        for service in services:
-            if service not in SERVICES:
-                each.error(
-                    f"no service {quoted(service)}: {suggestion(service, tuple(SERVICES))}", "services"
-                )
-        each.finish()
-        secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
-        if place is not None:
-            yield Trial(name, place, time_s, seeds, secret_seeds, shift, noise, until, frozenset(services))
-    if hidden is not None:
-        hidden.finish()
-
-
-def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, ...]:
-    numbers = section.numbers(key, default)
-    if any(number != int(number) or number < 0 for number in numbers):
-        section.error(f"{quoted(key)} must be whole numbers from 0 on", key)
-        return default
-    seeds = tuple(map(int, numbers))
-    if len(set(seeds)) < len(seeds):
-        section.error(f"{quoted(key)} names a seed twice", key)
-    return seeds
-
-
-def _place(section: Section, folder: Path) -> Where | None:
-    name = section.name("place")
-    case = section.name("case") if section.has("case") else None
-    target = section.point("target") if section.has("target") else None
-    radius = section.number("target_radius", 0.2, above=0)
-    if not name:
-        return None
-    try:
-        inside = (folder / name).resolve()
-        is_ours = inside.exists() and inside.is_relative_to(folder.resolve())
-        place = find_place(str(folder / name) if is_ours else name, case, folder if is_ours else None)
-    except (LookupError, WorldError, OSError) as error:
-        section.error(str(error), "place")
-        return None
-    if target is None:
-        return place
-    start = place.start or Pose()
-    made = Case(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    return replace(place, case=made)
 
 
 def _criteria(
@@ -255,24 +182,3 @@ def _params(section: Section | None, check: Check) -> Any:
     }
     section.finish()
     return check.params(**values)
-
-
-def _grid(section: Section) -> GridTask:
-    rows = tuple(line.rstrip() for line in section.text("map").splitlines() if line.strip())
-    made = GridTask(
-        rows,
-        section.number("discount", 0.98, above=0, maximum=0.999),
-        section.integer("max_steps", 200, minimum=1, maximum=10_000),
-    )
-    section.finish()
-    if not rows or len({len(row) for row in rows}) != 1 or max(len(rows), len(rows[0])) > LARGEST_PLAN:
-        section.error(
-            f"{quoted('map')} must be rows of equal length, at most {LARGEST_PLAN} by {LARGEST_PLAN}", "map"
-        )
-    elif set("".join(rows)) - set("#.G") or "".join(rows).count("G") != 1:
-        section.error(
-            f"{quoted('map')} is drawn with # for a wall, . for floor and exactly one G, the target", "map"
-        )
-    elif any(row[0] + row[-1] != "##" for row in rows) or set(rows[0] + rows[-1]) != {"#"}:
-        section.error(f"{quoted('map')} must have walls all around", "map")
-    return made

@@ -1,8 +1,8 @@
 """Does an assignment do what its teacher means? The starter, the solution and the wrong solutions say so.
 
-``starter.py`` must run into no error and not pass. ``solution.py`` must earn everything, and do the same twice. Every
-``wrong/ID.py`` (or ``wrong/ID+ID__comment.py``) must lose the criteria it is named for, those that depend on them,
-and no other.
+The starter must run into no error and not pass. The solution must earn everything, and do the same twice. Every
+``wrong/ID`` (or ``wrong/ID+ID__comment``) must lose the criteria it is named for, those that depend on them,
+and no other. Each is a file with the ending of what is handed in, or a folder that holds it.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from grader.scoring import least_passes, unfair_fail
 from grader.session import Terms, grade
 from grader.submission import take
 
-STARTER: Final = "starter.py"
-SOLUTION: Final = "solution.py"
+STARTER: Final = "starter"
+SOLUTION: Final = "solution"
 WRONG: Final = "wrong"
 
 SUCCESSES: Final = (0.9, 0.95, 0.99)
@@ -49,11 +49,18 @@ class Odds:
     """For each of ``SUCCESSES``."""
 
 
-def prove(assignment: Assignment, terms: Terms) -> Iterator[Proof]:
-    """Tries the folder's programs one after the other. Raises LevelTooLow."""
-    yield _starter(assignment, terms)
-    yield _solution(assignment, terms)
-    wrong = sorted((assignment.folder / WRONG).glob("*.py"))
+def prove(assignment: Assignment, terms: Terms, solutions: Path | None = None) -> Iterator[Proof]:
+    """Tries the folder's works one after the other; ``solutions``: where the right and the wrong ones lie, if not in
+    the assignment's folder. Raises LevelTooLow."""
+    solutions = assignment.folder if solutions is None else solutions
+    yield _starter(assignment, _work(assignment.folder, STARTER, assignment), terms)
+    yield _solution(assignment, _work(solutions, SOLUTION, assignment), terms)
+    ending = Path(assignment.submit).suffix
+    wrong = sorted(
+        each
+        for each in (solutions / WRONG).glob("[!._]*")
+        if each.name != "__pycache__" and (each.is_dir() or each.suffix == ending)
+    )
     if not wrong:
         yield Proof(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
     for file in wrong:
@@ -78,10 +85,16 @@ def odds(assignment: Assignment, *, secret: bool) -> Iterator[Odds]:
             )
 
 
-def _starter(assignment: Assignment, terms: Terms) -> Proof:
-    result = _graded(assignment, assignment.folder / STARTER, terms)
+def _work(folder: Path, stem: str, assignment: Assignment) -> Path:
+    """A work by its name: a folder that holds what is handed in, or the file itself under this name."""
+    whole = folder / stem
+    return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
+
+
+def _starter(assignment: Assignment, file: Path, terms: Terms) -> Proof:
+    result = _graded(assignment, file, terms)
     if isinstance(result, str):
-        return Proof(STARTER, (result,), "")
+        return Proof(file.name, (result,), "")
     problems = _broken(result)
     if result.verdict is Verdict.PASS:
         problems.append("it passes: there is nothing left to do")
@@ -89,14 +102,13 @@ def _starter(assignment: Assignment, terms: Terms) -> Proof:
     problems += [
         f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in rude
     ]
-    return Proof(STARTER, tuple(problems), _summary(result))
+    return Proof(file.name, tuple(problems), _summary(result))
 
 
-def _solution(assignment: Assignment, terms: Terms) -> Proof:
-    file = assignment.folder / SOLUTION
+def _solution(assignment: Assignment, file: Path, terms: Terms) -> Proof:
     result = _graded(assignment, file, terms)
     if isinstance(result, str):
-        return Proof(SOLUTION, (result,), "")
+        return Proof(file.name, (result,), "")
     problems = _broken(result)
     problems += [
         f"{test.id}: {test.status.value}, {amount(test.points)} of {amount(test.max_points)} points: {test.rationale}"
@@ -111,12 +123,12 @@ def _solution(assignment: Assignment, terms: Terms) -> Proof:
         problems.append(
             "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
         )
-    return Proof(SOLUTION, tuple(problems), _summary(result))
+    return Proof(file.name, tuple(problems), _summary(result))
 
 
 def _wrong(assignment: Assignment, file: Path, terms: Terms) -> Proof:
     name = f"{WRONG}/{file.name}"
-    meant = set(file.stem.partition("__")[0].split("+"))
+    meant = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
     known = {criterion.id for criterion in assignment.criteria}
     if not meant <= known:
         return Proof(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
@@ -144,7 +156,7 @@ def _depends(assignment: Assignment, identity: str, meant: set[str]) -> bool:
 
 
 def _graded(assignment: Assignment, file: Path, terms: Terms) -> Result | str:
-    if not file.is_file():
+    if not file.exists():
         return "it is missing"
     try:
         return grade(assignment, take(file, assignment.submit), terms)

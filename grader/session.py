@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from grader.assignment import Assignment, Kind
-from grader.grading import Gatherer, Grading
+from grader.assignment import Assignment
+from grader.grading import Grading
+from grader.kinds.contract import Conditions, sort_of
 from grader.result import Result
 from grader.shield import hide
 from grader.submission import Submission
@@ -41,25 +42,9 @@ def opened(assignment: Assignment, submission: Submission, terms: Terms) -> Iter
         )
     hide()
     with submission.laid_out() as file:
-        gatherer: Gatherer
-        if assignment.kind is Kind.CONTROLLER:
-            from grader.controllers import ControllerRuns
-
-            gatherer = ControllerRuns(
-                assignment,
-                file,
-                level=level,
-                secret=terms.secret,
-                may_fall=terms.may_fall and terms.level is None,
-            )
+        conditions = Conditions(level, terms.secret, terms.may_fall and terms.level is None)
+        with sort_of(assignment.kind).gather(assignment, file, conditions) as gatherer:
             yield Grading(assignment, submission, gatherer, secret=terms.secret)
-        else:
-            from grader.examination import Examination
-
-            with Examination(
-                assignment, file, level=level, may_fall=terms.may_fall and terms.level is None
-            ) as gatherer:
-                yield Grading(assignment, submission, gatherer, secret=terms.secret)
 
 
 def grade(assignment: Assignment, submission: Submission, terms: Terms) -> Result:

@@ -11,8 +11,13 @@ from grader.verbs import options
 
 @click.command()
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "--solutions",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Where the solution and the wrong ones lie, if not in FOLDER.",
+)
 @options.level
-def command(folder: Path, level: int | None) -> None:
+def command(folder: Path, solutions: Path | None, level: int | None) -> None:
     """Try out the assignment in FOLDER: its starter fails politely, its solution earns everything, each of its wrong
     solutions loses what its file name says. Then the odds that a good work fails by bad luck.
 
@@ -27,7 +32,7 @@ def command(folder: Path, level: int | None) -> None:
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False
     try:
-        for proof in prove(assignment, terms):
+        for proof in prove(assignment, terms, solutions):
             failed |= bool(proof.problems)
             click.echo(f"{'[no]' if proof.problems else '[ok]'} {proof.name:<32} {proof.summary}")
             for problem in proof.problems:

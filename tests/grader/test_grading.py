@@ -17,6 +17,7 @@ from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.checks import contract, drives
 from grader.ci import WORKFLOWS, workflow
+from grader.kinds import controller
 from grader.reading import read
 from grader.result import Result, Status, Verdict
 from grader.self_test import odds, prove
@@ -131,7 +132,7 @@ def test_a_check_that_breaks_costs_nobody_anything(
 
     table = dict(drives.CHECKS)
     table["moves"] = dataclasses.replace(table["moves"], measure=broken)
-    monkeypatch.setattr(drives, "CHECKS", table)
+    monkeypatch.setattr(controller, "SORT", dataclasses.replace(controller.SORT, checks=table))
     result = grade(quick, handed_in(FORWARD), DESK)
     assert statuses(result)["moves"] == "grader_error"
     assert (result.verdict, result.points) == (Verdict.BROKEN, None)

@@ -16,7 +16,7 @@ from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
 def test_the_templates_can_be_read(kind: str) -> None:
     made = read(TEMPLATES / kind)
     assert made.max_points == 10
-    assert made.kind.value == kind
+    assert made.kind == kind
 
 
 def test_what_is_read(tmp_path: Path) -> None:
@@ -33,7 +33,7 @@ MISTAKES = {
     "kind: controler": ("kind", "did you mean"),
     "titel: x": ("titel", "unknown key"),
     "submit: ../x.py": ("submit", "plain name"),
-    "submit: x.sh": ("submit", "Python file"),
+    "submit: x.sh": ("submit", ".py"),
     "level: 9": ("level", "at most 3"),
     "budget: {reply: -1}": ("reply", "greater than 0"),
     "checks: [{check: reachd, points: 1}]": ("reachd", "did you mean"),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from grader import planning
-from grader.assignment import Assignment, GridTask, Kind
+from grader.assignment import Assignment, GridTask
 from grader.examination import Exam
 from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
 from grader.symmetry import mirrored, rotated
@@ -88,7 +88,7 @@ def examine(folder: Path, text: str, task: GridTask = SMALL) -> Exam:
     file = folder / "reward.py"
     file.write_text(textwrap.dedent(text))
     assignment = Assignment(
-        folder, "r", "R", Kind.REWARD, "reward.py", Level.LIMITED, GRADER, (), (), task, "v", False
+        folder, "r", "R", "reward", "reward.py", Level.LIMITED, GRADER, (), (), task, "v", False
     )
     return Exam(file, assignment, Level.LIMITED)
 

@@ -1,0 +1,132 @@
+"""What a kind of assignment is, and the simplest evidence there is: one look at what was handed in."""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from grader.checks.contract import Check
+from kit.host.confine import Level
+from kit.host.failure import Failure
+from kit.world.section import Section
+
+if TYPE_CHECKING:
+    from grader.assignment import Assignment, Criterion, Trial
+    from grader.grading import Gatherer
+
+PACKAGE: Final = "grader.kinds"
+NOT_KINDS: Final = ("contract",)
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """An assignment's files while they are read."""
+
+    folder: Path
+    public: Section
+    """``assignment.yaml``"""
+    secret: Section | None
+    """``secret.yaml``, where there is one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What a kind reads of the sheet for itself."""
+
+    trials: tuple[Trial, ...] = ()
+    """Kinds of episodes, where the kind has episodes."""
+    content: Any = None
+    """The kind's own record."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """How one submission is to be looked at."""
+
+    level: Level
+    secret: bool
+    may_fall: bool
+    """Whether a machine that cannot confine so far may confine less."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sort:
+    """One kind of assignment."""
+
+    endings: tuple[str, ...]
+    """What the name of the file handed in may end with."""
+    checks: Mapping[str, Check]
+    """By name."""
+    read: Callable[[Sheet], Task]
+    """Notes mistakes in the sections; need not finish them."""
+    gather: Callable[[Assignment, Path, Conditions], AbstractContextManager[Gatherer]]
+    """(assignment, the main file handed in, conditions) -> who gathers evidence."""
+
+
+def kinds() -> tuple[str, ...]:
+    """Every kind there is, by name."""
+    package = import_module(PACKAGE)
+    return tuple(
+        sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NOT_KINDS)
+    )
+
+
+def sort_of(kind: str) -> Sort:
+    """The kind's record; its module is imported when it is first asked for."""
+    sort: Sort = import_module(f"{PACKAGE}.{kind}").SORT
+    return sort
+
+
+@dataclass(eq=False)
+class Look:
+    """One look at what was handed in: what was found, or why nothing could be found."""
+
+    found: Any = None
+    """The kind's own record, for its checks."""
+    failure: Failure | None = None
+    label: str = "what you handed in"
+    secret: bool = False
+    outcome: str = "looked at"
+    steps: int = 0
+    printed: tuple[str, ...] = ()
+    remarks: Callable[[str, Any], str] = lambda check, params: ""
+    """(a check's name, its params) -> what else there is to say."""
+    pictures: Callable[[str], str] = lambda check: ""
+
+    def remark(self, check: str, params: Any) -> str:
+        return self.remarks(check, params)
+
+    def picture(self, check: str = "") -> str:
+        return self.pictures(check)
+
+
+class Looks:
+    """A gatherer of looks that are taken once, for every criterion the same."""
+
+    def __init__(self, looks: Sequence[Look], level: Level) -> None:
+        self.level = level
+        self._looks = tuple(looks)
+
+    def evidence(self, criterion: Criterion) -> Sequence[Look]:
+        return self._looks
+
+    def all(self) -> Sequence[Look]:
+        return self._looks
+
+
+def once(
+    look: Callable[[Assignment, Path, Conditions], Look],
+) -> Callable[..., AbstractContextManager[Gatherer]]:
+    """``Sort.gather`` for a kind that looks once."""
+
+    def gather(
+        assignment: Assignment, file: Path, conditions: Conditions
+    ) -> AbstractContextManager[Gatherer]:
+        return nullcontext(Looks([look(assignment, file, conditions)], conditions.level))
+
+    return gather

@@ -1,0 +1,112 @@
+"""A ROS 2 node that drives: judged on episodes that the grader runs and records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from grader.assignment import Assignment, Shift, Trial
+from grader.checks.drives import CHECKS
+from grader.kinds.contract import Conditions, Sheet, Sort, Task
+from kit.geometry import Pose
+from kit.places import Place as Where
+from kit.places import find_place
+from kit.sim.telling import SERVICES
+from kit.world.catalogue import Case
+from kit.world.problems import WorldError, quoted, suggestion
+from kit.world.section import Section
+
+if TYPE_CHECKING:
+    from grader.grading import Gatherer
+
+LONGEST_EPISODE: Final = 3600.0
+"""s"""
+
+
+def read(sheet: Sheet) -> Task:
+    """The trials."""
+    return Task(trials=tuple(trials(sheet)))
+
+
+def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+    """Its episodes, each run when a criterion first needs it."""
+    from grader.controllers import ControllerRuns
+
+    return nullcontext(
+        ControllerRuns(
+            assignment,
+            file,
+            level=conditions.level,
+            secret=conditions.secret,
+            may_fall=conditions.may_fall,
+        )
+    )
+
+
+def trials(sheet: Sheet) -> Iterator[Trial]:
+    """Kinds of episodes: where, how long, with which seeds."""
+    section, secrets, folder = sheet.public, sheet.secret, sheet.folder
+    seen: set[str] = set()
+    hidden = None if secrets is None else secrets.section("seeds")
+    for each in section.sections("trials", at_least=1):
+        name = each.name("name")
+        if name in seen:
+            each.error(f"a trial named {quoted(name)} already exists", "name")
+        seen.add(name)
+        place = place_of(each, folder)
+        time_s = each.number("time", 60.0, above=0, maximum=LONGEST_EPISODE)
+        seeds = _seeds(each, "seeds", (1, 2, 3))
+        shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
+        noise = each.number("noise", minimum=0, maximum=10) if each.has("noise") else None
+        until = each.flag("until_reached", True)
+        services = each.texts("services", ("move_model",))
+        for service in services:
+            if service not in SERVICES:
+                each.error(
+                    f"no service {quoted(service)}: {suggestion(service, tuple(SERVICES))}", "services"
+                )
+        each.finish()
+        secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
+        if place is not None:
+            yield Trial(name, place, time_s, seeds, secret_seeds, shift, noise, until, frozenset(services))
+    if hidden is not None:
+        hidden.finish()
+
+
+def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, ...]:
+    numbers = section.numbers(key, default)
+    if any(number != int(number) or number < 0 for number in numbers):
+        section.error(f"{quoted(key)} must be whole numbers from 0 on", key)
+        return default
+    seeds = tuple(map(int, numbers))
+    if len(set(seeds)) < len(seeds):
+        section.error(f"{quoted(key)} names a seed twice", key)
+    return seeds
+
+
+def place_of(section: Section, folder: Path) -> Where | None:
+    """A map of the kit or a world of the folder, with its case or target; None if there is a mistake, which is noted."""
+    name = section.name("place")
+    case = section.name("case") if section.has("case") else None
+    target = section.point("target") if section.has("target") else None
+    radius = section.number("target_radius", 0.2, above=0)
+    if not name:
+        return None
+    try:
+        inside = (folder / name).resolve()
+        is_ours = inside.exists() and inside.is_relative_to(folder.resolve())
+        place = find_place(str(folder / name) if is_ours else name, case, folder if is_ours else None)
+    except (LookupError, WorldError, OSError) as error:
+        section.error(str(error), "place")
+        return None
+    if target is None:
+        return place
+    start = place.start or Pose()
+    made = Case(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
+    return replace(place, case=made)
+
+
+SORT: Final = Sort((".py",), CHECKS, read, gather)

@@ -1,0 +1,55 @@
+"""A reward function: judged by the behaviour it asks for."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from grader.assignment import Assignment, GridTask
+from grader.checks.rewards import CHECKS
+from grader.kinds.contract import Conditions, Sheet, Sort, Task
+from kit.world.problems import quoted
+from kit.world.section import Section
+
+if TYPE_CHECKING:
+    from grader.grading import Gatherer
+
+LARGEST_PLAN: Final = 40
+"""Rows and columns of a grid."""
+
+
+def read(sheet: Sheet) -> Task:
+    """The small model of the task."""
+    return Task(content=_grid(sheet.public.section("grid")))
+
+
+def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+    """The function, examined once."""
+    from grader.examination import Examination
+
+    return Examination(assignment, file, level=conditions.level, may_fall=conditions.may_fall)
+
+
+def _grid(section: Section) -> GridTask:
+    rows = tuple(line.rstrip() for line in section.text("map").splitlines() if line.strip())
+    made = GridTask(
+        rows,
+        section.number("discount", 0.98, above=0, maximum=0.999),
+        section.integer("max_steps", 200, minimum=1, maximum=10_000),
+    )
+    section.finish()
+    if not rows or len({len(row) for row in rows}) != 1 or max(len(rows), len(rows[0])) > LARGEST_PLAN:
+        section.error(
+            f"{quoted('map')} must be rows of equal length, at most {LARGEST_PLAN} by {LARGEST_PLAN}", "map"
+        )
+    elif set("".join(rows)) - set("#.G") or "".join(rows).count("G") != 1:
+        section.error(
+            f"{quoted('map')} is drawn with # for a wall, . for floor and exactly one G, the target", "map"
+        )
+    elif any(row[0] + row[-1] != "##" for row in rows) or set(rows[0] + rows[-1]) != {"#"}:
+        section.error(f"{quoted('map')} must have walls all around", "map")
+    return made
+
+
+SORT: Final = Sort((".py",), CHECKS, read, gather)

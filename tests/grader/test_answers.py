@@ -1,0 +1,102 @@
+"""Answers in a file: what counts as right, what is said to a wrong one, and what is not shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.reading import read
+from grader.result import Status, Verdict
+from grader.session import Terms, grade
+from grader.submission import Submission
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+
+SHEET = """
+title: Words
+kind: answers
+submit: answers.yaml
+level: 0
+questions:
+  topic: {ask: Which topic?, choices: [cmd_vel, odom, scan]}
+  rate: {ask: How often a second?}
+  nodes: {ask: Which nodes?, list: true}
+checks:
+  - {check: answers, id: topic, points: 1, with: {keys: [topic]}}
+  - {check: answers, id: all, points: 2}
+"""
+KEYS = """
+answers:
+  topic: {right: [cmd_vel], feedback: {odom: That one comes from the robot.}}
+  rate: {right: [10], within: 0.5}
+  nodes: {right: [/one, /two]}
+"""
+DESK = Terms(Level.LIMITED, secret=True)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "words"
+    made.mkdir()
+    (made / "assignment.yaml").write_text(SHEET)
+    (made / "secret.yaml").write_text(KEYS)
+    return made
+
+
+def handed_in(text: str) -> Submission:
+    return Submission("ada", "answers.yaml", {"answers.yaml": text.encode()})
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        ("topic: cmd_vel\nrate: 10.4\nnodes: [/two, /one]\n", 3.0),
+        ("topic: CMD_VEL \nrate: '10'\nnodes: [/one,  /two ]\n", 3.0),
+        ("topic: cmd_vel\nrate: 10.6\nnodes: [/one]\n", 1.0 + 2.0 / 3.0),
+        ("topic: odom\nrate: ten\nnodes: /one\n", 0.0),
+        ("topic:\nrate:\nnodes: []\n", 0.0),
+        ("{}\n", 0.0),
+    ],
+    ids=["right", "written otherwise", "some", "wrong", "blank", "empty"],
+)
+def test_what_is_right(folder: Path, text: str, points: float) -> None:
+    result = grade(read(folder), handed_in(text), DESK)
+    assert result.points == pytest.approx(points)
+    assert all(not test.status.value.endswith("error") for test in result.tests)
+
+
+def test_a_known_mistake_is_answered(folder: Path) -> None:
+    result = grade(read(folder), handed_in("topic: odom\n"), DESK)
+    assert "comes from the robot" in result.tests[0].rationale
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "topic: [",
+        "topik: odom\n",
+        "topic: cmd\n",
+        "- 1\n",
+        f"rate: {'x' * 300}\n",
+        "topic: !!python/object:os.system {}\n",
+    ],
+    ids=["broken", "key", "choice", "list", "long", "tag"],
+)
+def test_a_file_that_cannot_be_read_is_an_error_with_its_place(folder: Path, text: str) -> None:
+    result = grade(read(folder), handed_in(text), DESK)
+    assert {test.status for test in result.tests} == {Status.STUDENT_ERROR}
+    assert "answers.yaml" in result.tests[0].rationale
+    assert "/tmp" not in result.tests[0].rationale
+
+
+def test_without_the_secret_nothing_is_judged(folder: Path) -> None:
+    result = grade(read(folder), handed_in("topic: cmd_vel\n"), Terms(Level.LIMITED))
+    assert {test.status for test in result.tests} == {Status.SKIPPED}
+    assert result.verdict is Verdict.FAIL
+
+
+def test_a_key_must_be_one_of_the_choices(folder: Path) -> None:
+    (folder / "secret.yaml").write_text(KEYS.replace("[cmd_vel]", "[cmd]"))
+    with pytest.raises(WorldError, match="none of the choices"):
+        read(folder)
