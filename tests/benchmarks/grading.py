@@ -62,7 +62,7 @@ STATUS = {"good": {"pass"}, "wrong": {"pass"}, "stopping": {"student_error"}, "s
 def hostile(secret: Path) -> Iterator[str]:
     """The programs of the catalogue that come alone and come back, in turn."""
     return cycle(
-        program(attack, secret)
+        program(attack, secret, secret.with_name("results.json"))
         for attack in ATTACKS
         if attack.sheet == ATTACKED and not attack.files and attack.pack is None
     )
