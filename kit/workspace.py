@@ -35,6 +35,11 @@ class Workspace:
         return self.folder / "packages"
 
     @property
+    def lessons(self) -> Path:
+        """The student's own files of lessons' exercises."""
+        return self.folder / "lessons"
+
+    @property
     def recordings(self) -> Path:
         return self.folder / "recordings"
 
@@ -65,6 +70,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
         try:
             for part in (
                 workspace.controllers,
+                workspace.lessons,
                 workspace.packages,
                 workspace.worlds,
                 workspace.recordings,

@@ -1,0 +1,154 @@
+"""The little markup of lessons' texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
+
+No library: the whole is this one page, and what it makes must wrap to a terminal's cells for the screen, the plain
+mode and the check that a text fits.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+BLOCK_INDENT: Final = "    "
+BULLET: Final = "- "
+_INLINE: Final = re.compile(r"`([^`]+)`|\*\*([^*]+)\*\*")
+
+
+class MarkupError(ValueError):
+    """A text is marked up wrongly; the message says where."""
+
+
+class Style(Enum):
+    """How a piece of text is set."""
+
+    PLAIN = "plain"
+    CODE = "code"
+    BOLD = "bold"
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Some characters in one style."""
+
+    text: str
+    style: Style
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A paragraph, a list's entry, or a block of code whose lines stay as they are."""
+
+    kind: str
+    """``paragraph``, ``bullet`` or ``code``."""
+    lines: tuple[str, ...]
+
+
+Row = tuple[Piece, ...]
+
+
+def parsed(text: str) -> tuple[Block, ...]:
+    """The blocks of a text. Raises MarkupError."""
+    if text.count("`") % 2 or re.sub(r"`[^`]+`", "", text).count("**") % 2:
+        raise MarkupError("a ` or ** is opened and not closed")
+    blocks: list[Block] = []
+    for part in re.split(r"\n\s*\n", text.strip("\n")):
+        blocks.extend(_blocks(part.splitlines()))
+    return tuple(blocks)
+
+
+def _blocks(lines: Sequence[str]) -> list[Block]:
+    if lines and all(line.startswith(BLOCK_INDENT) for line in lines):
+        return [Block("code", tuple(line.removeprefix(BLOCK_INDENT) for line in lines))]
+    blocks: list[Block] = []
+    for line in lines:
+        if line.startswith(BULLET):
+            blocks.append(Block("bullet", (line.removeprefix(BULLET),)))
+        elif blocks:
+            last = blocks.pop()
+            blocks.append(Block(last.kind, (*last.lines, line.strip())))
+        else:
+            blocks.append(Block("paragraph", (line.strip(),)))
+    return blocks
+
+
+def rows(blocks: Sequence[Block], width: int) -> list[Row]:
+    """The blocks as rows of at most ``width`` characters; an empty row between blocks, none between list entries."""
+    made: list[Row] = []
+    before: Block | None = None
+    for block in blocks:
+        if before is not None and not (before.kind == block.kind == "bullet"):
+            made.append(())
+        made.extend(_rows(block, width))
+        before = block
+    return made
+
+
+def plain(row: Row) -> str:
+    """A row's characters alone."""
+    return "".join(piece.text for piece in row)
+
+
+def _rows(block: Block, width: int) -> list[Row]:
+    if block.kind == "code":
+        return [(Piece(BLOCK_INDENT + line, Style.CODE),) for line in block.lines]
+    first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
+    return _wrapped(_pieces(" ".join(block.lines)), width, first, rest)
+
+
+def _pieces(text: str) -> list[Piece]:
+    pieces: list[Piece] = []
+    at = 0
+    for found in _INLINE.finditer(text):
+        pieces.append(Piece(text[at : found.start()], Style.PLAIN))
+        pieces.append(Piece(found[1], Style.CODE) if found[1] else Piece(found[2], Style.BOLD))
+        at = found.end()
+    pieces.append(Piece(text[at:], Style.PLAIN))
+    return [piece for piece in pieces if piece.text]
+
+
+def _wrapped(pieces: Sequence[Piece], width: int, first: str, rest: str) -> list[Row]:
+    """Wraps the characters, then gives each its style back. Code is wrapped like words: a long one moves down whole."""
+    styles: list[Style] = []
+    words = ""
+    for piece in pieces:
+        words += piece.text
+        styles += [piece.style] * len(piece.text)
+    # A blank inside code must not be a place to break, nor be dropped at a line's end.
+    held = "".join(
+        "\0" if style is Style.CODE and sign == " " else sign
+        for sign, style in zip(words, styles, strict=True)
+    )
+    lines = textwrap.wrap(
+        held,
+        width,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
+        break_long_words=True,
+    )
+    made: list[Row] = []
+    at = 0
+    for index, line in enumerate(lines):
+        lead = first if index == 0 else rest
+        row = [Piece(lead, Style.PLAIN)] if lead else []
+        for sign in line.removeprefix(lead):
+            while held[at] != sign:
+                at += 1  # a blank that the break swallowed
+            row.append(Piece(words[at], styles[at]))
+            at += 1
+        made.append(_joined(row))
+    return made
+
+
+def _joined(pieces: Sequence[Piece]) -> Row:
+    made: list[Piece] = []
+    for piece in pieces:
+        if made and made[-1].style is piece.style:
+            made[-1] = Piece(made[-1].text + piece.text, piece.style)
+        else:
+            made.append(piece)
+    return tuple(made)

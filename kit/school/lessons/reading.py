@@ -1,0 +1,214 @@
+"""Lessons' folders become records. Every mistake is told with its file, line and column."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Final
+
+from kit.school.lessons.markup import MarkupError, parsed, rows
+from kit.school.lessons.records import Command, Exercise, How, Lesson, Option, Scene, Step, StepKind
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, quoted, suggestion
+from kit.world.records import Place
+from kit.world.section import Section
+
+SHEET: Final = "lesson.yaml"
+OUTCOMES: Final = "outcomes.yaml"
+ASSIGNMENT: Final = "assignment.yaml"
+
+WIDTH: Final = 76
+"""Characters of a line of text: what fits on 80 columns."""
+ROWS_BESIDE_A_PICTURE: Final = 12
+ROWS_ALONE: Final = 17
+PICTURE_ROWS: Final = 10
+OPTIONS: Final = (2, 4)
+
+
+class UnknownLesson(LookupError):
+    """No lesson has that name; the message offers the nearest one."""
+
+
+def lessons_folder() -> Path:
+    """Where the lessons lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
+    return _data("lessons", "lessons")
+
+
+def solutions_folder() -> Path:
+    """Where the reference solutions lie. FileNotFoundError if they were left out."""
+    return _data("solutions", "tests/solutions")
+
+
+def lesson_names(folder: Path | None = None) -> tuple[str, ...]:
+    """Every lesson there is, in their order."""
+    folder = lessons_folder() if folder is None else folder
+    return tuple(sorted(each.parent.name for each in folder.glob(f"*/{SHEET}")))
+
+
+def find_lesson(name: str, folder: Path | None = None) -> Lesson:
+    """A lesson by its folder's name, its number, or its name without the number. Raises UnknownLesson, and WorldError
+    if its file is wrong."""
+    folder = lessons_folder() if folder is None else folder
+    names = lesson_names(folder)
+    for known in names:
+        number, _, rest = known.partition("-")
+        if name in (known, rest, number, number.lstrip("0")):
+            return read(folder / known)
+    raise UnknownLesson(
+        f"There is no lesson {quoted(name)}: {suggestion(name, names)}. `kit lesson` lists them."
+    )
+
+
+def read(folder: Path) -> Lesson:
+    """The lesson in ``folder``. Raises WorldError with all its mistakes."""
+    problems = Problems()
+    section = _opened(folder / SHEET, problems)
+    lesson = Lesson(
+        name=folder.name,
+        folder=folder,
+        title=section.name("title"),
+        summary=section.name("summary"),
+        minutes=section.integer("minutes", minimum=1, maximum=120),
+        outcomes=section.texts("outcomes", at_least=1),
+        carries=section.texts("carries", ()),
+        steps=tuple(_steps(section, folder)),
+    )
+    known = outcomes(folder.parent)
+    for each in lesson.carries:
+        if each not in known:
+            section.error(f"no outcome {quoted(each)}: {suggestion(each, known)}", "carries")
+    section.finish()
+    problems.raise_if_any()
+    return lesson
+
+
+def outcomes(folder: Path | None = None) -> Mapping[str, str]:
+    """The outcomes and practical concepts that lessons carry, by id. Raises WorldError."""
+    file = (lessons_folder() if folder is None else folder) / OUTCOMES
+    problems = Problems()
+    section = _opened(file, problems)
+    found = {key: section.text(key) for key in tuple(section.keys())}
+    section.finish()
+    problems.raise_if_any()
+    return found
+
+
+def _data(installed: str, checkout: str) -> Path:
+    package = Path(__file__).resolve().parents[2]
+    for folder in (package / "data" / installed, package.parent / checkout):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"{installed} are missing: neither in {package / 'data'} nor beside {package}")
+
+
+def _opened(file: Path, problems: Problems) -> Section:
+    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    return section
+
+
+def _steps(section: Section, folder: Path) -> Iterator[Step]:
+    seen: set[str] = set()
+    for number, each in enumerate(section.sections("steps", at_least=1), 1):
+        kind = each.choice("kind", {one.value: one for one in StepKind})
+        scene = _scene(each, folder)
+        picture = each.text("picture", "").rstrip("\n")
+        step = Step(
+            number=number,
+            kind=StepKind.EXPLAIN if kind is None else kind,
+            title=each.name("title"),
+            goal=each.name("goal"),
+            text=each.text("text").strip("\n"),
+            scene=scene,
+            picture=picture,
+            commands=tuple(_commands(each)),
+            question=each.text("question", ""),
+            options=tuple(_options(each)),
+            exercise=_exercise(each, folder, seen),
+        )
+        _check(each, step)
+        each.finish()
+        yield step
+
+
+def _check(section: Section, step: Step) -> None:
+    """What a step of this kind must have, and what fits on a screen."""
+    predicts = step.kind is StepKind.PREDICT
+    if predicts != bool(step.options) or predicts != bool(step.question):
+        section.error("a step to predict, and no other, has a question and options")
+    elif predicts and sum(option.right for option in step.options) != 1:
+        section.error("exactly one option must be right", "options")
+    works = step.kind in (StepKind.MODIFY, StepKind.MAKE)
+    if works != (step.exercise is not None):
+        section.error("a step to modify or to make, and no other, has an exercise")
+    if step.scene is not None and step.picture:
+        section.error("a step has a scene or a picture, not both", "picture")
+    lines = step.picture.splitlines()
+    if len(lines) > PICTURE_ROWS or any(len(line) > WIDTH for line in lines):
+        section.error(f"a picture has at most {PICTURE_ROWS} rows of {WIDTH} characters", "picture")
+    most = ROWS_BESIDE_A_PICTURE if step.scene is not None or step.picture else ROWS_ALONE
+    try:
+        count = len(rows(parsed(step.text), WIDTH))
+    except MarkupError as error:
+        section.error(str(error), "text")
+        return
+    if count > most:
+        section.error(
+            f"the text has {count} rows of {WIDTH} characters; at most {most} fit on the screen", "text"
+        )
+
+
+def _scene(section: Section, folder: Path) -> Scene | None:
+    given = section.section("scene", None)
+    if given is None:
+        return None
+    made = Scene(
+        _own_file(given.name("place"), folder),
+        given.name("case") if given.has("case") else None,
+        _own_file(given.text("controller", ""), folder),
+        given.integer("seed", 1, minimum=0),
+        given.number("seconds", 10.0, above=0, maximum=600),
+    )
+    given.finish()
+    return made
+
+
+def _own_file(name: str, folder: Path) -> str:
+    """The name itself, or the file of the lesson's folder that it names."""
+    if not name:
+        return name
+    file = (folder / name).resolve()
+    return str(folder / name) if file.exists() and file.is_relative_to(folder.resolve()) else name
+
+
+def _commands(section: Section) -> Iterator[Command]:
+    for each in section.sections("commands", ()):
+        how = each.choice("how", {one.value: one for one in How}, How.ALONE.value)
+        yield Command(each.name("line"), how, each.text("place", "maze"))
+        each.finish()
+
+
+def _options(section: Section) -> Iterator[Option]:
+    given = section.sections("options", ())
+    if given and not OPTIONS[0] <= len(given) <= OPTIONS[1]:
+        section.error(f"there must be {OPTIONS[0]} to {OPTIONS[1]} options", "options")
+    for each in given:
+        yield Option(each.text("text"), each.flag("right", False), each.text("feedback"))
+        each.finish()
+
+
+def _exercise(section: Section, folder: Path, seen: set[str]) -> Exercise | None:
+    if not section.has("exercise"):
+        return None
+    name = section.name("exercise")
+    made = Exercise(
+        name, folder / name, section.name("file"), section.number("seconds", 10.0, above=0, maximum=120)
+    )
+    if name in seen:
+        section.error(f"the exercise {quoted(name)} has a step already", "exercise")
+    elif "/" in name or name.startswith(".") or not (made.folder / ASSIGNMENT).is_file():
+        section.error(f"there is no {name}/{ASSIGNMENT} beside this file", "exercise")
+    seen.add(name)
+    return made

@@ -1,0 +1,112 @@
+"""Where a student stands in the lessons: folded from the journal, never kept beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from kit.school.lessons.records import Exercise, Lesson, Step
+from kit.school.progress import Event, Kind
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """What is done of one lesson."""
+
+    lesson: Lesson
+    gone_through: frozenset[int]
+    """Numbers of the steps that were gone through."""
+    predictions: dict[int, int]
+    """Step -> the option that was foreseen first; later ones do not count."""
+    best: dict[str, float]
+    """Exercise -> the best share of its points so far, 0 to 1."""
+    attempts: dict[str, int]
+    passed: frozenset[str]
+    """Exercises that earned everything once."""
+    hints: dict[str, int]
+    """``exercise/criterion`` -> how many hint steps were opened."""
+    solutions: frozenset[str]
+    """Exercises whose reference solution was opened."""
+    last: str
+    """When something was last done here: ISO 8601; empty: never."""
+
+    @property
+    def is_begun(self) -> bool:
+        return bool(self.last)
+
+    @property
+    def is_done(self) -> bool:
+        """Every step gone through and every exercise passed."""
+        return all(self.is_step_done(step) for step in self.lesson.steps)
+
+    @property
+    def done(self) -> int:
+        """How many steps are done."""
+        return sum(self.is_step_done(step) for step in self.lesson.steps)
+
+    def is_step_done(self, step: Step) -> bool:
+        if step.exercise is not None:
+            return step.exercise.name in self.passed
+        return step.number in self.gone_through
+
+    @property
+    def next_step(self) -> Step:
+        """Where to go on: the first step that is not done; the last one where all are."""
+        return next(
+            (step for step in self.lesson.steps if not self.is_step_done(step)), self.lesson.steps[-1]
+        )
+
+    def hints_open(self, exercise: Exercise, criterion: str) -> int:
+        return self.hints.get(f"{exercise.name}/{criterion}", 0)
+
+
+def standing(lesson: Lesson, events: Sequence[Event]) -> Standing:
+    """The standing in a lesson; ``events`` may be those of everything."""
+    steps: set[int] = set()
+    predictions: dict[int, int] = {}
+    best: dict[str, float] = {}
+    attempts: dict[str, int] = {}
+    passed: set[str] = set()
+    hints: dict[str, int] = {}
+    solutions: set[str] = set()
+    last = ""
+    for event in events:
+        name, _, rest = event.subject.partition("/")
+        if name != lesson.name or not rest:
+            continue
+        content: Any = event.content
+        match event.kind:
+            case Kind.STEP:
+                steps.add(_number(rest))
+            case Kind.PREDICTION:
+                predictions.setdefault(_number(rest), int(content.get("chosen", -1)))
+            case Kind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
+                attempts[rest] = attempts.get(rest, 0) + 1
+                most = float(content.get("max_points") or 0.0)
+                share = float(content.get("points") or 0.0) / most if most > 0 else 0.0
+                best[rest] = max(best.get(rest, 0.0), share)
+                if content["verdict"] == "pass":
+                    passed.add(rest)
+            case Kind.HINT:
+                hints[rest] = max(hints.get(rest, 0), int(content.get("step", 0)))
+            case Kind.SOLUTION:
+                solutions.add(rest)
+            case _:
+                continue
+        last = max(last, event.at)
+    return Standing(
+        lesson,
+        frozenset(steps),
+        predictions,
+        best,
+        attempts,
+        frozenset(passed),
+        hints,
+        frozenset(solutions),
+        last,
+    )
+
+
+def _number(text: str) -> int:
+    return int(text) if text.isdecimal() else 0
