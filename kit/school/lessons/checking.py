@@ -95,8 +95,8 @@ class Check:
         ``replay``: where to keep the worst episode."""
         self._began = time.monotonic()
         self._replay = replay
-        self._out = TemporaryFile()
-        self._said = TemporaryFile()
+        self._out = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
+        self._said = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._report: Report | None = None
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
