@@ -16,6 +16,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does).",
     ),
     "drive": ("kit.cli.play", "The same as `play`: `kit drive pair_turn --controller fields`."),
+    "lesson": ("kit.cli.lesson", "Go through a lesson: predict, run, explain, modify, make; or list them."),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
     "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
@@ -43,6 +44,10 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "compare": ("kit.cli.compare", "Test several policies on the same episodes, side by side."),
     "crosstable": ("kit.cli.crosstable", "Train on each group of cases, test on all: a table, resumable."),
+    "form": ("kit.cli.form", "The evaluation form: what you knew, what you learned, how the kit served you."),
+    "class": ("kit.cli.class_", "A class's report from its students' exported progress; the dissertation's beside ours."),
+    "quiz": ("kit.cli.quiz", "Find out what you know: twelve ideas, a lesson's questions, what is due today."),
+    "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
     "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),
 }

@@ -1,0 +1,131 @@
+"""``kit lesson``: the list of lessons, and one of them, on the screen or line by line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.lessons.records import Lesson, Scene
+    from kit.school.progress import Progress
+    from kit.workspace import Workspace
+
+
+@click.command()
+@click.argument("name", required=False)
+@options.workspace
+@click.option(
+    "--plain", is_flag=True, help="Line by line instead of a full screen: for screen readers and pipes."
+)
+@options.glyphs
+@options.color
+def command(
+    name: str | None, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
+) -> None:
+    """List the lessons, or go through one: predict, run, explain, modify, make.
+
+    \b
+    kit lesson            which there are, and what you have done
+    kit lesson drive      by its name, or its number: kit lesson 1
+
+    Progress is kept as you go; leave at any time and come back.
+    """
+    from kit.cli.lesson_plain import PlainLesson
+    from kit.desk import open_desk
+    from kit.school.lessons.reading import UnknownLesson, find_lesson
+    from kit.school.lessons.visit import Visit
+    from kit.school.lessons.works import WorkError
+    from kit.school.progress import Progress, ProgressError
+    from kit.workspace import WorkspaceError
+    from kit.world.problems import WorldError
+
+    try:
+        desk = open_desk(workspace)
+        with Progress(desk.folder) as progress:
+            if progress.notice:
+                click.echo(progress.notice, err=True)
+            if name is None:
+                _list(progress)
+                return
+            lesson = find_lesson(name)
+            terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+            if not terminal.plain.value:
+                from kit.cli.lesson_screen import show_on_screen
+
+                show_on_screen(lesson, progress, desk, terminal)
+            click.echo(f"Line by line. {terminal.plain.reason}")
+            PlainLesson(
+                Visit(lesson, progress, desk),
+                watch=_watch,
+                drive=lambda scene, file: _drive(scene, file, desk),
+            ).run()
+    except (UnknownLesson, WorkspaceError, ProgressError, WorkError, WorldError, FileNotFoundError) as error:
+        options.fail(str(error))
+    except KeyboardInterrupt:
+        click.echo("\nYour progress is kept.")
+
+
+def _list(progress: Progress) -> None:
+    from kit.school.lessons.reading import find_lesson, lesson_names
+    from kit.school.lessons.standing import standing
+
+    events = progress.events()
+    lessons: list[Lesson] = [find_lesson(name) for name in lesson_names()]
+    for lesson in lessons:
+        stand = standing(lesson, events)
+        mark = "done" if stand.is_done else f"{stand.done}/{len(lesson.steps)}" if stand.is_begun else ""
+        number = lesson.name.partition("-")[0]
+        click.echo(f"{number}  {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
+        click.echo(f"    {lesson.summary}")
+    click.echo("\n`kit lesson NUMBER` opens one.")
+
+
+def _watch(scene: Scene) -> None:
+    """A scene in words and two pictures: how it begins and how it ends."""
+    from kit.cli.plain import HEIGHT, WIDTH
+    from kit.controllers import find
+    from kit.picture.text import plain_rows, report
+    from kit.places import find_place
+    from kit.session import Session
+    from kit.showing import Showing
+
+    place = find_place(scene.place, scene.case, None)
+    with Session(place, seed=scene.seed, watched=True) as session:
+        session.drive_with(find(scene.controller, None) if scene.controller else None)
+        session.wait_until_driven()
+        showing = Showing(session)
+        click.echo(f"At the start: {report(showing.view().scene)}")
+        for _ in range(round(scene.seconds / session.runner.simulation.step_size)):
+            session.runner.tick()
+            if session.failure is not None:
+                break
+        session.look_around()
+        view = showing.view()
+        click.echo("\n".join(plain_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
+        way = f"{view.score.distance_m:.1f} m driven, {view.score.bumps} bumps"
+        click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
+
+
+def _drive(scene: Scene, file: str, desk: Workspace) -> None:
+    """The student drives line by line; the recording is kept in ``file``."""
+    from kit.cli.plain import Plain, play_plainly
+    from kit.controllers import find
+    from kit.places import find_place
+
+    place = find_place(scene.place, scene.case, None)
+    click.echo(
+        "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
+    )
+    play_plainly(
+        Plain(
+            place,
+            find("teleop", desk.controllers),
+            seed=scene.seed,
+            folder=desk.controllers,
+            record=Path(file),
+        )
+    )

@@ -1,0 +1,354 @@
+"""A lesson line by line: for screen readers, pipes, and terminals without a full screen."""
+
+from __future__ import annotations
+
+import select
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final, NamedTuple
+
+import click
+
+from kit.host.reload import FileWatch
+from kit.school.lessons.checking import Report
+from kit.school.lessons.markup import parsed, plain, rows
+from kit.school.lessons.reading import WIDTH
+from kit.school.lessons.records import Command, Exercise, Scene, Step, StepKind
+from kit.school.lessons.visit import Visit
+
+LOOK_S: Final = 0.2
+"""How often to look whether the student's file was saved."""
+PICTURE_ROWS: Final = 12
+BY_HAND: Final = ".npz"
+"""What a drive by hand is handed in as."""
+
+
+class Mistake(Exception):
+    """A line that cannot be done; the message says why."""
+
+
+class Verb(NamedTuple):
+    text: str
+    do: Callable[[PlainLesson, str], None]
+    fits: Callable[[PlainLesson], bool]
+    """Whether it can be said now."""
+
+
+class PlainLesson:
+    """One lesson, driven by lines of text."""
+
+    def __init__(
+        self, visit: Visit, *, watch: Callable[[Scene], None], drive: Callable[[Scene, str], None]
+    ) -> None:
+        """``watch``: shows a scene in words; ``drive``: has the student drive it and keep the recording."""
+        self._visit = visit
+        self._watch = watch
+        self._drive = drive
+        self._file: FileWatch | None = None
+        self.step = visit.first_step
+        self.is_over = False
+
+    def run(self) -> None:
+        """Reads lines from standard input until ``q`` or its end."""
+        lesson = self._visit.lesson
+        done = self._visit.standing.done
+        click.echo(f"{lesson.title}. {lesson.summary} About {lesson.minutes} minutes.")
+        if done:
+            click.echo(f"{done} of {len(lesson.steps)} steps are done; going on at step {self.step.number}.")
+        self.show()
+        while not self.is_over:
+            line = self._line()
+            if line is None:
+                break
+            self.obey(line)
+
+    def obey(self, line: str) -> None:
+        """Does what one line says. Mistakes are told, and change nothing."""
+        word, _, rest = line.strip().partition(" ")
+        if not word:
+            return
+        try:
+            if word.isdecimal() and self._predicts:
+                self.foresee(int(word))
+                return
+            verb = VERBS.get(word.lower())
+            if verb is None or not verb.fits(self):
+                raise Mistake(f"{word!r} does nothing here; ? says what does")
+            verb.do(self, rest)
+        except Mistake as mistake:
+            click.echo(str(mistake))
+
+    def show(self) -> None:
+        """The step, from its title on."""
+        step, count = self.step, len(self._visit.lesson.steps)
+        mark = " (done)" if self._visit.standing.is_step_done(step) else ""
+        click.echo(f"\nStep {step.number} of {count}, {step.kind}: {step.title}{mark}")
+        click.echo(f"Goal: {step.goal}\n")
+        if step.picture:
+            click.echo(f"{step.picture}\n")
+        click.echo(self._filled(step.text))
+        self._commands(step.commands)
+        if step.options:
+            self._ask(step)
+        if step.exercise is not None:
+            self._open(step.exercise)
+        click.echo(self._keys())
+
+    def foresee(self, number: int) -> None:
+        """What the student expects, kept; then what is so."""
+        step = self.step
+        if not 1 <= number <= len(step.options):
+            raise Mistake(f"choose 1 to {len(step.options)}")
+        kept = self._visit.foreseen(step)
+        option = self._visit.foresee(step, number - 1)
+        if kept is not None and kept is not option:
+            click.echo(f"You foresaw first: {kept.text} That stays noted.")
+        if step.scene is not None and kept is None:
+            self._watch(step.scene)
+        right = next(each for each in step.options if each.right)
+        click.echo(_wrapped(f"{'Right.' if option.right else 'Not so.'} {option.feedback}"))
+        if not option.right:
+            click.echo(_wrapped(f"It is: {right.text} {right.feedback}"))
+        click.echo(self._keys())
+
+    def go(self, number: int) -> None:
+        if not 1 <= number <= len(self._visit.lesson.steps):
+            raise Mistake(f"there are steps 1 to {len(self._visit.lesson.steps)}")
+        self.step = self._visit.step(number)
+        self.show()
+
+    def on(self) -> None:
+        """The next step; what was done of this one is noted."""
+        step = self.step
+        if self._predicts and self._visit.foreseen(step) is None:
+            raise Mistake(f"first say what you expect: 1 to {len(step.options)}")
+        if step.exercise is None:
+            self._visit.go_through(step)
+        elif not self._visit.standing.is_step_done(step):
+            click.echo("This exercise is not passed yet; you can come back to it.")
+        if step.number == len(self._visit.lesson.steps):
+            self._end()
+            return
+        self.go(step.number + 1)
+
+    def check(self) -> None:
+        """Has the exercise checked, and says what came of it."""
+        exercise = self._exercise()
+        click.echo("Checking...")
+        with self._visit.check(exercise) as running:
+            report = running.wait()
+        self._visit.take(exercise, report)
+        for line in said(report):
+            click.echo(line)
+        if report.passed:
+            click.echo("Passed. s shows the reference solution, n goes on.")
+        elif report.lost and any(each.hints for each in report.lost):
+            click.echo("h gives a hint.")
+
+    def hint(self) -> None:
+        exercise = self._exercise()
+        hint = self._visit.next_hint(exercise)
+        if hint is not None:
+            more = f" ({hint.more} more)" if hint.more else ""
+            click.echo(_wrapped(f"Hint {hint.number} for “{hint.criterion.title}”{more}: {hint.text}"))
+            return
+        opened = self._visit.hints(exercise)
+        if not opened:
+            raise Mistake("there is a hint when a check (r) has shown what is missing")
+        click.echo("These are all hints for it:")
+        for each in opened:
+            click.echo(_wrapped(f"- {each.text}"))
+
+    def solution(self) -> None:
+        files = self._visit.solution(self._exercise())
+        if not files:
+            raise Mistake("the solution was not installed" if self._is_passed else "first pass the exercise")
+        for name, text in files.items():
+            click.echo(f"--- {name}\n{text.rstrip()}")
+
+    def printed(self) -> None:
+        report = self._visit.report(self._exercise())
+        logs = [each.log for each in report.criteria if each.log] if report is not None else []
+        click.echo(logs[0] if logs else "It printed nothing.")
+
+    def begin_again(self, answer: str) -> None:
+        exercise = self._exercise()
+        if answer != "yes":
+            raise Mistake("`x yes` lays the exercise out as at first; what you have is kept beside it")
+        kept = self._visit.begin_again(exercise)
+        click.echo("The exercise is as at first." + (f" What you had is in {kept}" if kept else ""))
+        self._open(exercise)
+
+    def watch(self) -> None:
+        if self.step.scene is None:
+            raise Mistake("there is nothing moving in this step")
+        if self._predicts and self._visit.foreseen(self.step) is None:
+            raise Mistake(f"first say what you expect: 1 to {len(self.step.options)}")
+        self._watch(self.step.scene)
+
+    def drive(self) -> None:
+        exercise, scene = self._exercise(), self.step.scene
+        if not self._by_hand or scene is None:
+            raise Mistake("this exercise is written, not driven")
+        self._drive(scene, str(self._visit.file(exercise)))
+        self.check()
+
+    def help(self) -> None:
+        for word, verb in VERBS.items():
+            if verb.fits(self):
+                click.echo(f"{word:<6} {verb.text}")
+        click.echo("Progress is kept at once; leave whenever you like.")
+
+    @property
+    def _predicts(self) -> bool:
+        return self.step.kind is StepKind.PREDICT
+
+    @property
+    def _is_passed(self) -> bool:
+        return self._visit.standing.is_step_done(self.step)
+
+    @property
+    def _by_hand(self) -> bool:
+        return self.step.exercise is not None and self.step.exercise.file.endswith(BY_HAND)
+
+    def _exercise(self) -> Exercise:
+        assert self.step.exercise is not None  # the verbs that ask do not fit elsewhere
+        return self.step.exercise
+
+    def _open(self, exercise: Exercise) -> None:
+        file = self._visit.lay_out(exercise)
+        self._file = None if self._by_hand else FileWatch(file)
+        click.echo(f"Your file: {file}")
+
+    def _ask(self, step: Step) -> None:
+        click.echo(_wrapped(step.question))
+        for number, option in enumerate(step.options, 1):
+            click.echo(_wrapped(f"{number}. {option.text}", "   "))
+        kept = self._visit.foreseen(step)
+        if kept is not None:
+            click.echo(f"You foresaw: {kept.text}")
+
+    def _commands(self, commands: Sequence[Command]) -> None:
+        if commands:
+            click.echo(
+                "\nIn another terminal:" if len(commands) == 1 else "\nIn another terminal, one by one:"
+            )
+        for each in commands:
+            click.echo(f"    {self._filled_line(each.line)}")
+        click.echo()
+
+    def _filled(self, text: str) -> str:
+        return "\n".join(plain(row) for row in rows(parsed(self._filled_line(text)), WIDTH))
+
+    def _filled_line(self, text: str) -> str:
+        """With the student's own paths."""
+        if self.step.exercise is None:
+            return text
+        file = self._visit.file(self.step.exercise)
+        return text.replace("{file}", str(file)).replace("{folder}", str(file.parent))
+
+    def _keys(self) -> str:
+        fitting = [word for word, verb in VERBS.items() if verb.fits(self)]
+        choose = [f"1-{len(self.step.options)}"] if self._predicts else []
+        return "\n" + "  ".join([*choose, *fitting])
+
+    def _end(self) -> None:
+        standing = self._visit.standing
+        lesson = self._visit.lesson
+        open_steps = [str(step.number) for step in lesson.steps if not standing.is_step_done(step)]
+        if open_steps:
+            click.echo(f"That was the last step. Still open: {', '.join(open_steps)}. `g 3` goes to step 3.")
+            return
+        click.echo(
+            f"{lesson.title} is done. `kit lesson` lists the others; `kit quiz {lesson.name}` asks what stayed."
+        )
+        self.is_over = True
+
+    def _line(self) -> str | None:
+        """The next line; None at the end of input. Meanwhile a saved file is checked."""
+        if sys.stdin is None:
+            return None
+        if sys.stdin.isatty():
+            click.echo("> ", nl=False)
+        while self._file is not None and not _has_input():
+            time.sleep(LOOK_S)
+            if self._file.has_changed():
+                click.echo("\nSaved.")
+                self.check()
+                if sys.stdin.isatty():
+                    click.echo("> ", nl=False)
+        line = sys.stdin.readline()
+        return line or None
+
+
+def said(report: Report) -> list[str]:
+    """A check's outcome, line by line."""
+    if report.problem:
+        return [_wrapped(report.problem)]
+    lines = []
+    for each in report.criteria:
+        mark = "[ok]" if each.passed else "[--]" if each.status == "skipped" else "[no]"
+        lines.append(f"{mark} {each.title}: {each.points:g} of {each.max_points:g}")
+        if not each.passed and each.said:
+            lines.append(_wrapped(f"     {each.said}", "     "))
+        if not each.passed and each.expected and each.actual:
+            lines.append(f"     wanted: {each.expected}; found: {each.actual}")
+    picture = next((each.picture for each in report.lost if each.picture), "")
+    if picture:
+        lines += ["", picture.rstrip()]
+    lines.append(f"{report.points:g} of {report.max_points:g} points, in {report.seconds:.1f} s")
+    return lines
+
+
+def _wrapped(text: str, indent: str = "") -> str:
+    import textwrap
+
+    return "\n".join(textwrap.wrap(text, WIDTH, subsequent_indent=indent)) or text
+
+
+def _has_input() -> bool:
+    return bool(select.select([sys.stdin], [], [], 0)[0])
+
+
+def _always(lesson: PlainLesson) -> bool:
+    return True
+
+
+def _writes(lesson: PlainLesson) -> bool:
+    return lesson.step.exercise is not None
+
+
+def _moves(lesson: PlainLesson) -> bool:
+    return lesson.step.scene is not None
+
+
+def _drives(lesson: PlainLesson) -> bool:
+    return lesson._by_hand
+
+
+def _leave(lesson: PlainLesson, rest: str) -> None:
+    lesson.is_over = True
+
+
+def _go(lesson: PlainLesson, rest: str) -> None:
+    if not rest.strip().isdecimal():
+        raise Mistake("say which step, such as: g 3")
+    lesson.go(int(rest))
+
+
+VERBS: Final[Mapping[str, Verb]] = {
+    "n": Verb("on to the next step", lambda lesson, rest: lesson.on(), _always),
+    "b": Verb("back one step", lambda lesson, rest: lesson.go(lesson.step.number - 1), _always),
+    "g": Verb("go to a step: g 3", _go, _always),
+    "t": Verb("the step's text again", lambda lesson, rest: lesson.show(), _always),
+    "w": Verb("watch the robot", lambda lesson, rest: lesson.watch(), _moves),
+    "d": Verb("drive yourself, and keep the drive", lambda lesson, rest: lesson.drive(), _drives),
+    "r": Verb("check the exercise", lambda lesson, rest: lesson.check(), _writes),
+    "h": Verb("a hint", lambda lesson, rest: lesson.hint(), _writes),
+    "p": Verb("what your program printed", lambda lesson, rest: lesson.printed(), _writes),
+    "s": Verb("the reference solution, after success", lambda lesson, rest: lesson.solution(), _writes),
+    "x": Verb("begin the exercise again", lambda lesson, rest: lesson.begin_again(rest.strip()), _writes),
+    "?": Verb("these lines", lambda lesson, rest: lesson.help(), _always),
+    "q": Verb("leave", _leave, _always),
+}

@@ -1,0 +1,105 @@
+"""``kit progress``: what was done so far; everything in one file, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.progress import Progress
+
+
+@contextmanager
+def _opened(workspace: Path | None) -> Iterator[Progress]:
+    """The journal; every mistake ends the verb with a message."""
+    from kit.school.progress import Progress, ProgressError
+    from kit.workspace import WorkspaceError, open_workspace
+    from kit.world.problems import WorldError
+
+    try:
+        with Progress(open_workspace(workspace).folder) as progress:
+            if progress.notice:
+                click.echo(progress.notice, err=True)
+            yield progress
+    except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
+        options.fail(str(error))
+
+
+@click.group(invoke_without_command=True)
+@options.workspace
+@click.pass_context
+def command(context: click.Context, workspace: Path | None) -> None:
+    """Show what you have done, or carry it to another machine.
+
+    \b
+    kit progress                       lessons, points, how much is left
+    kit progress export ada.json       everything in one file: for another machine, or for your teacher
+    kit progress import ada.json       adds what is not here yet; nothing is lost or counted twice
+    """
+    context.obj = workspace
+    if context.invoked_subcommand is None:
+        with _opened(workspace) as progress:
+            _show(progress)
+
+
+@command.command("export")
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.pass_obj
+def export(workspace: Path | None, file: Path) -> None:
+    """Write everything to FILE, whole or not at all."""
+    with _opened(workspace) as progress:
+        click.echo(f"{file}: {progress.export(file)} entries.")
+
+
+@command.command("import")
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.pass_obj
+def take_over(workspace: Path | None, file: Path) -> None:
+    """Add what an exported FILE holds; what is here already is left as it is."""
+    from kit.school.progress import read_export
+
+    with _opened(workspace) as progress:
+        events = read_export(file)
+        new = progress.take_over(events)
+        click.echo(f"{file}: {len(events)} entries, {new} of them new.")
+
+
+@command.command("name")
+@click.argument("name")
+@click.pass_obj
+def name_yourself(workspace: Path | None, name: str) -> None:
+    """Say what to call you: in the hall of fame, and in what you export."""
+    from kit.school.progress import Kind
+
+    shown = " ".join(name.split())
+    if not 1 <= len(shown) <= 40 or not shown.isprintable():
+        options.fail("A name is 1 to 40 printable characters.")
+    with _opened(workspace) as progress:
+        progress.add(Kind.ABOUT, "name", {"value": shown})
+        click.echo(f"You are {shown}.")
+
+
+def _show(progress: Progress) -> None:
+    from kit.school.lessons.reading import find_lesson, lesson_names
+    from kit.school.lessons.standing import standing
+
+    events = progress.events()
+    if not events:
+        click.echo("Nothing yet. `kit lesson 1` is a good begin.")
+        return
+    finished = 0
+    for name in lesson_names():
+        lesson = find_lesson(name)
+        stand = standing(lesson, events)
+        finished += stand.is_done
+        bar = "".join("#" if stand.is_step_done(step) else "." for step in lesson.steps)
+        tries = sum(stand.attempts.values())
+        checks = f"{tries} checks" if tries else ""
+        click.echo(f"{name:<28} {bar:<12} {len(stand.passed)}/{len(lesson.exercises)} exercises  {checks}")
+    click.echo(f"\n{finished} lessons done. `kit quiz --scores` shows the quiz, `kit game` the levels.")
