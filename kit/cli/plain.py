@@ -11,10 +11,14 @@ from typing import Final, NamedTuple
 
 import click
 
+from kit.cli.waiting import Lines
 from kit.controllers import ControllerFile, find, in_folder, shipped
+from kit.inspection.door import Door, open_door
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.pacing import MAXIMUM, REAL_TIME, Pace
 from kit.picture.text import plain_rows, report
 from kit.places import Place, find_place
+from kit.recording import Recorder, save
 from kit.ros.log import LogRecord
 from kit.session import Session
 from kit.showing import Showing, clock, said
@@ -44,25 +48,45 @@ class Plain:
     """One session driven by lines of text. Time stands still between lines."""
 
     def __init__(
-        self, place: Place, controller: ControllerFile, *, seed: int, folder: Path, root: Path | None = None
+        self,
+        place: Place,
+        controller: ControllerFile,
+        *,
+        seed: int,
+        folder: Path,
+        root: Path | None = None,
+        doors: Path | None = None,
+        record: Path | None = None,
     ) -> None:
-        """``root``: the folder that the world files named later may read; by default each its own."""
+        """``root``: the folder that the world files named later may read; by default each its own. ``doors``: where
+        other terminals find the world. ``record``: where the drive is kept at the end."""
         self._seed = seed
         self._folder = folder
         self._root = root
+        self._doors = doors
+        self._door: Door | None = None
+        self._record = record
         self._controller = controller
+        self.lines = Lines(self.attend)
         self._session = self._open(place)
         self.is_over = False
 
-    def run(self, seconds: float) -> None:
-        """Lets the world run, and says what was said and where that led."""
+    def attend(self) -> None:
+        """Answers who has come to look in, while time stands still."""
+        self._session.runner.converse()
+
+    def run(self, seconds: float, factor: float = MAXIMUM) -> None:
+        """Lets the world run, and says what was said and where that led. ``factor``: simulated seconds per second."""
         session = self._session
         if not 0 < seconds <= LONGEST:
             raise Mistake(f"say how many seconds, above 0 and at most {LONGEST:g}")
         if session.controller is not None and _modified(self._controller.file) not in (None, self._saved):
             self._seat(session)
         failure = session.failure
-        for tick in range(round(seconds / session.runner.simulation.step_size)):
+        step_size = session.runner.simulation.step_size
+        pace = Pace(step_size, factor)
+        for tick in range(round(seconds / step_size)):
+            pace.wait()
             session.runner.tick()
             if tick % LISTEN_EVERY == 0:
                 session.listen()
@@ -105,7 +129,7 @@ class Plain:
 
     def open(self, name: str, case: str | None) -> None:
         place = find_place(name, case, self._root)
-        self._session.close()
+        self._leave()
         self._session = self._open(place)
         self.look()
 
@@ -119,12 +143,32 @@ class Plain:
             click.echo(f"{each.name}: {each.title}")
 
     def close(self) -> None:
-        self._session.close()
+        """Ends the session, and keeps the drive if that was asked for. Raises OSError where it cannot be kept."""
+        self.lines.close()
+        self._leave()
+        if self._record is not None and self._recorder is not None:
+            save(self._recorder.recording(), self._record)
+            click.echo(f"The drive is kept in {self._record}.")
 
     def _open(self, place: Place) -> Session:
         session = Session(place, seed=self._seed, watched=True, on_message=_say)
+        if self._doors is not None:
+            self._door = open_door(session.graph, self._doors, place.name, self.lines.wake)
+            if self._door is not None:
+                session.runner.guests.append(self._door)
+        self._recorder: Recorder | None = None
+        if self._record is not None:
+            case = place.case.name if place.case else None
+            self._recorder = Recorder(place.name, case, session.runner.simulation)
+            session.runner.observers.append(self._recorder)
         self._seat(session)
         return session
+
+    def _leave(self) -> None:
+        if self._door is not None:
+            self._door.close()
+            self._door = None
+        self._session.close()
 
     def _seat(self, session: Session) -> None:
         """Has the controller drive, as its file is now. If that fails, who drove before goes on."""
@@ -169,6 +213,11 @@ def _quit(plain: Plain, words: Sequence[str]) -> None:
 
 VERBS: Final = {
     "run": Verb("run SECONDS", "let the world run", lambda plain, words: plain.run(*_numbers(words, 1))),
+    "live": Verb(
+        "live SECONDS",
+        "the same in real time: for who looks in with kit ros",
+        lambda plain, words: plain.run(_numbers(words, 1)[0], REAL_TIME),
+    ),
     "drive": Verb(
         "drive SPEED TURN SECONDS",
         "drive yourself: m/s, rad/s to the left",
@@ -230,11 +279,11 @@ def play_plainly(plain: Plain) -> None:
     try:
         plain.look()
         click.echo("Type help for what you can say, quit to leave.")
-        while not plain.is_over and sys.stdin is not None:
-            if sys.stdin.isatty():
+        while not plain.is_over:
+            if sys.stdin is not None and sys.stdin.isatty():
                 click.echo("> ", nl=False)
-            line = sys.stdin.readline()
-            if not line:
+            line = plain.lines.next()
+            if line is None:
                 break
             obey(plain, line)
     except KeyboardInterrupt:

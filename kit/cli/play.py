@@ -18,6 +18,11 @@ from kit.cli import options
 @options.root
 @options.workspace
 @click.option(
+    "--record",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Keep the drive in this file when you leave, for `kit replay` and for exercises.",
+)
+@click.option(
     "--plain", is_flag=True, help="Text line by line instead of a full screen: for screen readers and pipes."
 )
 @options.glyphs
@@ -29,6 +34,7 @@ def command(
     seed: int,
     root: Path | None,
     workspace: Path | None,
+    record: Path | None,
     plain: bool,
     glyphs: str | None,
     color: str | None,
@@ -41,17 +47,25 @@ def command(
     kit play                          the maze, with a robot finding its own way
     kit play house --controller teleop
     kit play my_world/world.yaml --controller my_controller.py
+    kit play simple --controller teleop --record drive.npz
     """
     from kit.controllers import find
     from kit.desk import open_desk
-    from kit.workspace import WorkspaceError
+    from kit.inspection.sockets import sockets_folder
+    from kit.workspace import WorkspaceError, check_writable
 
     try:
         desk = open_desk(workspace)
         driver = find(controller, desk.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
+    if record is not None:
+        try:
+            check_writable(record)
+        except OSError as error:
+            options.fail(options.reason(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    doors = sockets_folder(desk.folder)
     if terminal.plain.value:
         from kit.cli.plain import Plain, play_plainly
         from kit.places import find_place
@@ -62,15 +76,19 @@ def command(
             where = find_place(place, case, root)
         except (LookupError, WorldError) as error:
             options.fail(str(error))
-        play_plainly(Plain(where, driver, seed=seed, folder=desk.controllers, root=root))
+        line_by_line = Plain(
+            where, driver, seed=seed, folder=desk.controllers, root=root, doors=doors, record=record
+        )
+        try:
+            play_plainly(line_by_line)
+        except OSError as error:
+            options.fail(options.reason(error))
         return
     os.environ.update(terminal.environment())
-    from kit.inspection.sockets import sockets_folder
     from kit.tui.app import KitApp
     from kit.tui.screens.play import PlayScreen
 
     app = KitApp(terminal)
-    doors = sockets_folder(desk.folder)
     screen = PlayScreen(
         app.look,
         place,
@@ -81,8 +99,18 @@ def command(
         runs=desk.runs,
         seed=seed,
         doors=doors,
+        records=record is not None,
     )
     app.begin(screen)
     app.run()
+    recording = screen.recording()
+    if record is not None and recording is not None:
+        from kit.recording import save
+
+        try:
+            save(recording, record)
+        except OSError as error:
+            options.fail(options.reason(error))
+        click.echo(f"The drive is kept in {record}.")
     if app.return_code:
         raise SystemExit(app.return_code)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
     from kit.inspection.door import Door
     from kit.live import LiveRun
     from kit.places import Place
+    from kit.recording import Recorder, Recording
     from kit.runner import Runner
     from kit.session import Session
 
@@ -40,12 +41,16 @@ class Running:
         on_trouble: Callable[[str], None],
         seed: int = 0,
         doors: Path | None = None,
+        records: bool = False,
     ) -> None:
-        """``doors``: the folder of sockets through which other terminals look in; None: none does."""
+        """``doors``: the folder of sockets through which other terminals look in; None: none does. ``records``:
+        whether the drive is recorded."""
         self._on_view = on_view
         self._on_trouble = on_trouble
         self._seed = seed
         self._doors = doors
+        self._records = records
+        self._recorder: Recorder | None = None
         self._door: Door | None = None
         self._session: Session | None = None
         self._live: LiveRun | None = None
@@ -71,6 +76,7 @@ class Running:
             from kit.session import Session
 
             session = Session(find(), seed=self._seed, watched=True)
+            self._record(session)
             session.drive_with(controller)
             self._replace(session)
 
@@ -111,6 +117,10 @@ class Running:
         self._beams = shown
         self.wish(lambda session: None)
 
+    def recording(self) -> Recording | None:
+        """The drive in the world that was opened last; None where nothing is recorded. To be asked after ``close``."""
+        return None if self._recorder is None else self._recorder.recording()
+
     def listen(self, listener: Wish | None) -> None:
         """Has the session shown to somebody else too, in the world's thread, as often as there are views."""
         self._listener = listener
@@ -129,6 +139,16 @@ class Running:
                 job()
             except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
                 self._on_trouble(str(error))
+
+    def _record(self, session: Session) -> None:
+        """From the first tick on, for whoever wants to keep the drive."""
+        if self._records:
+            from kit.recording import Recorder
+
+            place = session.place
+            case = place.case.name if place.case is not None else None
+            self._recorder = Recorder(place.name, case, session.runner.simulation)
+            session.runner.observers.append(self._recorder)
 
     def _replace(self, session: Session, factor: float | None = None) -> None:
         with self._exchange:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from kit.cli import main
 from kit.cli.plain import Plain, obey, play_plainly
 from kit.controllers import find
 from kit.places import find_place
+from kit.recording import load, rerun
 
 DRIVER = """
 import rclpy
@@ -153,3 +157,45 @@ def test_what_does_not_exist_ends_it_with_a_clear_word(tmp_path: Path, arguments
     assert result.exit_code == 2
     assert result.exception is None or isinstance(result.exception, SystemExit)
     assert arguments[-1] in result.output
+
+
+def test_other_terminals_look_in_while_a_line_is_awaited(tmp_path: Path) -> None:
+    environment = {**os.environ, "KIT_WORKSPACE": str(tmp_path)}
+    kit = [sys.executable, "-m", "kit"]
+    play = subprocess.Popen(
+        [*kit, "play", "simple", "--plain"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=environment,
+        text=True,
+    )
+    assert play.stdin is not None
+    assert play.stdout is not None
+    while "Type help" not in play.stdout.readline():
+        pass
+    seen = subprocess.run([*kit, "ros", "topic", "list"], env=environment, capture_output=True, text=True)
+    answer, _ = play.communicate("quit\n", timeout=60)
+    assert "/cmd_vel" in seen.stdout, seen.stderr
+    assert play.returncode == 0
+    assert not answer.strip()
+    assert not list((tmp_path / ".running").rglob("*.sock"))
+
+
+def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
+    file = tmp_path / "drive.npz"
+    desk = ["play", "simple", "--plain", "--controller", "teleop", "--record", str(file)]
+    result = CliRunner().invoke(main, desk, input="drive 0.3 0 1\nreset\ndrive 0.2 0 1\n")
+    assert result.exit_code == 0
+    assert str(file) in result.output
+    recording = load(file)
+    assert recording.ticks == 200
+    again = rerun(recording, find_place("simple").world)
+    assert (again.poses == recording.poses).all()
+
+
+def test_a_place_that_cannot_be_written_is_told_before_the_drive(tmp_path: Path) -> None:
+    desk = ["play", "simple", "--plain", "--record", str(tmp_path / "none" / "drive.npz")]
+    result = CliRunner().invoke(main, desk, input="run 1\n")
+    assert result.exit_code == 2
+    assert "drive.npz" in result.output
+    assert "at 0:01" not in result.output

@@ -17,6 +17,7 @@ import kit as kit_package
 from kit.controllers import find
 from kit.headless import run_headless
 from kit.places import find_place
+from kit.recording import load, rerun
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
 from tests.tui.test_world_view_pty import run_on
@@ -245,6 +246,19 @@ def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, 
     terminal.send(b"r")
     terminal.until(lambda: "0:01.50" not in terminal.text, "the beginning")
     terminal.until(lambda: "0:01.50" in terminal.text, "the end again")
+
+
+def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) -> None:
+    file = tmp_path / "drive.npz"
+    terminal = kit("play", "simple", "--controller", "teleop", "--record", str(file))
+    terminal.until(lambda: "exact" in terminal.text, "the terminal's answer")
+    terminal.send(b"\x1b[1;1:1A")
+    terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
+    terminal.send(b"r\x03")
+    assert terminal.wait() == 0
+    recording = load(file)
+    assert (recording.place, recording.case) == ("simple", "simple")
+    assert (rerun(recording, find_place("simple").world).poses == recording.poses).all()
 
 
 def test_the_keys_drive_a_robot_in_a_namespace(kit: Open) -> None:

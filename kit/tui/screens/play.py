@@ -55,8 +55,9 @@ class PlayScreen(WatchScreen):
         runs: Path,
         seed: int = 0,
         doors: Path | None = None,
+        records: bool = False,
     ) -> None:
-        super().__init__(look, case or place, seed=seed, doors=doors)
+        super().__init__(look, case or place, seed=seed, doors=doors, records=records)
         self._look = look
         self._runs = runs
         self._folder = folder

@@ -24,6 +24,7 @@ from kit.tui.world_view import WorldView
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kit.recording import Recording
     from kit.session import Session
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
@@ -82,8 +83,10 @@ class WatchScreen(StillScreen[None], DriveScreen):
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
-    def __init__(self, look: Look, place_name: str, *, seed: int = 0, doors: Path | None = None) -> None:
-        """``doors``: where other terminals find the world; see ``kit.inspection``."""
+    def __init__(
+        self, look: Look, place_name: str, *, seed: int = 0, doors: Path | None = None, records: bool = False
+    ) -> None:
+        """``doors``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
         super().__init__(look.terminal)
         self.place_name = place_name
         self.world = WorldView(look.encoder, look.palette)
@@ -93,6 +96,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
         self._beams = False
         self._seed = seed
         self._doors = doors
+        self._records = records
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -113,12 +117,17 @@ class WatchScreen(StillScreen[None], DriveScreen):
             on_trouble=self._trouble_arrived,
             seed=self._seed,
             doors=self._doors,
+            records=self._records,
         )
         self.open_world()
         self.set_interval(LOOK_INTERVAL, self._look_around)
 
     def on_unmount(self) -> None:
         self.behind.close()
+
+    def recording(self) -> Recording | None:
+        """The drive, once the screen has been left; None where none is kept, or no world was opened."""
+        return self.behind.recording() if self._records and hasattr(self, "behind") else None
 
     # What arrives from the world's threads
 
