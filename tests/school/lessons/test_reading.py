@@ -1,0 +1,62 @@
+"""A lesson's file: what is read, and how mistakes are told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from kit.school.lessons.reading import UnknownLesson, find_lesson, lesson_names, read
+from kit.school.lessons.records import How, Lesson, StepKind
+from kit.world.problems import WorldError
+from tests.school.lessons.conftest import LESSON, write_lesson
+
+
+def test_what_is_read(lesson: Lesson) -> None:
+    assert [step.kind for step in lesson.steps] == [StepKind.PREDICT, StepKind.EXPLAIN, StepKind.MAKE]
+    assert lesson.steps[0].options[0].right
+    assert lesson.steps[1].commands[0].how is How.ALONE
+    (exercise,) = lesson.exercises
+    assert (lesson.subject_of(exercise), lesson.subject(lesson.steps[2])) == (
+        "01-colours/colour",
+        "01-colours/3",
+    )
+
+
+@pytest.mark.parametrize("name", ["01-colours", "colours", "01", "1"])
+def test_a_lesson_is_found_by_its_name_and_number(tmp_path: Path, name: str) -> None:
+    write_lesson(tmp_path)
+    assert find_lesson(name, tmp_path).name == "01-colours"
+    assert lesson_names(tmp_path) == ("01-colours",)
+
+
+def test_an_unknown_lesson_has_a_nearest_one(tmp_path: Path) -> None:
+    write_lesson(tmp_path)
+    with pytest.raises(UnknownLesson, match="01-colours"):
+        find_lesson("colors", tmp_path)
+
+
+MISTAKES = {
+    "key": ("summary: What", "sumary: What", "sumary"),
+    "kind": ("kind: explain", "kind: explian", "explain"),
+    "no right option": ("right: true, ", "", "exactly one"),
+    "question": ("    question: What comes next?\n", "", "question"),
+    "exercise": ("exercise: colour", "exercise: color", "color/assignment.yaml"),
+    "no exercise": ("    exercise: colour\n    file: answers.yaml\n    seconds: 20\n", "", "exercise"),
+    "outcome": ("carries: [light]", "carries: [lights]", "light"),
+    "too wide": ("(o)", "o" * 77, "76"),
+    "too long": ("The light is red.", "red " * 400, "rows"),
+    "open code": ("The light is red.", "The `light is red.", "not closed"),
+    "no steps": (LESSON[LESSON.index("steps:") :], "steps: []\n", "at least 1"),
+    "seconds": ("seconds: 20", "seconds: -1", "seconds"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_names_its_place_and_the_way_out(tmp_path: Path, mistake: str) -> None:
+    old, new, said = MISTAKES[mistake]
+    assert old in LESSON
+    with pytest.raises(WorldError) as raised:
+        read(write_lesson(tmp_path, LESSON.replace(old, new)))
+    assert said in str(raised.value)
+    assert "lesson.yaml:" in str(raised.value)

@@ -1,0 +1,186 @@
+"""The journal: nothing confirmed is ever lost."""
+
+from __future__ import annotations
+
+import json
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from kit.school.progress import FILE, Event, Kind, Progress, ProgressError, read_export
+
+
+def test_events_come_back_in_the_order_of_their_time(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        late = progress.add(Kind.STEP, "b/1", now=datetime(2026, 2, 1, tzinfo=UTC))
+        early = progress.add(
+            Kind.ANSWER, "q", {"chosen": None, "text": "ü"}, now=datetime(2026, 1, 1, tzinfo=UTC)
+        )
+    with Progress(tmp_path) as progress:
+        assert progress.events() == [early, late]
+        assert progress.events(Kind.ANSWER) == [early]
+        assert progress.events(subject="b/1") == [late]
+        assert progress.notice == ""
+
+
+def test_what_is_exported_comes_in_elsewhere_once(tmp_path: Path) -> None:
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    there.mkdir()
+    with Progress(here) as progress:
+        for number in range(30):
+            progress.add(Kind.STEP, f"01-drive/{number}")
+        assert progress.export(tmp_path / "ada.json") == 30
+        known = progress.events()
+    with Progress(there) as other:
+        own = other.add(Kind.STEP, "02/1")
+        events = read_export(tmp_path / "ada.json")
+        assert (other.take_over(events), other.take_over(events)) == (30, 0)
+        assert {each.uid for each in other.events()} == {own.uid, *(each.uid for each in known)}
+
+
+BROKEN = {
+    "cut": lambda text: text[: len(text) // 2],
+    "not ours": lambda text: "[1, 2]",
+    "newer": lambda text: text.replace('"version": 1', '"version": 99'),
+    "kind": lambda text: text.replace('"step"', '"stop"'),
+    "time": lambda text: text.replace("+00:00", ""),
+    "empty": lambda text: "",
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_damaged_export_is_refused_whole(tmp_path: Path, name: str) -> None:
+    file = tmp_path / "ada.json"
+    with Progress(tmp_path) as progress:
+        progress.add(Kind.STEP, "01/1")
+        progress.export(file)
+    file.write_text(BROKEN[name](file.read_text()))
+    with pytest.raises(ProgressError, match=r"ada\.json"):
+        read_export(file)
+
+
+def test_a_damaged_journal_is_set_aside_and_what_can_be_read_is_kept(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        progress.take_over(
+            Event(
+                f"{number:032x}",
+                f"2026-01-01T00:00:{number % 60:02}+00:00",
+                Kind.STEP,
+                f"lesson/{number}",
+                {"x": "y" * 40},
+            )
+            for number in range(2000)
+        )
+    file = tmp_path / FILE
+    content = bytearray(file.read_bytes())
+    middle = len(content) // 2 // 4096 * 4096
+    content[middle : middle + 8192] = b"\xff" * 8192
+    file.write_bytes(content)
+    with Progress(tmp_path) as progress:
+        assert "damaged" in progress.notice
+        assert 500 < len(progress.events()) < 2001
+        progress.add(Kind.STEP, "goes on")
+    (aside,) = tmp_path.glob("progress.damaged-*.db")
+    assert aside.read_bytes() == bytes(content)
+    with Progress(tmp_path) as progress:
+        assert progress.notice == ""
+
+
+@pytest.mark.parametrize("content", [b"nonsense" * 200, b""], ids=["nonsense", "empty"])
+def test_what_is_no_database_is_set_aside_or_begun(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / FILE).write_bytes(content)
+    with Progress(tmp_path) as progress:
+        assert bool(progress.notice) is bool(content)
+        progress.add(Kind.STEP, "01/1")
+        assert len(progress.events()) == 1
+
+
+def test_another_database_is_not_taken_for_ours(tmp_path: Path) -> None:
+    with sqlite3.connect(tmp_path / FILE) as other:
+        other.execute("CREATE TABLE events (something TEXT)")
+    other.close()
+    with Progress(tmp_path) as progress:
+        assert "damaged" in progress.notice
+
+
+def test_a_folder_that_cannot_be_used_says_so(tmp_path: Path) -> None:
+    with pytest.raises(ProgressError, match="nowhere"):
+        Progress(tmp_path / "nowhere")
+
+
+def test_an_answer_that_is_a_whole_book_is_refused(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        with pytest.raises(ProgressError, match="characters"):
+            progress.add(Kind.FORM, "q", {"value": "x" * 100_000})
+        assert progress.events() == []
+
+
+def test_an_event_of_a_newer_kit_is_kept_and_left_alone(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        progress.add(Kind.STEP, "01/1")
+    with sqlite3.connect(tmp_path / FILE) as other:
+        other.execute(
+            "INSERT INTO events (uid, at, kind, subject, content) VALUES ('u', '2030-01-01T00:00:00+00:00', 'song', 's', '{}')"
+        )
+    other.close()
+    with Progress(tmp_path) as progress:
+        assert len(progress.events()) == 1
+        assert progress.notice == ""
+
+
+STUDENT = """
+import sys
+from pathlib import Path
+from kit.school.progress import Kind, Progress
+folder = Path(sys.argv[1])
+kinds = [(Kind.STEP, "01-drive/1", {}), (Kind.ATTEMPT, "01-drive/flag", {"points": 1}), (Kind.ANSWER, "item", {"chosen": 1})]
+with Progress(folder) as progress:
+    print("ready", flush=True)
+    for turn in range(10**6):
+        kind, subject, content = kinds[turn % 3]
+        print(progress.add(kind, subject, content).uid, flush=True)
+        if turn % 5 == 4:
+            progress.export(folder / "export.json")
+"""
+
+
+def _killed(tmp_path: Path, moment: float) -> None:
+    """A student's process is killed at some moment; what it had confirmed must be there."""
+    program = [sys.executable, "-c", STUDENT, str(tmp_path)]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as student:
+        assert student.stdout is not None
+        assert student.stdout.readline() == "ready\n"
+        time.sleep(moment)
+        student.send_signal(signal.SIGKILL)
+        confirmed = [line.strip() for line in student.stdout if line.endswith("\n")]
+    with Progress(tmp_path) as progress:
+        assert progress.notice == ""
+        known = {event.uid for event in progress.events()}
+    assert set(confirmed) <= known
+    exported = tmp_path / "export.json"
+    if exported.exists():
+        assert {event.uid for event in read_export(exported)} <= known
+        assert json.loads(exported.read_text())["events"]
+
+
+MOMENTS = [random.Random(7).uniform(0.0, 0.25) for _ in range(50)]
+
+
+@pytest.mark.parametrize("round_", range(5))
+def test_a_kill_loses_nothing_that_was_confirmed(tmp_path: Path, round_: int) -> None:
+    for moment in MOMENTS[round_::5][:2]:
+        _killed(tmp_path, moment)
+
+
+@pytest.mark.long
+def test_fifty_kills_lose_nothing_that_was_confirmed(tmp_path: Path) -> None:
+    for moment in MOMENTS:
+        _killed(tmp_path, moment)
