@@ -15,7 +15,7 @@ from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.launcher import Child
 from kit.host.limits import DESK, Limits
 from kit.host.output import Printed
-from kit.host.protocol import Functions, Values
+from kit.host.protocol import Functions, Told, Values
 from kit.host.wire import Json, numbers_to_text
 
 if TYPE_CHECKING:
@@ -78,6 +78,19 @@ class StudentFunctions:
             raise ValueError("columns must be equally long, and there must be at least one")
         return self._call(name, lengths.pop(), columns)
 
+    def tell(self, name: str, record: Mapping[str, Json]) -> Json:
+        """``name(**record)``: None, a truth value, a number, a text, or lists of these, at most three deep.
+
+        The record holds plain data, and lists of floats, which may be nan. ValueError or TypeError otherwise: that is the caller's mistake.
+        """
+        if name not in self.names:
+            raise GuestError(self._missing(name))
+        packed = {key: _tagged(value) for key, value in record.items()}
+        answer = self._child.ask("tell", name, packed)
+        if not isinstance(answer, Told):
+            raise self._child.condemn(verdicts.nonsense("something else than what the function returned"))
+        return answer.value
+
     def _call(
         self, name: str, count: int, columns: Mapping[str, Sequence[Json] | NDArray[Any]]
     ) -> array[float]:
@@ -101,6 +114,13 @@ class StudentFunctions:
         near = get_close_matches(name, self.names, n=1)
         hint = f" Is it the one that is called {near[0]}?" if near else ""
         return Failure(FailureKind.IMPORT, f"there is no function {name}() in it.{hint}", self.file.name)
+
+
+def _tagged(value: Json) -> list[Json]:
+    """Whether it travels as the text of numbers' bytes, and how."""
+    if isinstance(value, list) and value and all(type(each) is float for each in value):
+        return [True, numbers_to_text(array("d", value))]
+    return [False, value]
 
 
 def _packed(column: Sequence[Json] | NDArray[Any]) -> Json:

@@ -9,6 +9,7 @@ anything else is ended.
     start  0 ...                                 reply 0 ..., or functions 0 ...
     tick   n, time, events                       reply n, wake time, events
     call   n, function, count, columns           values n, numbers
+    tell   n, function, record                   told n, what it returned
                                                  ended n, events        the program is over, as it wished
                                                  failed n, what, where  the program is over, by its own fault
 """
@@ -22,7 +23,7 @@ from types import MappingProxyType
 from typing import Final, TypeAlias
 
 from kit.host.failure import REPORTABLE, Failure
-from kit.host.wire import MAX_NAME, Json, ProtocolError, integer, items, shown, text, text_to_numbers
+from kit.host.wire import MAX_NAME, Json, ProtocolError, integer, items, number, shown, text, text_to_numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +77,14 @@ class Values:
 
 
 @dataclass(frozen=True, slots=True)
+class Told:
+    """What a function returned for one record: a number, a truth value, a text, or lists of these."""
+
+    seq: int
+    value: Json
+
+
+@dataclass(frozen=True, slots=True)
 class Ended:
     """The program has come to its end."""
 
@@ -91,7 +100,10 @@ class Failed:
     failure: Failure
 
 
-Frame: TypeAlias = Confined | Refused | Reply | Functions | Values | Ended | Failed
+Frame: TypeAlias = Confined | Refused | Reply | Functions | Values | Told | Ended | Failed
+
+DEEPEST: Final = 3
+"""Lists in lists that a function may return."""
 
 
 def _confined(level: Json) -> Confined:
@@ -112,6 +124,20 @@ def _functions(seq: Json, names: Json) -> Functions:
 
 def _values(seq: Json, values: Json) -> Values:
     return Values(integer(seq), text_to_numbers(values, "d", finite=True))
+
+
+def _told(seq: Json, value: Json) -> Told:
+    return Told(integer(seq), _plain(value, DEEPEST))
+
+
+def _plain(value: Json, deep: int) -> Json:
+    if type(value) is list:
+        if deep == 0:
+            raise ProtocolError("lists in too many lists")
+        return [_plain(each, deep - 1) for each in value]
+    if value is None or type(value) is bool:
+        return value
+    return text(value) if type(value) is str else number(value)
 
 
 def _ended(seq: Json, events: Json) -> Ended:
@@ -143,6 +169,7 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
         "reply": (3, _reply),
         "functions": (2, _functions),
         "values": (2, _values),
+        "told": (2, _told),
         "ended": (2, _ended),
         "failed": (5, _failed),
     }

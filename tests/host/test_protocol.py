@@ -10,7 +10,7 @@ import pytest
 
 from kit.host import wire
 from kit.host.failure import Failure, FailureKind
-from kit.host.protocol import Confined, Ended, Event, Failed, Functions, Refused, Reply, Values, parse
+from kit.host.protocol import Confined, Ended, Event, Failed, Functions, Refused, Reply, Told, Values, parse
 from kit.host.wire import Json, ProtocolError
 
 GOOD: list[tuple[list[Json], object]] = [
@@ -23,6 +23,7 @@ GOOD: list[tuple[list[Json], object]] = [
     ),
     (["functions", 0, ["reward"]], Functions(0, ("reward",))),
     (["values", 9, wire.numbers_to_text(array("d", [1, 2.5]))], Values(9, array("d", [1.0, 2.5]))),
+    (["told", 4, [1, True, None, "left", [2.5]]], Told(4, [1.0, True, None, "left", [2.5]])),
     (["ended", 2, []], Ended(2, ())),
     (
         ["failed", 2, "exception", "E: x", "a.py", 3],
@@ -62,6 +63,9 @@ def test_good_frames(content: list[Json], frame: object) -> None:
         ["values", 1, "AAAAAAAA 8D8="],
         ["values", 1, wire.numbers_to_text(array("d", [float("inf")]))],
         ["values", 1, wire.numbers_to_text(array("d", [float("nan")]))],
+        ["told", 1, {"a": 1}],
+        ["told", 1, [[[[1]]]]],
+        ["told", 1, "x" * 10_000],
         ["functions", 0, ["x" * 1000]],
         ["confined", 4],
         ["confined", "1"],

@@ -1,0 +1,298 @@
+"""A Python file with functions: called in a process of its own, and compared with ours.
+
+``reference.py`` in the assignment's folder, which is the teacher's and runs in the grader, has each function as it
+should be, and beside it the cases it is tried on::
+
+    def nearest(ranges): ...
+
+    def nearest_cases(chance):              # a random.Random: the seeds stand in the sheet
+        yield {"ranges": [0.5, 0.3]}        # each a dictionary of arguments, plain data
+        for _ in range(20):
+            yield {"ranges": [chance.uniform(0.1, 2.0) for _ in range(91)]}
+
+The sheet names the functions; other seeds may stand in ``secret.yaml``::
+
+    functions:
+      - {name: nearest, within: 0.001}
+    seed: 1
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import random
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Final
+
+from grader.assignment import Assignment, Criterion, Seeds
+from grader.checks.contract import check
+from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
+from kit.host.batch import StudentFunctions
+from kit.host.confine import Level
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.wire import Json, printable
+from kit.world.problems import quoted, suggestion
+from kit.world.section import Section
+
+if TYPE_CHECKING:
+    from grader.grading import Gatherer
+
+REFERENCE: Final = "reference.py"
+CASES: Final = "_cases"
+"""What follows a function's name in the name of what makes its cases."""
+MOST_CASES: Final = 500
+LONGEST_SHOWN: Final = 6
+"""Entries of a list that are written out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """One function that is to be written."""
+
+    name: str
+    within: float
+    """How far a number may be off, absolutely and as a share of what is right."""
+
+
+@dataclass(frozen=True, slots=True)
+class Functions:
+    """The kind's task."""
+
+    wanted: tuple[Wanted, ...]
+    reference: Path
+    seed: int
+    secret_seed: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A case in which the student's function returns something else than ours."""
+
+    arguments: Mapping[str, Json]
+    expected: Json
+    actual: Json
+
+    def __str__(self) -> str:
+        return f"should be {shown(self.expected)}, and is {shown(self.actual)}{_where(self.expected, self.actual)}."
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """What was found: a function tried on its cases."""
+
+    name: str
+    cases: int
+    differences: tuple[Difference, ...]
+
+    def first(self) -> str:
+        """What to say of the first case that differs."""
+        if not self.differences:
+            return ""
+        difference = self.differences[0]
+        arguments = ", ".join(f"{name}={shown(value)}" for name, value in difference.arguments.items())
+        if difference.actual is None and difference.expected is not None:
+            return f"{self.name}({arguments}) returns nothing: does every way through it end in a return?"
+        return f"{self.name}({arguments}) {difference}"
+
+
+@dataclass(frozen=True, slots=True)
+class Which:
+    """Which function a criterion is about."""
+
+    function: str = ""
+    """May be left out where there is one only."""
+
+
+@check(none=0.5, full=1, unit="%", params=Which)
+def agrees(look: Look, params: Which) -> float:
+    """It returns what it should in {actual} of the cases."""
+    seen: Called = look.found
+    return 1.0 - len(seen.differences) / seen.cases
+
+
+def read(sheet: Sheet) -> Task:
+    """The functions, and whether the reference has them."""
+    file = sheet.folder / REFERENCE
+    wanted = tuple(_wanted(sheet.public))
+    seed = sheet.public.integer("seed", 1, minimum=0)
+    secret = None if sheet.secret is None else sheet.secret.integer("seed", minimum=0)
+    try:
+        module = load(file)
+    except (OSError, SyntaxError) as error:
+        sheet.public.error(f"{REFERENCE}, which has the functions as they should be, cannot be read: {error}")
+        return Task(content=Functions(wanted, file, seed, secret))
+    for each in wanted:
+        for name in (each.name, each.name + CASES):
+            if not callable(getattr(module, name, None)):
+                sheet.public.error(f"{REFERENCE} has no function {name}()", "functions")
+    return Task(content=Functions(wanted, file, seed, secret))
+
+
+def _wanted(section: Section) -> Iterator[Wanted]:
+    seen: set[str] = set()
+    for each in section.sections("functions", at_least=1):
+        made = Wanted(each.name("name"), each.number("within", 1e-6, minimum=0))
+        each.finish()
+        if not made.name.isidentifier() or made.name.startswith("_"):
+            each.error(f"{quoted('name')} must be a function's name", "name")
+        elif made.name in seen:
+            each.error(f"a function named {quoted(made.name)} is asked for already", "name")
+        else:
+            yield made
+        seen.add(made.name)
+
+
+def load(file: Path) -> ModuleType:
+    """The teacher's reference, as a module of its own every time. Raises what it raises."""
+    spec = importlib.util.spec_from_file_location(f"reference_of_{file.parent.name}", file)
+    assert spec is not None  # the name ends in .py
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, Json]]:
+    """What a function is tried on with this seed."""
+    make: Callable[[random.Random], Iterator[Mapping[str, Json]]] = getattr(module, name + CASES)
+    return list(make(random.Random(f"{name} {seed}")))[:MOST_CASES]
+
+
+class Calls:
+    """Gathers a look at each function when a criterion first asks for it: a mistake in one costs no other."""
+
+    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
+        self.level = conditions.level
+        self._task: Functions = assignment.task
+        self._assignment = assignment
+        self._file = file
+        self._conditions = conditions
+        self._reference = load(self._task.reference)
+        self._looks: dict[tuple[str, bool], Look] = {}
+
+    def evidence(self, criterion: Criterion) -> Sequence[Look]:
+        name = self._function(criterion.params.function)
+        secret = self._conditions.secret and self._task.secret_seed is not None
+        wanted = {Seeds.PUBLIC: (False,), Seeds.SECRET: (True,), Seeds.ALL: (False, True)}[criterion.seeds]
+        return [self._look(name, hidden) for hidden in wanted if secret or not hidden]
+
+    def all(self) -> Sequence[Look]:
+        return list(self._looks.values())
+
+    def _function(self, name: str) -> Wanted:
+        known = {each.name: each for each in self._task.wanted}
+        if not name and len(known) == 1:
+            return self._task.wanted[0]
+        if name not in known:
+            raise LookupError(f"no function {quoted(name)}: {suggestion(name, known)}")
+        return known[name]
+
+    def _look(self, wanted: Wanted, secret: bool) -> Look:
+        key = wanted.name, secret
+        if key not in self._looks:
+            self._looks[key] = self._tried(wanted, secret)
+        return self._looks[key]
+
+    def _tried(self, wanted: Wanted, secret: bool) -> Look:
+        seed = self._task.secret_seed if secret else self._task.seed
+        assert seed is not None  # where there is none, no secret look is asked for
+        cases = cases_of(self._reference, wanted.name, seed)
+        blank = Look(label=f"{wanted.name}()" + (" on secret cases" if secret else ""), secret=secret)
+        while True:
+            look = self._called(wanted, cases, blank)
+            failure = look.failure
+            if (
+                failure is None
+                or failure.kind is not FailureKind.CONFINEMENT
+                or not self._conditions.may_fall
+                or self.level == Level.LIMITED
+            ):
+                return look
+            self.level = Level(self.level - 1)
+
+    def _called(self, wanted: Wanted, cases: Sequence[Mapping[str, Json]], blank: Look) -> Look:
+        right = getattr(self._reference, wanted.name)
+        differences = []
+        case: Mapping[str, Json] | None = None
+        try:
+            with StudentFunctions(self._file, limits=self._assignment.limits, level=self.level) as functions:
+                for case in cases:
+                    expected, actual = _plain(right(**case)), functions.tell(wanted.name, case)
+                    if not alike(expected, actual, wanted.within):
+                        differences.append(Difference(case, expected, actual))
+                printed = tuple(printable(line.text) for line in functions.take_output().lines)
+        except GuestError as error:
+            return replace_failure(blank, error.failure, wanted.name, case)
+        found = Called(wanted.name, len(cases), tuple(differences))
+        said = "" if blank.secret else found.first()
+        return Look(
+            found, None, blank.label, blank.secret, printed=printed, steps=len(cases), remarks=lambda *_: said
+        )
+
+
+def replace_failure(blank: Look, failure: Failure, name: str, case: Mapping[str, Json] | None) -> Look:
+    """The look at a function that failed: in which call, where that may be told."""
+    if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
+        arguments = ", ".join(f"{key}={shown(value)}" for key, value in case.items())
+        failure = replace(failure, message=f"{failure.message} It was called as {name}({arguments}).")
+    return Look(
+        failure=failure, label=blank.label, secret=blank.secret, outcome=f"stopped ({failure.kind.value})"
+    )
+
+
+def _plain(value: Any) -> Json:
+    """What the reference returns, as what comes from the student's process looks like."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+def alike(expected: Json, actual: Json, within: float) -> bool:
+    """Whether two returned values are the same: numbers nearly, texts and truth values to the letter."""
+    if isinstance(expected, list):
+        return (
+            isinstance(actual, list)
+            and len(actual) == len(expected)
+            and all(alike(*pair, within) for pair in zip(expected, actual, strict=True))
+        )
+    if type(expected) is float and type(actual) is float:
+        return math.isclose(expected, actual, rel_tol=within, abs_tol=within)
+    return type(expected) is type(actual) and bool(expected == actual)
+
+
+def shown(value: Json) -> str:
+    """A value as one would write it, long lists shortened."""
+    if isinstance(value, list):
+        listed = ", ".join(map(shown, value[:LONGEST_SHOWN]))
+        more = f", ... {len(value)} in all" if len(value) > LONGEST_SHOWN else ""
+        return f"[{listed}{more}]"
+    if type(value) is float:
+        return f"{value:.6g}"
+    return printable(repr(value)[:200])
+
+
+def _where(expected: Json, actual: Json) -> str:
+    """Where in a list the first difference is; nothing for what is short enough to see."""
+    if not isinstance(expected, list) or not isinstance(actual, list):
+        return ""
+    if len(expected) != len(actual):
+        return f": {len(actual)} entries instead of {len(expected)}"
+    for place, (one, other) in enumerate(zip(expected, actual, strict=True)):
+        if not alike(one, other, 1e-6):
+            return f": [{place}] should be {shown(one)}, and is {shown(other)}"
+    return ""
+
+
+def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+    """Each function is called when a criterion first asks for it."""
+    return nullcontext(Calls(assignment, file, conditions))
+
+
+SORT: Final = Sort((".py",), {agrees.name: agrees}, read, gather)

@@ -1,0 +1,185 @@
+"""Functions compared with ours: what counts as the same, what is said of the first difference, and hostile files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.kinds.function import alike, shown
+from grader.reading import read
+from grader.result import Result, Status, Verdict
+from grader.session import Terms, grade
+from grader.submission import Submission
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+from tests.grader.conftest import LOCKS
+
+SHEET = """
+title: Two functions
+kind: function
+submit: scans.py
+level: 0
+functions:
+  - {name: nearest, within: 0.001}
+  - {name: halves}
+checks:
+  - {check: agrees, id: nearest, points: 2, with: {function: nearest}}
+  - {check: agrees, id: halves, points: 1, with: {function: halves}, share: {none: 0.9, full: 1}}
+budget: {reply: 1.0}
+"""
+REFERENCE = """
+import math
+
+def nearest(ranges):
+    return min((each for each in ranges if not math.isnan(each)), default=2.0)
+
+def nearest_cases(chance):
+    yield {"ranges": [1.0, 0.5]}
+    yield {"ranges": [float("nan"), 0.5, 2.0]}
+    for _ in range(8):
+        yield {"ranges": [chance.uniform(0.1, 2.0) for _ in range(91)]}
+
+def halves(ranges, side):
+    middle = len(ranges) // 2
+    return [side, ranges[:middle] if side == "right" else ranges[middle:]]
+
+def halves_cases(chance):
+    for _ in range(5):
+        yield {"ranges": [chance.random() for _ in range(4)], "side": chance.choice(["left", "right"])}
+"""
+NEAREST = "import math\ndef nearest(ranges):\n    return min((r for r in ranges if not math.isnan(r)), default=2.0)\n"
+HALVES = "def halves(ranges, side):\n    return side, ranges[:2] if side == 'right' else ranges[2:]\n"
+DESK = Terms(Level.LIMITED)
+GRADE = Terms(Level.LIMITED, secret=True)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "scans"
+    made.mkdir()
+    (made / "assignment.yaml").write_text(SHEET)
+    (made / "reference.py").write_text(REFERENCE)
+    (made / "secret.yaml").write_text("seed: 77\n")
+    return made
+
+
+def graded(folder: Path, source: str, terms: Terms = DESK) -> Result:
+    return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), terms)
+
+
+@pytest.mark.parametrize("terms", [DESK, GRADE], ids=["practice", "grade"])
+def test_a_good_one_earns_everything(folder: Path, terms: Terms) -> None:
+    result = graded(folder, NEAREST + HALVES, terms)
+    assert (result.points, result.verdict) == (3.0, Verdict.PASS)
+
+
+@LOCKS
+def test_it_runs_locked_in(folder: Path) -> None:
+    assert graded(folder, NEAREST + HALVES, Terms(Level.FILTERED, secret=True)).points == 3.0
+
+
+def test_numpy_is_taken_for_what_it_is(folder: Path) -> None:
+    source = "import numpy as np\ndef nearest(ranges):\n    return np.nanmin(np.array(ranges))\n"
+    source += "def halves(ranges, side):\n    a = np.array(ranges)\n    return [side, a[:2] if side == 'right' else a[2:]]\n"
+    assert graded(folder, source).points == 3.0
+
+
+def test_the_first_difference_is_told(folder: Path) -> None:
+    result = graded(folder, "def nearest(ranges):\n    return ranges[0] if ranges[0] > 0 else 2.0\n" + HALVES)
+    test = result.tests[0]
+    assert test.status is Status.FAIL
+    assert "nearest(ranges=[1, 0.5]) should be 0.5, and is 1." in test.rationale
+    assert result.tests[1].status is Status.PASS
+
+
+def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
+    (folder / "assignment.yaml").write_text(SHEET.replace("share: {none: 0.9, full: 1}", "seeds: secret"))
+    source = NEAREST + "def halves(ranges, side):\n    return [side, [0.0, 0.0]]\n"
+    test = graded(folder, source, GRADE).tests[1]
+    assert test.status is Status.FAIL
+    assert "should be" not in test.rationale
+    assert graded(folder, source, DESK).tests[1].status is Status.SKIPPED
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "word"),
+    [
+        ("return None", Status.FAIL, "returns nothing"),
+        ("return [0.5]", Status.FAIL, "should be 0.5"),
+        ("return str(min(ranges))", Status.FAIL, "'0.5'"),
+        ("return min(ranges) == 0.5", Status.FAIL, "True"),
+        ("return 1 / 0", Status.STUDENT_ERROR, "nearest(ranges=[1, 0.5])"),
+        ("return float('nan')", Status.STUDENT_ERROR, "finite"),
+        ("return object()", Status.STUDENT_ERROR, "must return"),
+        ("return [[[[1]]]]", Status.STUDENT_ERROR, "must return"),
+        ("while True: pass", Status.TIMEOUT, "scans.py:2"),
+        ("import sys; sys.exit()", Status.STUDENT_ERROR, "sys.exit"),
+        ("import os; os._exit(0)", Status.STUDENT_ERROR, ""),
+        ("return 'x' * 10**7", Status.PROTOCOL_ERROR, ""),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_mistake_in_one_costs_no_other(folder: Path, body: str, status: Status, word: str) -> None:
+    result = graded(folder, f"def nearest(ranges):\n    {body}\n" + HALVES)
+    assert result.tests[0].status is status
+    assert word in result.tests[0].rationale
+    assert result.tests[1].status is Status.PASS
+
+
+@pytest.mark.parametrize(
+    "source", ["def nearest(", "def neerest(ranges):\n    return 1.0\n", ""], ids=["syntax", "name", "empty"]
+)
+def test_what_cannot_be_called_is_the_students_error(folder: Path, source: str) -> None:
+    test = graded(folder, source).tests[0]
+    assert test.status is Status.STUDENT_ERROR
+    assert "scans.py" in test.rationale
+    assert "/tmp" not in test.rationale
+
+
+def test_a_file_cannot_reach_the_reference_through_the_grader(folder: Path) -> None:
+    source = "import sys\ndef nearest(ranges):\n    ours = [n for n in sys.modules if 'reference' in n or 'grader' in n]\n"
+    result = graded(folder, source + "    return len(ours) + 100.0\n" + HALVES)
+    assert "and is 100." in result.tests[0].rationale
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "message"),
+    [
+        ("reference.py", "def halves(", "def halve(", r"no function halves\(\)"),
+        ("reference.py", "def halves_cases(", "def cases(", r"no function halves_cases\(\)"),
+        ("reference.py", "import math", "import (", "cannot be read"),
+        ("assignment.yaml", "name: halves", "name: nearest", "asked for already"),
+        ("assignment.yaml", "name: halves", "name: two halves", "function's name"),
+    ],
+)
+def test_a_teachers_mistake_is_told_when_read(
+    folder: Path, file: str, old: str, new: str, message: str
+) -> None:
+    path = folder / file
+    path.write_text(path.read_text().replace(old, new, 1))
+    with pytest.raises(WorldError, match=message):
+        read(folder)
+
+
+@pytest.mark.parametrize(
+    ("expected", "actual", "same"),
+    [
+        (1.0, 1.0005, True),
+        (1.0, 1.01, False),
+        (1000.0, 1000.5, True),
+        ([1.0, [2.0]], [1.0, [2.0]], True),
+        ([1.0], [1.0, 1.0], False),
+        (True, True, True),
+        (True, 1.0, False),
+        ("left", "Left", False),
+        (None, None, True),
+        (0.0, None, False),
+    ],
+)
+def test_what_is_the_same(expected: object, actual: object, same: bool) -> None:
+    assert alike(expected, actual, 0.001) is same
+
+
+def test_long_lists_are_shortened() -> None:
+    assert shown([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
