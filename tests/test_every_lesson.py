@@ -1,0 +1,174 @@
+"""Every lesson found in the folder: it reads, its exercises prove themselves, its commands run, its outcomes are known."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from grader.reading import read as read_assignment
+from grader.self_test import STARTER, prove
+from grader.session import Terms
+from kit.cli import VERBS
+from kit.host.confine import Level
+from kit.school.lessons.checking import check
+from kit.school.lessons.reading import lesson_names, lessons_folder, outcomes, read, solutions_folder
+from kit.school.lessons.records import Exercise, How, Lesson, StepKind
+from kit.school.lessons.works import lay_out, solution
+from kit.workspace import open_workspace
+
+NAMES = lesson_names()
+EXERCISES = [(name, exercise.name) for name in NAMES for exercise in read(lessons_folder() / name).exercises]
+COMMANDS = [
+    (name, step.number, index)
+    for name in NAMES
+    for step in read(lessons_folder() / name).steps
+    for index, command in enumerate(step.commands)
+    if command.how is How.ALONE
+]
+IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
+GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
+SLOWER = 3.0
+"""How many times as long as promised a check may take on a machine that is busy with other tests."""
+
+
+def lesson_of(name: str) -> Lesson:
+    return read(lessons_folder() / name)
+
+
+def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
+    lesson = lesson_of(name)
+    return lesson, next(each for each in lesson.exercises if each.name == exercise)
+
+
+def test_there_are_thirteen() -> None:
+    assert [name[:2] for name in NAMES] == [f"{number:02}" for number in range(1, 14)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_leads_from_prediction_to_making(name: str) -> None:
+    lesson = lesson_of(name)
+    kinds = [step.kind for step in lesson.steps]
+    assert kinds[0] is StepKind.PREDICT
+    assert {StepKind.RUN, StepKind.EXPLAIN} <= set(kinds)
+    assert 2 <= len(lesson.exercises) <= 4
+    assert sum(exercise.seconds for exercise in lesson.exercises) <= lesson.minutes * 60
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_exercises_are_what_the_grader_reads(name: str) -> None:
+    lesson = lesson_of(name)
+    for exercise in lesson.exercises:
+        assignment = read_assignment(exercise.folder)
+        assert assignment.submit == exercise.file
+        assert assignment.level is Level.LIMITED
+        assert all(len(criterion.hints) >= 2 for criterion in assignment.criteria if criterion.points), exercise.name
+        assert (exercise.folder / "secret.yaml").is_file()
+        known = solutions_folder() / name / exercise.name / "wrong"
+        assert len([each for each in known.iterdir() if each.name[0] not in "._"]) >= 2
+
+
+def test_nothing_is_solved_that_is_not_asked() -> None:
+    asked = {f"{name}/{exercise}" for name, exercise in EXERCISES}
+    solved = {f"{each.parent.name}/{each.name}" for each in solutions_folder().glob("*/*") if each.is_dir()}
+    assert solved == asked
+
+
+@pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
+def test_the_student_s_way(tmp_path: Path, name: str, exercise: str) -> None:
+    """What is laid out fails politely, the solution earns everything, within the promised time."""
+    lesson, task = exercise_of(name, exercise)
+    file = lay_out(open_workspace(tmp_path / "desk"), lesson, task)
+    if file.exists():
+        starter = check(task, file)
+        assert starter.verdict == "fail", starter.problem
+        assert all(each.status not in ("student_error", "timeout") for each in starter.lost)
+        assert any(each.said for each in starter.lost)
+    if file.suffix != ".npz":
+        for other, text in solution(lesson, task).items():
+            (file.parent / other).parent.mkdir(parents=True, exist_ok=True)
+            (file.parent / other).write_text(text)
+        _take_what_is_no_text(name, exercise, file.parent)
+        began = time.monotonic()
+        solved = check(task, file)
+        took = time.monotonic() - began
+        assert solved.passed, [(each.id, each.status, each.said) for each in solved.lost] or solved.problem
+        assert took <= SLOWER * task.seconds
+
+
+def _take_what_is_no_text(name: str, exercise: str, folder: Path) -> None:
+    whole = solutions_folder() / name / exercise / "solution"
+    for each in whole.rglob("*") if whole.is_dir() else ():
+        if each.is_file() and "__pycache__" not in each.parts:
+            to = folder / each.relative_to(whole)
+            to.parent.mkdir(parents=True, exist_ok=True)
+            to.write_bytes(each.read_bytes())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
+def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> None:
+    _, task = exercise_of(name, exercise)
+    assignment = read_assignment(task.folder)
+    solutions = solutions_folder() / name / exercise
+    proofs = list(prove(assignment, Terms(Level.LIMITED, secret=True), solutions))
+    by_hand = task.file.endswith(".npz")  # a drive has no starter
+    wrong = {
+        each.name: each.problems
+        for each in proofs
+        if each.problems and not (by_hand and each.name.startswith(STARTER))
+    }
+    assert wrong == {}
+    assert len(proofs) >= 4
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_in_a_text_stands_among_its_commands(name: str) -> None:
+    lesson = lesson_of(name)
+    listed = {command.line for step in lesson.steps for command in step.commands}
+    for step in lesson.steps:
+        for line in (*IN_TEXT.findall(step.text), *GREETING.findall(step.text)):
+            assert line in listed or _is_a_verb(line), f"step {step.number}: {line}"
+
+
+def _is_a_verb(line: str) -> bool:
+    """``kit quiz``, without anything more, names a verb and is no command to copy."""
+    return line in {f"kit {verb}" for verb in VERBS}
+
+
+@pytest.mark.parametrize(
+    ("name", "step", "index"), COMMANDS, ids=[f"{name}-{step}-{index}" for name, step, index in COMMANDS]
+)
+def test_a_command_runs(tmp_path: Path, name: str, step: int, index: int) -> None:
+    lesson = lesson_of(name)
+    workspace = open_workspace(tmp_path / "workspace")
+    at = lesson.steps[step - 1]
+    line = at.commands[index].line
+    if at.exercise is not None:
+        file = lay_out(workspace, lesson, at.exercise)
+        for other, text in solution(lesson, at.exercise).items():
+            (file.parent / other).write_text(text)
+        line = line.replace("{file}", str(file)).replace("{folder}", str(file.parent))
+    program, *arguments = shlex.split(line)
+    module = {"kit": "kit", "grader": "grader"}[program]
+    done = subprocess.run(
+        [sys.executable, "-m", module, *arguments],
+        cwd=tmp_path,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
+
+
+def test_every_outcome_is_carried_and_once_described() -> None:
+    carried = Counter(each for name in NAMES for each in lesson_of(name).carries)
+    assert set(carried) == set(outcomes())
