@@ -1,0 +1,98 @@
+"""Answers as the journal keeps them: what was chosen, how sure one was, on which occasion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from enum import Enum, StrEnum
+from typing import Any, Final
+
+from kit.school.progress import Event, Kind
+from kit.school.quiz.items import OPTIONS, Item
+
+
+class Occasion(StrEnum):
+    """Why a question was asked."""
+
+    QUIZ = "quiz"
+    LESSON = "lesson"
+    SPACED = "spaced"
+
+
+class Outcome(Enum):
+    """What came of it. Blank, not sure and wrong are three things: they call for three remedies."""
+
+    RIGHT = "right"
+    WRONG = "wrong"
+    NOT_SURE = "not sure"
+    BLANK = "blank"
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One of the options, from 0; or none, with a word why."""
+
+    option: int | None
+    not_sure: bool = False
+
+    def outcome(self, item: Item) -> Outcome:
+        if self.option is None:
+            return Outcome.NOT_SURE if self.not_sure else Outcome.BLANK
+        return Outcome.RIGHT if self.option == item.right else Outcome.WRONG
+
+
+NOT_SURE: Final = Choice(None, not_sure=True)
+BLANK: Final = Choice(None)
+
+SURENESS: Final[Mapping[int, str]] = {1: "a guess", 2: "rather unsure", 3: "fairly sure", 4: "certain"}
+"""The answers to "how sure are you?"."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One answer of the journal."""
+
+    item: str
+    time: datetime
+    outcome: Outcome
+    confidence: int | None
+    occasion: Occasion
+
+
+def content_of(item: Item, choice: Choice, confidence: int | None, occasion: Occasion) -> dict[str, Any]:
+    """What the journal keeps of an answer. Who chose nothing is not sure of anything."""
+    return {
+        "chosen": choice.option,
+        "not_sure": choice.not_sure,
+        "right": choice.outcome(item) is Outcome.RIGHT,
+        "confidence": None if choice.option is None else confidence,
+        "occasion": occasion.value,
+        "topic": item.topic.value,
+    }
+
+
+def answer_of(event: Event) -> Answer | None:
+    """The answer that an event tells of; None if it is another kind of event, or cannot be understood."""
+    if event.kind is not Kind.ANSWER:
+        return None
+    content = event.content
+    chosen, confidence = content.get("chosen"), content.get("confidence")
+    try:
+        occasion = Occasion(str(content.get("occasion")))
+    except ValueError:
+        return None
+    if chosen is None:
+        outcome = Outcome.NOT_SURE if content.get("not_sure") is True else Outcome.BLANK
+    elif chosen in range(OPTIONS):
+        outcome = Outcome.RIGHT if content.get("right") is True else Outcome.WRONG
+    else:
+        return None
+    return Answer(
+        event.subject, event.time, outcome, confidence if confidence in SURENESS else None, occasion
+    )
+
+
+def answers_of(events: Iterable[Event]) -> list[Answer]:
+    """All that can be understood, in the order of their time."""
+    return [answer for event in events if (answer := answer_of(event)) is not None]

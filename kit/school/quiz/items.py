@@ -1,0 +1,130 @@
+"""A quiz item: one question, three options of which one is right, and what to say to whoever chooses each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+from kit.world.problems import quoted, suggestion
+from kit.world.records import Place
+
+OPTIONS: Final = 3
+"""As many as there are observed misconceptions for; more would be fillers (Rodriguez 2005)."""
+
+IDEAS: Final = 12
+"""Of the quiz; every one has exactly one item."""
+
+
+class Topic(StrEnum):
+    """What an item is about: what is scored, and what comes back."""
+
+    DRIVING = "driving"
+    ROS2 = "ros2"
+    FLATLAND = "flatland"
+    LAYERS = "layers"
+    RL = "rl"
+    FIELDS = "fields"
+
+    @property
+    def label(self) -> str:
+        """What it is called on screen."""
+        return _LABELS[self]
+
+
+_LABELS: Final[Mapping[Topic, str]] = {
+    Topic.DRIVING: "driving",
+    Topic.ROS2: "ROS 2",
+    Topic.FLATLAND: "Flatland worlds",
+    Topic.LAYERS: "layers",
+    Topic.RL: "learning",
+    Topic.FIELDS: "potential fields",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One of the three."""
+
+    text: str
+    feedback: str
+    """For who chose it: where it is wrong, the misconception by name; where it is right, why."""
+    right: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One question."""
+
+    id: str
+    lesson: str
+    """Whose folder it lies in."""
+    topic: Topic
+    idea: int | None
+    """1 to 12 for the items of the quiz."""
+    question: str
+    picture: tuple[str, ...]
+    """Rows of ASCII; none: no picture."""
+    options: tuple[Option, ...]
+    see: str
+    """The lesson, or LESSON/STEP, to go back to."""
+    attempt: str
+    """A command that lets one see it; may be empty."""
+    derived: str
+    """By which derivation of the tests its answer is found anew; empty: it cannot be derived."""
+    place: Place
+
+    @property
+    def right(self) -> int:
+        """The right option's place, from 0."""
+        return next(index for index, option in enumerate(self.options) if option.right)
+
+
+class UnknownLesson(LookupError):
+    """No lesson is called so; the message offers the nearest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bank:
+    """All items, lesson by lesson."""
+
+    items: tuple[Item, ...]
+
+    @property
+    def lessons(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(item.lesson for item in self.items))
+
+    @property
+    def twelve(self) -> tuple[Item, ...]:
+        """The quiz: one item for each idea, in the ideas' order."""
+        return tuple(sorted((item for item in self.items if item.idea), key=lambda item: item.idea or 0))
+
+    def by_id(self) -> dict[str, Item]:
+        return {item.id: item for item in self.items}
+
+    def of_lesson(self, lesson: str) -> tuple[Item, ...]:
+        return tuple(item for item in self.items if item.lesson == lesson)
+
+    def of_topic(self, topic: Topic) -> tuple[Item, ...]:
+        return tuple(item for item in self.items if item.topic is topic)
+
+    def find_lesson(self, said: str) -> str:
+        """The lesson meant by its name, its number, or its name without the number. Raises UnknownLesson."""
+        for lesson in self.lessons:
+            number, _, name = lesson.partition("-")
+            if said in (lesson, number, number.lstrip("0"), name):
+                return lesson
+        raise UnknownLesson(f"there is no lesson {quoted(said)}: {suggestion(said, self.lessons)}")
+
+
+def lesson_title(lesson: str) -> str:
+    """A lesson as one speaks of it: ``02-nodes-and-topics/3`` is "lesson 2, nodes and topics, step 3"."""
+    folder, _, step = lesson.partition("/")
+    number, _, name = folder.partition("-")
+    words = f"lesson {number.lstrip('0')}, {name.replace('-', ' ')}"
+    return f"{words}, step {step}" if step else words
+
+
+def bank_of(items: Iterable[Item]) -> Bank:
+    return Bank(tuple(sorted(items, key=lambda item: item.lesson)))

@@ -1,0 +1,133 @@
+"""``lessons/NN-name/quiz.yaml`` becomes records; every mistake of all files is told with its file, line and column."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Final
+
+from kit.school.quiz.items import IDEAS, OPTIONS, Bank, Item, Option, Topic, bank_of
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, quoted, suggestion
+from kit.world.records import Place
+from kit.world.section import Section
+
+SHEET: Final = "quiz.yaml"
+WIDEST: Final = 74
+"""Columns of a picture, which are shown as they are."""
+TALLEST: Final = 8
+"""Rows of a picture: question, options and feedback share the screen with it."""
+
+_ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+
+
+def lessons_folder() -> Path:
+    """Where the lessons lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
+    package = Path(__file__).resolve().parents[2]
+    for folder in (package / "data" / "lessons", package.parent / "lessons"):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"the lessons are missing: neither in {package / 'data'} nor beside {package}")
+
+
+def read_bank(folder: Path | None = None) -> Bank:
+    """Every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
+    folder = lessons_folder() if folder is None else folder
+    sheets = sorted(folder.glob(f"[0-9]*-*/{SHEET}"))
+    lessons = [sheet.parent.name for sheet in sheets]
+    problems = Problems()
+    items = [item for sheet in sheets for item in _sheet(sheet, lessons, problems)]
+    _check_unique(items, problems)
+    problems.raise_if_any()
+    return bank_of(items)
+
+
+def _sheet(sheet: Path, lessons: Collection[str], problems: Problems) -> list[Item]:
+    documents = Documents(Enclosure.of(sheet.parent), {}, problems)
+    section = documents.section(sheet, Place(sheet))
+    if section is None:
+        return []
+    items = list(_items(section, sheet.parent.name, lessons))
+    section.finish()
+    return items
+
+
+def _items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[Item]:
+    topics = {topic.value: topic for topic in Topic}
+    for each in section.sections("items", at_least=1):
+        item = Item(
+            id=_id(each),
+            lesson=lesson,
+            topic=each.choice("topic", topics) or Topic.DRIVING,
+            idea=each.integer("idea", minimum=1, maximum=IDEAS) if each.has("idea") else None,
+            question=each.text("question").strip(),
+            picture=_picture(each),
+            options=_options(each),
+            see=_see(each, lesson, lessons),
+            attempt=_attempt(each),
+            derived=each.name("derived") if each.has("derived") else "",
+            place=each.place,
+        )
+        each.finish()
+        yield item
+
+
+def _id(section: Section) -> str:
+    name = section.name("id")
+    if name and not _ID.fullmatch(name):
+        section.error(f"{quoted('id')} is made of small letters, digits and single hyphens", "id")
+    return name
+
+
+def _picture(section: Section) -> tuple[str, ...]:
+    rows = tuple(row.rstrip() for row in section.text("picture", "").rstrip().splitlines())
+    if len(rows) > TALLEST or any(len(row) > WIDEST for row in rows):
+        section.error(f"{quoted('picture')} must fit {WIDEST} columns and {TALLEST} rows", "picture")
+    if not all(row.isascii() for row in rows):
+        section.error(f"{quoted('picture')} is drawn in ASCII: some terminals have nothing else", "picture")
+    return rows
+
+
+def _options(section: Section) -> tuple[Option, ...]:
+    options = []
+    for each in section.sections("options", length=OPTIONS):
+        options.append(Option(each.name("text"), each.text("feedback").strip(), each.flag("right", False)))
+        each.finish()
+    if options and sum(option.right for option in options) != 1:
+        section.error("exactly one option must say right: true", "options")
+    if len({option.text.casefold() for option in options}) < len(options):
+        section.error("two options say the same", "options")
+    return tuple(options)
+
+
+def _see(section: Section, lesson: str, lessons: Collection[str]) -> str:
+    see = section.name("see", lesson)
+    named, _, step = see.partition("/")
+    if named not in lessons:
+        section.error(f"there is no lesson {quoted(named)}: {suggestion(named, lessons)}", "see")
+    elif "/" in see and not step.isdecimal():
+        section.error(f"{quoted('see')} is LESSON or LESSON/STEP, with the step's number", "see")
+    return see
+
+
+def _attempt(section: Section) -> str:
+    command = section.name("try") if section.has("try") else ""
+    if command and not command.startswith("kit "):
+        section.error(f"{quoted('try')} must be a command of the kit", "try")
+    return command
+
+
+def _check_unique(items: list[Item], problems: Problems) -> None:
+    seen: dict[str | int, Item] = {}
+    for item in items:
+        for key, words in (
+            (item.id, f"an item {quoted(item.id)}"),
+            (item.idea, f"an item of idea {item.idea}"),
+        ):
+            if not key:
+                continue
+            if key in seen:
+                problems.add(item.place, f"{words} stands in {seen[key].place} already")
+            seen.setdefault(key, item)

@@ -1,0 +1,176 @@
+"""The quiz: a question, how sure one is, what is said to the answer; one key each, and nothing moves by itself."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import ClassVar, Final
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from kit.school.progress import ProgressError
+from kit.school.quiz.answers import BLANK, NOT_SURE, SURENESS, Choice
+from kit.school.quiz.items import OPTIONS, Item
+from kit.school.quiz.sitting import Sitting
+from kit.school.quiz.words import closing_lines
+from kit.tui.painting import StillScreen
+from kit.tui.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
+from kit.tui.screens.page import Page
+from kit.tui.screens.quiz_keys import ASK_KEYS, LAST_KEYS, OVER_KEYS, QUIZ_HELP, SURE_KEYS, TOLD_KEYS
+from kit.tui.text_rows import Row, TextRows, row, spread
+
+
+class Stage(Enum):
+    """How far one is with a question."""
+
+    ASKED = "asked"
+    CHOSEN = "chosen"
+    TOLD = "told"
+    OVER = "over"
+
+
+_KEYS: Final = {Stage.ASKED: ASK_KEYS, Stage.CHOSEN: SURE_KEYS, Stage.TOLD: TOLD_KEYS, Stage.OVER: OVER_KEYS}
+
+
+class QuizScreen(StillScreen[None]):
+    """Asks what a sitting has ahead. Draws nothing but what a key has changed."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(str(number), f"number({number})", show=False) for number in range(5)),
+        Binding("s", "skip", show=False),
+        Binding("left,backspace", "other", show=False),
+        Binding("n,enter", "next", show=False),
+        Binding("down", "scroll(1)", show=False),
+        Binding("up", "scroll(-1)", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "back", show=False),
+    ]
+    DEFAULT_CSS = """
+    QuizScreen { layout: vertical; }
+    QuizScreen #heading, QuizScreen #said, QuizScreen #keys { height: 1; }
+    QuizScreen #body { height: 1fr; }
+    """
+
+    def __init__(self, sitting: Sitting) -> None:
+        super().__init__()
+        self._sitting = sitting
+        self._item: Item | None = sitting.item
+        self._number = sitting.number
+        self._choice: Choice | None = None
+        self._top = 0
+        self._asked_to_skip = False
+        self.stage = Stage.ASKED if self._item is not None else Stage.OVER
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="body")
+        yield TextRows(id="said")
+        yield TextRows(id="keys")
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    # What is shown
+
+    def _show(self, remark: Row = ()) -> None:
+        if not self.size.width:
+            return
+        room = max(1, self.size.height - 3)
+        body, self._top = window(self._body(), self._top, room)
+        self._rows("heading").show([self._heading()])
+        self._rows("body").show(body)
+        self._rows("said").show([remark])
+        last = self.stage is Stage.TOLD and self._sitting.item is None
+        self._rows("keys").show([LAST_KEYS if last else _KEYS[self.stage]])
+
+    def _heading(self) -> Row:
+        title = row((self._sitting.plan.title, "bold"))
+        if self._item is None or self.stage is Stage.OVER:
+            return title
+        place = (
+            f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.total)}"
+        )
+        return spread(title, row((place, "dim")), self.size.width)
+
+    def _body(self) -> list[Row]:
+        width = self.size.width
+        if self._item is None or self.stage is Stage.OVER:
+            return [row(), *(row(f"  {line}".rstrip()) for line in closing_lines(self._sitting))]
+        told = self.stage is Stage.TOLD
+        rows = [row(), *question_rows(self._item, width)]
+        rows += option_rows(self._item, width, self._choice, told=told)
+        if self.stage is Stage.CHOSEN:
+            rows += sure_rows()
+        elif told and self._choice is not None:
+            rows += told_rows(self._item, self._choice, width)
+        return rows
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_number(self, number: int) -> None:
+        if self.stage is Stage.ASKED and number == 0:
+            self._note(NOT_SURE)
+        elif self.stage is Stage.ASKED and number <= OPTIONS:
+            self._choice = Choice(number - 1)
+            self._go(Stage.CHOSEN)
+        elif self.stage is Stage.CHOSEN and number in SURENESS and self._choice is not None:
+            self._note(self._choice, number)
+
+    def action_skip(self) -> None:
+        if self.stage is not Stage.ASKED:
+            return
+        if self._asked_to_skip:
+            self._note(BLANK)
+        else:
+            self._asked_to_skip = True
+            self._show(row(("  s once more leaves it blank; 0 says that you are not sure", "warn")))
+
+    def action_other(self) -> None:
+        if self.stage is Stage.CHOSEN:
+            self._choice = None
+            self._go(Stage.ASKED)
+
+    def action_next(self) -> None:
+        if self.stage is not Stage.TOLD:
+            return
+        self._item = self._sitting.item
+        self._number = self._sitting.number
+        self._choice = None
+        self._go(Stage.OVER if self._item is None else Stage.ASKED)
+
+    def action_scroll(self, lines: int) -> None:
+        self._top += lines
+        self._show()
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("The quiz", QUIZ_HELP))
+
+    def action_back(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()
+
+    def _note(self, choice: Choice, confidence: int | None = None) -> None:
+        """The answer goes to the disk; only then is anything said of it."""
+        try:
+            self._sitting.answer(choice, confidence)
+        except ProgressError as error:
+            self._show(row((f"  Not kept: {error}", "bad")))
+            return
+        self._choice = choice
+        self._go(Stage.TOLD)
+
+    def _go(self, stage: Stage) -> None:
+        self.stage = stage
+        self._asked_to_skip = False
+        if stage is not Stage.TOLD:
+            self._top = 0
+        else:
+            self._top = 10_000  # what is said stands at the end; where all fits, that is the top
+        self._show()
