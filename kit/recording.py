@@ -73,9 +73,8 @@ class Recording:
         """(k, 3): the poses of a model at every tick at which it was there."""
         starts = np.concatenate([[0], np.cumsum(self.counts)])
         rows = []
-        for (first, names), after in zip(
-            self.models, (*(tick for tick, _ in self.models[1:]), self.ticks), strict=True
-        ):
+        ends = (*(tick for tick, _ in self.models), self.ticks)[1:]  # none at all before the first tick
+        for (first, names), after in zip(self.models, ends, strict=True):
             if model in names:
                 rows.append(starts[first:after] + names.index(model))
         return self.poses[np.concatenate(rows).astype(np.int64)] if rows else np.empty((0, 3))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.cohort.queue import Queue
-from grader.cohort.work import Pool, work
+from grader.cohort.work import TRIES, Pool, give_up, work
 from kit.workspace import write_atomically
 
 SCRIPT: Final = "slurm.sh"
@@ -53,17 +53,30 @@ def by_slurm(queue: Queue, shards: int) -> None:
 
 
 def by_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
-    """On a Dask cluster whose machines all see the queue folder. Only keys travel. Raises CannotRun."""
+    """On a Dask cluster whose machines all see the queue folder. Only keys travel. Raises CannotRun.
+
+    A job that takes its worker with it, again and again, is an incident and has no grade; the others go on.
+    """
     try:
-        from distributed import Client, as_completed
+        from distributed import Client, KilledWorker, as_completed
     except ImportError:
-        raise CannotRun("Dask is not installed: pip install 'robot-learning-kit[cluster]'.") from None
+        raise CannotRun(
+            "Dask is not installed. In the kit's folder: pip install -c constraints.txt -e '.[cluster]'"
+        ) from None
+    if not address:
+        raise CannotRun("Say where the Dask scheduler is: --cluster tcp://HOST:8786")
+    folder = str(queue.folder.absolute())
     with Client(address) as client:
-        futures = client.map(
-            work_key, [str(queue.folder.absolute())] * len(keys), keys, pure=False, retries=1
-        )
+        futures = {client.submit(work_key, folder, key, pure=False, retries=TRIES - 1): key for key in keys}
         for future in as_completed(futures):
-            on_done(future.result())
+            problem = future.exception()
+            if isinstance(problem, KilledWorker):
+                give_up(queue, futures[future])
+            elif problem is not None:
+                raise CannotRun(
+                    f"A worker of the cluster could not grade: {type(problem).__name__}: {problem}"
+                )
+            on_done(futures[future])
 
 
 def work_key(folder: str, key: str) -> str:

@@ -85,7 +85,7 @@ class Pool:
                     _end(worker, now=True)
                     worker = None
                     if attempt == TRIES - 1:
-                        self._queue.keep(key, _incident(self._queue, key))
+                        give_up(self._queue, key)
                 with self._lock:
                     self._on_done(key)
         except Exception as error:  # noqa: BLE001  # a thread's errors are raised where it was started
@@ -125,6 +125,11 @@ def _end(worker: subprocess.Popen[str], *, now: bool = False) -> None:
     with worker, suppress(BrokenPipeError):
         assert worker.stdin is not None
         worker.stdin.close()
+
+
+def give_up(queue: Queue, key: str) -> None:
+    """Keeps for a job that there is no grade, because whoever graded it died."""
+    queue.keep(key, _incident(queue, key))
 
 
 def _incident(queue: Queue, key: str) -> Result:

@@ -7,8 +7,8 @@ from importlib.util import find_spec
 from platform import machine, python_version, system
 
 NEEDED = ("torch", "stable_baselines3", "sb3_contrib")
-INSTALL = "pip install 'robot-learning-kit[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
-"""The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
+INSTALL = "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
+"""In the kit's folder. The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
 RECORDED = ("robot-learning-kit", "torch", "stable-baselines3", "sb3-contrib", "gymnasium", "numpy", "numba")
 
 
@@ -21,7 +21,7 @@ def require_learner() -> None:
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise LearnerMissing(
-            f"Training needs {', '.join(missing)}, which the kit does without otherwise. Install with\n  {INSTALL}\n"
+            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL}\n"
             "Looking at runs, testing and playing trained policies works without."
         )
 

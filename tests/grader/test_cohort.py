@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -195,44 +199,79 @@ def test_what_a_machine_lacks_is_said(queue: Queue, monkeypatch: pytest.MonkeyPa
     with pytest.raises(CannotRun, match="sbatch"):
         by_slurm(queue, 2)
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(CannotRun, match=r"robot-learning-kit\[cluster\]"):
+    with pytest.raises(CannotRun, match=r"'\.\[cluster\]'"):
         by_dask(queue, queue.waiting(), "tcp://nowhere:1", lambda key: None)
     with pytest.raises(QueueError, match="grader cohort"):
         Queue(queue.folder / "none").entries()
 
 
-def test_a_cluster_gets_names_alone(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a stand-in for Dask that runs what it is given here."""
-    distributed = type(sys)("distributed")
+class Future:
+    """A task that is over."""
 
-    class Future:
-        def __init__(self, value: str) -> None:
-            self.value = value
+    def __init__(self, problem: Exception | None) -> None:
+        self._problem = problem
 
-        def result(self) -> str:
-            return self.value
+    def exception(self) -> Exception | None:
+        return self._problem
 
-    class Client:
-        def __init__(self, address: str) -> None:
-            assert address == "tcp://cluster:1"
 
-        def __enter__(self) -> Client:
-            return self
+class StandIn:
+    """For ``distributed``: runs what it is given here, but for one job, which takes its worker with it."""
 
-        def __exit__(self, *error: object) -> None:
-            """Nothing to close."""
+    class KilledWorker(Exception):
+        """What Dask says when a task has ended several workers."""
 
-        def map(self, function: object, *columns: list[str], **options: object) -> list[Future]:
-            assert all(isinstance(each, str) for column in columns for each in column)
-            return [Future(function(*row)) for row in zip(*columns, strict=True)]  # type: ignore[operator]
+    def __init__(self, deadly: str) -> None:
+        self.deadly = deadly
+        self.as_completed = list
 
-    distributed.Client = Client  # type: ignore[attr-defined]  # a stand-in
-    distributed.as_completed = iter  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "distributed", distributed)
+    def Client(self, address: str) -> StandIn:
+        assert address == "tcp://cluster:1"
+        return self
+
+    def __enter__(self) -> StandIn:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Nothing to close."""
+
+    def submit(self, function: Callable[..., str], *names: str, **options: object) -> Future:
+        assert all(isinstance(each, str) for each in names)
+        problem = self.KilledWorker() if names[-1] == self.deadly else None
+        if problem is None:
+            function(*names)
+        return Future(problem)
+
+
+def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
+    queue: Queue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = queue.waiting()
+    monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[1]))  # type: ignore[arg-type]  # a stand-in
     done: list[str] = []
-    by_dask(queue, queue.waiting(), "tcp://cluster:1", done.append)
-    assert len(done) == 4
+    by_dask(queue, keys, "tcp://cluster:1", done.append)
+    assert sorted(done) == sorted(keys)
     assert queue.waiting() == ()
+    verdicts = [result.verdict for key in keys if (result := queue.result(key)) is not None]
+    assert [verdict is Verdict.BROKEN for verdict in verdicts] == [False, True, False, False]
+    with pytest.raises(CannotRun, match="--cluster"):
+        by_dask(queue, keys, "", done.append)
+
+
+@pytest.mark.skipif(find_spec("distributed") is None, reason="the extra `cluster` is not installed")
+def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
+    """Two workers, each a process that Dask started."""
+    from distributed import LocalCluster
+
+    other = Queue(tmp_path / "other")
+    prepare(other, tmp_path / "in", queue.assignment(), TERMS)
+    locally(other, other.waiting(), 1, lambda key: None)
+    done: list[str] = []
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
+    with LocalCluster(**options, local_directory=str(tmp_path)) as cluster:
+        by_dask(queue, queue.waiting(), cluster.scheduler_address, done.append)
+    assert len(done) == 4
+    assert as_json(rows(queue)) == as_json(rows(other))
 
 
 @LOCKS
@@ -282,21 +321,58 @@ def test_the_command_makes_a_gradebook_and_goes_on(tmp_path: Path) -> None:
     assert (tmp_path / "queue" / "gradebook.json").read_bytes() == before
 
 
+def results(tmp_path: Path) -> int:
+    """How many there are so far."""
+    return len(list((tmp_path / "queue" / "results").glob("*.json")))
+
+
+def below(folder: Path) -> set[int]:
+    """Processes that work in this folder."""
+    found = set()
+    for entry in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):  # over, or another user's
+            if (entry / "cwd").resolve().is_relative_to(folder):
+                found.add(int(entry.name))
+    return found
+
+
 @pytest.mark.long
-def test_killed_at_twenty_moments_and_resumed(tmp_path: Path) -> None:
+@pytest.mark.timeout(900)
+def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The gradebook of a cohort that was killed again and again is that of one that was left in peace."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))  # where every program that is graded works
     write_assignment(tmp_path / "quick")
-    submissions(tmp_path / "in", 40)
+    submissions(tmp_path / "in", 70)
     subprocess.run(command(tmp_path), capture_output=True, check=True)
     undisturbed = (tmp_path / "queue" / "gradebook.json").read_bytes()
-    subprocess.run(["rm", "-r", str(tmp_path / "queue")], check=True)
+    whole = results(tmp_path)
+    shutil.rmtree(tmp_path / "queue")
     chance = random.Random(7)
-    for _ in range(20):
+    for number in range(20):
+        before = results(tmp_path)
         running = subprocess.Popen(
             command(tmp_path), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
         )
-        time.sleep(chance.uniform(0.2, 3.0))
-        os.killpg(running.pid, signal.SIGKILL)
+        if number % 2:  # while it grades
+            wanted = before + chance.randint(1, 4)
+            while results(tmp_path) < wanted and running.poll() is None:
+                time.sleep(0.005)
+            time.sleep(chance.uniform(0.0, 0.2))
+        else:  # while it starts, looks through what was handed in, or begins to grade
+            time.sleep(chance.uniform(0.0, 1.5))
+        assert running.poll() is None, "it was killed at work"
+        if number % 3:
+            os.killpg(running.pid, signal.SIGKILL)
+        else:  # its workers find out by themselves
+            running.kill()
         running.wait()
+    assert 10 <= results(tmp_path) < whole, "every kill came in the middle"
     subprocess.run(command(tmp_path), capture_output=True, check=True)
     assert (tmp_path / "queue" / "gradebook.json").read_bytes() == undisturbed
+    if sys.platform == "linux":
+        deadline = time.monotonic() + 20
+        while below(scratch) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        assert below(scratch) == set(), "nothing that was graded outlives its grader"

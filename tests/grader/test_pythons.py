@@ -67,6 +67,7 @@ def graded(python: str, folder: Path, queue: Path, *, level: Level, jobs: int) -
 
 
 @pytest.mark.long
+@pytest.mark.timeout(900)
 @LOCKS
 def test_levels_pythons_and_jobs_do_not_change_points(tmp_path: Path) -> None:
     levels = [rung.level for rung in probe() if rung.is_available and rung.level <= Level.SEPARATE]
