@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -51,7 +51,8 @@ class Answers:
     def latest(self, question: str, phase: Phase) -> Value:
         """What was said in this phase; else in the other one."""
         other = Phase.BEFORE if phase is Phase.AFTER else Phase.AFTER
-        return self.given.get((phase, question), self.given.get((other, question)))
+        where = phase if self.has(question, phase) else other
+        return self.value(question, where)
 
     def has(self, question: str, phase: Phase) -> bool:
         """Whether it was answered or left blank on purpose."""
@@ -64,9 +65,7 @@ class Answers:
 def applies(question: Question, answers: Answers, phase: Phase) -> bool:
     """Whether the question is asked of this student."""
     rule = question.only_if
-    return phase in question.phases and (
-        rule is None or rule.allows(answers.latest(rule.question, phase))
-    )
+    return phase in question.phases and (rule is None or rule.allows(answers.latest(rule.question, phase)))
 
 
 def asked(form: Form, answers: Answers, phase: Phase) -> list[Question]:
@@ -112,4 +111,9 @@ def _text(question: Question, text: str) -> str:
     return text
 
 
-_PARSERS: Final = {Shape.SCALE: _scale, Shape.CHOICE: _choice, Shape.YES_NO: _yes_no, Shape.TEXT: _text}
+_PARSERS: Final[Mapping[Shape, Callable[[Question, str], Value]]] = {
+    Shape.SCALE: _scale,
+    Shape.CHOICE: _choice,
+    Shape.YES_NO: _yes_no,
+    Shape.TEXT: _text,
+}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Final
+from typing import Final, TypeGuard
 
 LOWEST: Final = 1
 HIGHEST: Final = 7
@@ -82,7 +82,7 @@ class Question:
     options: tuple[str, ...] = ()
     only_if: Rule | None = None
 
-    def accepts(self, value: object) -> bool:
+    def accepts(self, value: object) -> TypeGuard[Value]:
         """Whether a stored value can be an answer to this question; a blank can."""
         if value is None:
             return True

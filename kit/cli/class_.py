@@ -1,0 +1,232 @@
+"""``kit class``: what a class did and did not learn, and the dissertation's own evaluation computed anew."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.school.cohort.document import Report
+    from kit.school.cohort.measures import Item
+
+WAYS = ("mean", "half", "scale")
+
+EMPTY = 1
+"""Exit code of ``report``: no file held a student's progress."""
+
+
+@click.group()
+def command() -> None:
+    """Reports on a class.
+
+    \b
+    kit class report FILES...    from the progress files that students handed in
+    kit class study              the dissertation's tables beside ours, from its raw answers
+
+    A student makes such a file with `kit progress export FILE`.
+    """
+
+
+def _outputs(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Where else than on the terminal a report goes."""
+    for option in (
+        click.option("--glyphs", type=click.Choice(["unicode", "ascii"]), help="What bars are drawn with."),
+        click.option(
+            "--json",
+            "json_file",
+            metavar="FILE",
+            type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
+            help="Everything for machines; - is standard output.",
+        ),
+        click.option(
+            "--csv",
+            "csv_folder",
+            metavar="FOLDER",
+            type=click.Path(file_okay=False, path_type=Path),
+            help="A file a table.",
+        ),
+        click.option(
+            "--html",
+            "html_file",
+            metavar="FILE",
+            type=click.Path(dir_okay=False, path_type=Path),
+            help="One page, with plots.",
+        ),
+        click.option(
+            "--svg",
+            "svg_folder",
+            metavar="FOLDER",
+            type=click.Path(file_okay=False, path_type=Path),
+            help="A picture a plot.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+@command.command()
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--division",
+    type=click.Choice(WAYS),
+    default="mean",
+    show_default=True,
+    help="Beginners and experts: at the mean score, into halves, or at 3.5, half of the scale.",
+)
+@click.option("--names", is_flag=True, help="Call students by their names instead of S1, S2, ...")
+@click.option("--only", metavar="CHAPTERS", help="Only these, with commas between: quiz,items.")
+@_outputs
+def report(
+    files: tuple[Path, ...],
+    division: str,
+    names: bool,
+    only: str | None,
+    svg_folder: Path | None,
+    html_file: Path | None,
+    csv_folder: Path | None,
+    json_file: Path | None,
+    glyphs: str | None,
+) -> None:
+    """Print what a class knew, learned, found hard and got right, from FILES that its students exported.
+
+    A folder stands for every .json file in it. Files that cannot be read are named and left out; two files of one
+    student count once. Students are called S1, S2, ... unless --names is given.
+    """
+    from kit.school.cohort.gathering import gather
+    from kit.school.cohort.report import CHAPTERS, class_report, set_up
+    from kit.school.cohort.roll import read_roll
+    from kit.school.survey.reading import read_form
+    from kit.world.problems import suggestion
+
+    wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
+    for each in wanted:
+        if each not in CHAPTERS:
+            options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTERS)}")
+    with _mistakes_explained():
+        roll = read_roll(files, names=names)
+        if not roll.students:
+            click.echo("\n".join(roll.cautions), err=True)
+            click.echo("No file holds a student's progress. `kit progress export FILE` makes one.", err=True)
+            raise SystemExit(EMPTY)
+        data = gather(roll, read_form(), _items())
+        made = class_report(set_up(data, way=division), roll.files, wanted)
+        _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+
+
+@command.command()
+@click.option(
+    "--whole", is_flag=True, help="Also every chapter that a class gets, from the dissertation's answers."
+)
+@_outputs
+def study(
+    whole: bool,
+    svg_folder: Path | None,
+    html_file: Path | None,
+    csv_folder: Path | None,
+    json_file: Path | None,
+    glyphs: str | None,
+) -> None:
+    """Print the dissertation's Tables 5.4 to 5.9 beside ours, computed from its raw answers; its slips by name."""
+    from kit.study.evaluation_data import read_study
+    from kit.study.evaluation_report import study_report
+
+    with _mistakes_explained():
+        made = study_report(read_study(), whole=whole)
+        _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
+
+
+def _items() -> Mapping[str, Item]:
+    """The questions of the kit's quiz with their options; none where the lessons are not there."""
+    from kit.school.cohort.measures import Item
+    from kit.school.quiz.reading import read_bank
+
+    try:
+        bank = read_bank()
+    except FileNotFoundError:
+        return {}
+    ordered = (*bank.twelve, *(item for item in bank.items if not item.idea))
+    return {
+        item.id: Item(item.id, item.topic.value, tuple(option.text for option in item.options))
+        for item in ordered
+    }
+
+
+def _give_out(
+    made: Report,
+    svg_folder: Path | None,
+    html_file: Path | None,
+    csv_folder: Path | None,
+    json_file: Path | None,
+    glyphs: str | None,
+) -> None:
+    """Writes the files that were asked for; the terminal gets the text unless JSON goes there."""
+    from kit.school.cohort.as_data import as_csv, as_json
+    from kit.school.cohort.as_html import as_html
+    from kit.school.cohort.as_svg import as_svg
+    from kit.school.cohort.as_text import ASCII, BLOCKS, rows_of
+
+    to_terminal = json_file is not None and str(json_file) == "-"
+    files: dict[Path, str] = {}
+    if svg_folder is not None:
+        files |= {svg_folder / f"{plot.id}.svg": as_svg(plot) for plot in made.plots}
+    if csv_folder is not None:
+        files |= {csv_folder / f"{table.id}.csv": as_csv(table) for table in made.tables}
+    if html_file is not None:
+        files[html_file] = as_html(made)
+    if json_file is not None and not to_terminal:
+        files[json_file] = as_json(made)
+    for folder in (svg_folder, csv_folder):
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+    if to_terminal:
+        click.echo(as_json(made), nl=False)
+    else:
+        chosen = ASCII if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCKS
+        click.echo("\n".join(rows_of(made, chosen)))
+    _write(files)
+
+
+def _write(files: Mapping[Path, str]) -> None:
+    """Each whole or not at all; says what was written."""
+    from kit.workspace import write_atomically
+
+    for file, text in files.items():
+        write_atomically(file, text.encode("utf-8", errors="replace"))
+    if files:
+        places = sorted(
+            {str(file.parent) if file.suffix in (".svg", ".csv") else str(file) for file in files}
+        )
+        click.echo(f"Written: {', '.join(places)}", err=True)
+
+
+def _can_blocks() -> bool:
+    """Whether what is printed here may hold more than ASCII."""
+    decided = options.terminal().glyphs.value
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    try:
+        "█▒░·".encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return decided != "ascii"
+
+
+@contextmanager
+def _mistakes_explained() -> Iterator[None]:
+    from kit.school.progress import ProgressError
+    from kit.world.problems import WorldError
+
+    try:
+        yield
+    except BrokenPipeError:
+        raise  # whoever read the output has enough; click ends quietly
+    except OSError as error:
+        options.fail(f"{options.reason(error)}.")
+    except (ProgressError, WorldError) as error:
+        options.fail(str(error))

@@ -1,0 +1,1 @@
+"""The chapters of a class's report: each turns a class's numbers into tables, plots and cautions."""

@@ -1,0 +1,159 @@
+"""The students of a class, from the files they exported: each once, and what could not be read said plainly."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from kit.school.progress import Event, Kind, ProgressError, read_export
+from kit.world.problems import displayable
+
+LARGEST: Final = 100_000_000
+"""Bytes of one file: a year of a student's work is a hundredth of it."""
+LONGEST_NAME: Final = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Student:
+    """One student, perhaps of several files."""
+
+    label: str
+    """What the report calls them: a number, or their name if that was asked for."""
+    files: tuple[Path, ...]
+    events: tuple[Event, ...]
+    """In the order of their time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roll:
+    """A class, and what was noticed while reading it."""
+
+    students: tuple[Student, ...]
+    files: int
+    """How many were found, readable or not."""
+    cautions: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class _Found:
+    """A student while files are being put together."""
+
+    files: list[Path]
+    events: dict[str, Event]
+    name: str
+
+
+def read_roll(paths: Sequence[Path], *, names: bool = False) -> Roll:
+    """Reads every file, and every ``.json`` file directly in a folder; goes on past those that cannot be read.
+
+    ``names``: students are called by the name they gave, else by their file's; otherwise S1, S2, ... in an order
+    that tells nothing of them.
+    """
+    cautions: list[str] = []
+    files = list(_files(paths, cautions))
+    found: list[_Found] = []
+    for file in files:
+        _take(file, found, cautions)
+    found.sort(key=lambda each: hashlib.sha256(min(each.events).encode()).digest())
+    cautions += _namesakes(found)
+    width = len(str(len(found)))
+    labels = [each.name or each.files[0].stem for each in found] if names else []
+    labels = list(_told_apart(labels)) or [f"S{number:0{width}}" for number in range(1, len(found) + 1)]
+    students = (
+        Student(label, tuple(each.files), tuple(sorted(each.events.values(), key=lambda event: event.time)))
+        for label, each in zip(labels, found, strict=True)
+    )
+    return Roll(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(cautions))
+
+
+def _files(paths: Iterable[Path], cautions: list[str]) -> Iterator[Path]:
+    """Each file once, by whatever name it was given."""
+    seen: set[Path] = set()
+    for path in paths:
+        inside = sorted(path.glob("*.json")) if path.is_dir() else [path]
+        if not inside:
+            cautions.append(f"{path}: there is no .json file in this folder.")
+        for file in inside:
+            real = file.resolve()
+            if real in seen:
+                cautions.append(f"{file}: was named twice, and is read once.")
+            else:
+                seen.add(real)
+                yield file
+
+
+def _take(file: Path, found: list[_Found], cautions: list[str]) -> None:
+    """Reads a file, and puts it to the student whose entries it shares, if there is one."""
+    try:
+        if file.is_file() and file.stat().st_size > LARGEST:
+            raise ProgressError(
+                f"{file}: is larger than {LARGEST // 1_000_000} MB; no export of progress is."
+            )
+        events = {event.uid: event for event in read_export(file)}
+    except ProgressError as error:
+        cautions.append(f"{error} It is left out.")
+        return
+    except (RecursionError, OSError) as error:
+        cautions.append(f"{file}: is not an export of progress ({error}). It is left out.")
+        return
+    if not events:
+        cautions.append(f"{file}: holds no entry yet. It is left out.")
+        return
+    name = _name(events.values())
+    for other in found:
+        shared = events.keys() & other.events.keys()
+        if not shared:
+            continue
+        if name and other.name and name != other.name:
+            cautions.append(
+                f"{file}: shares {_entries(len(shared))} with {other.files[0]}, but they name different students. "
+                "They are kept apart, and count what they share twice."
+            )
+            continue
+        cautions.append(
+            f"{file}: is of the same student as {other.files[0]} ({_entries(len(shared))} in common). "
+            "The two are put together."
+        )
+        other.files.append(file)
+        other.events.update(events)
+        other.name = _name(other.events.values())
+        return
+    found.append(_Found([file], events, name))
+
+
+def _name(events: Iterable[Event]) -> str:
+    """The last name that the student gave; empty if none."""
+    given = [each for each in events if each.kind is Kind.ABOUT and each.subject == "name"]
+    last = max(given, key=lambda each: each.time, default=None)
+    value = last.content.get("value") if last is not None else None
+    if not isinstance(value, str):
+        return ""
+    return "".join(c if displayable(c) else " " for c in value).strip()[:LONGEST_NAME]
+
+
+def _namesakes(found: Sequence[_Found]) -> Iterator[str]:
+    by_name: dict[str, list[_Found]] = {}
+    for each in found:
+        by_name.setdefault(each.name.casefold(), []).append(each)
+    for name, some in sorted(by_name.items()):
+        if name and len(some) > 1:
+            files = ", ".join(sorted(str(each.files[0]) for each in some))
+            yield (
+                f"{files}: give the same name but share no entry. They count as {len(some)} students; "
+                "leave one out if it is one who began anew."
+            )
+
+
+def _told_apart(labels: Sequence[str]) -> Iterator[str]:
+    """The same labels, those that come again with a number."""
+    count: dict[str, int] = {}
+    for label in labels:
+        count[label] = count.get(label, 0) + 1
+        yield label if count[label] == 1 else f"{label} ({count[label]})"
+
+
+def _entries(count: int) -> str:
+    return "1 entry" if count == 1 else f"{count} entries"

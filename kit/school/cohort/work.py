@@ -1,0 +1,129 @@
+"""What students did in the lessons: how far they came, how often they tried, what they earned, how long it took."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import timedelta
+from typing import Any, Final
+
+from kit.school.progress import Event, Kind
+
+PAUSE: Final = timedelta(minutes=10)
+"""Whoever does nothing for longer is taken to be away; that time is not counted."""
+
+_OF_LESSONS: Final = frozenset({Kind.STEP, Kind.PREDICTION, Kind.ATTEMPT, Kind.HINT, Kind.SOLUTION})
+
+
+@dataclass(slots=True)
+class ExerciseWork:
+    """One exercise of one student."""
+
+    attempts: int = 0
+    """Without those that broke on our side."""
+    points: float = 0.0
+    """The best."""
+    max_points: float = 0.0
+    passed: bool = False
+    tries_to_pass: int | None = None
+    lost: Counter[str] = field(default_factory=Counter)
+    """How often each criterion was lost."""
+    hints: int = 0
+    solution: bool = False
+
+
+@dataclass(slots=True)
+class LessonWork:
+    """One lesson of one student."""
+
+    steps: set[str] = field(default_factory=set)
+    minutes: float = 0.0
+    predictions: int = 0
+    predicted_right: int = 0
+    exercises: dict[str, ExerciseWork] = field(default_factory=dict)
+
+    @property
+    def attempts(self) -> int:
+        return sum(each.attempts for each in self.exercises.values())
+
+    @property
+    def hints(self) -> int:
+        return sum(each.hints for each in self.exercises.values())
+
+    @property
+    def points(self) -> float:
+        return sum(each.points for each in self.exercises.values())
+
+    @property
+    def max_points(self) -> float:
+        """Of what was tried."""
+        return sum(each.max_points for each in self.exercises.values())
+
+    @property
+    def passed(self) -> int:
+        return sum(each.passed for each in self.exercises.values())
+
+
+Work = Mapping[str, LessonWork]
+"""By lesson."""
+
+
+def work_of(events: Sequence[Event]) -> Work:
+    """One student's work; ``events`` in the order of their time."""
+    lessons: dict[str, LessonWork] = {}
+    before: tuple[str, Event] | None = None
+    for event in events:
+        if event.kind not in _OF_LESSONS:
+            continue
+        name, _, rest = event.subject.partition("/")
+        lesson = lessons.setdefault(name, LessonWork())
+        if before is not None and before[0] == name and event.time - before[1].time <= PAUSE:
+            lesson.minutes += (event.time - before[1].time).total_seconds() / 60
+        before = name, event
+        _note(lesson, event.kind, rest, event.content)
+    return lessons
+
+
+def _note(lesson: LessonWork, kind: Kind, rest: str, content: Mapping[str, Any]) -> None:
+    if kind is Kind.STEP:
+        lesson.steps.add(rest)
+    elif kind is Kind.PREDICTION:
+        lesson.predictions += 1
+        lesson.predicted_right += content.get("right") is True
+    else:
+        exercise = lesson.exercises.setdefault(rest.partition("/")[0], ExerciseWork())
+        if kind is Kind.ATTEMPT:
+            _attempt(exercise, content)
+        elif kind is Kind.HINT:
+            exercise.hints += 1
+        else:
+            exercise.solution = True
+
+
+def _attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
+    verdict = content.get("verdict")
+    if verdict not in ("pass", "fail"):
+        return  # the check itself broke, or nobody knows
+    exercise.attempts += 1
+    most = _number(content.get("max_points"))
+    exercise.max_points = max(exercise.max_points, most)
+    exercise.points = max(exercise.points, min(_number(content.get("points")), most))
+    if verdict == "pass" and not exercise.passed:
+        exercise.passed, exercise.tries_to_pass = True, exercise.attempts
+    lost = content.get("lost")
+    if isinstance(lost, list):
+        exercise.lost.update({each for each in lost if isinstance(each, str)})
+
+
+def _number(value: object) -> float:
+    """A finite number of at least 0; 0 for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return 0.0
+    return max(0.0, float(value))
+
+
+def lessons_of(works: Iterable[Work]) -> tuple[str, ...]:
+    """Every lesson that anybody began, by name."""
+    return tuple(sorted({name for work in works for name in work}))

@@ -1,0 +1,207 @@
+"""The dissertation's evaluation of its kit: its raw answers, the tables it prints of them, and what they come to.
+
+Tables 5.4 to 5.9 and the text's numbers are computed anew from appendix B.3, by the same code that makes a class's
+report, and laid beside the print. Where the two differ, the data file says so and why; anything else is a mistake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from kit.arrays import Floats
+from kit.school.cohort.chapters.setting import Setting
+from kit.school.cohort.expertise import WAYS
+from kit.school.cohort.gathering import ClassData
+from kit.school.cohort.inference import summary
+from kit.school.cohort.measures import Measure, Quiz
+from kit.school.cohort.report import set_up
+from kit.school.survey.questions import Phase, Purpose
+from kit.study.evaluation_data import Printed, Study
+
+Grid = dict[str, tuple[float, ...]]
+"""The numbers of a table by the labels of its rows."""
+
+HALF_A_DIGIT: Final = 0.005 + 1e-9
+"""A number printed with two decimals lies no farther from what was computed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A printed number that the raw answers do not give."""
+
+    table: str
+    row: str
+    column: str
+    printed: float
+    ours: float
+
+
+def setting_of(study: Study) -> Setting:
+    """The dissertation's subjects as a class, divided at the mean score."""
+    names = tuple(str(number) for number in range(1, study.subjects + 1))
+    data = ClassData(
+        names,
+        study.ratings,
+        study.quiz,
+        later=study.quiz.nobody(),
+        bank=Quiz((), {}),
+        work=tuple({} for _ in names),
+        remarks=(),
+        counted=(),
+        cautions=(),
+    )
+    return set_up(data)
+
+
+def recompute(study: Study) -> Mapping[str, Grid]:
+    """Every printed table from the raw answers, by its number."""
+    setting = setting_of(study)
+    return {printed.id: _TABLES[printed.id](setting) for printed in study.printed}
+
+
+def differences(study: Study) -> tuple[Difference, ...]:
+    """All numbers that differ by more than rounding, known slips and others."""
+    ours = recompute(study)
+    return tuple(
+        Difference(table.id, row, column, printed, computed)
+        for table in study.printed
+        for row, numbers in table.rows.items()
+        for column, printed, computed in zip(table.columns, numbers, ours[table.id][row], strict=True)
+        if abs(printed - computed) > HALF_A_DIGIT
+    )
+
+
+def unexplained(study: Study) -> tuple[Difference, ...]:
+    """Those that are not known as slips, or are known with another value."""
+    known = {(slip.table, cell.row, cell.column): cell.ours for slip in study.slips for cell in slip.cells}
+    return tuple(
+        each
+        for each in differences(study)
+        if abs(known.get((each.table, each.row, each.column), np.inf) - each.ours) > HALF_A_DIGIT
+    )
+
+
+def order_of_scores(setting: Setting) -> list[int]:
+    """The subjects, from 0, in the order of Table 5.4: the highest score first."""
+    assert setting.score is not None  # everybody rated the six topics
+    return [int(i) for i in np.argsort(-setting.score, kind="stable")]
+
+
+def _scores(setting: Setting) -> Grid:
+    """Table 5.4. An expert is 1, a beginner 0."""
+    assert setting.score is not None
+    found = {each.id: each.experts.members for each in setting.divisions}
+    return {
+        str(place): (float(setting.score[i]), *(float(found[way][i]) for way in WAYS))
+        for place, i in enumerate(order_of_scores(setting), 1)
+    }
+
+
+def _divisions(setting: Setting) -> Grid:
+    """Table 5.5."""
+    assert setting.score is not None
+    names = {"scale": "at 3.5", "half": "in half", "mean": "at M"}
+    grid: Grid = {}
+    for each in setting.divisions:
+        numbers: list[float] = []
+        for group in each.groups:
+            found = summary(setting.score[group.members])
+            numbers += [found.n, found.mean, found.sd]
+        grid[names[each.id]] = tuple(numbers)
+    return grid
+
+
+def _spread(setting: Setting, measures: Sequence[Floats]) -> Grid:
+    """M and SD of each group, a column for each measure."""
+    grid: Grid = {}
+    for group in setting.groups:
+        found = [summary(values[group.members]) for values in measures]
+        grid[f"{group.name} M"] = tuple(each.mean for each in found)
+        grid[f"{group.name} SD"] = tuple(each.sd for each in found)
+    return grid
+
+
+def _outcomes(topic: str) -> Callable[[Setting], Grid]:
+    """Tables 5.6 and 5.7."""
+
+    def table(setting: Setting) -> Grid:
+        measures = setting.data.ratings.of_topic(Purpose.OUTCOME, Phase.AFTER, topic)
+        return _spread(setting, [each.values for each in measures])
+
+    return table
+
+
+def _questions(setting: Setting) -> Grid:
+    """Table 5.8."""
+    quiz = setting.data.quiz
+    return {
+        item.id: tuple(float(quiz.right(item)[group.members].mean()) for group in setting.groups)
+        for item in quiz.items
+    }
+
+
+def _quiz_topics(setting: Setting) -> Grid:
+    """Table 5.9."""
+    quiz = setting.data.quiz
+    return _spread(setting, [*(quiz.share(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score])
+
+
+def _text(setting: Setting) -> Grid:
+    """The numbers of the running text of 5.3.1 to 5.3.4."""
+    ratings = setting.data.ratings
+    prior = _by_topic(ratings.by_topic(Purpose.EXPERIENCE, Phase.BEFORE))
+    gained = _by_topic(ratings.by_topic(Purpose.GAINED, Phase.AFTER))
+    hard = _by_topic(ratings.by_topic(Purpose.DIFFICULTY, Phase.AFTER))
+    told = _by_topic(ratings.by_topic(Purpose.EXPLANATION, Phase.AFTER))
+    of = {"prior": _mean(prior), "gained": _mean(gained)}
+    of |= {"difficulty": _mean(hard), "explanation": _mean(told)}
+    assert setting.score is not None
+    rows: dict[str, Floats] = {
+        "prior, Robotics": prior["robotics"],
+        "prior, ROS 1": prior["ros1"],
+        "prior, ROS 2": prior["ros2"],
+        "prior, all six": of["prior"],
+        "expertise score": setting.score,
+        "difficulty, RL": hard["rl"],
+        "difficulty, ROS 2": hard["ros2"],
+        "explanation, ROS 2": told["ros2"],
+    }
+    for what, group in ((w, g) for w in ("gained", "difficulty", "explanation") for g in setting.groups):
+        rows[f"{what}, {group.name}"] = of[what][group.members]
+    return {name: (found.mean, found.sd) for name, values in rows.items() for found in [summary(values)]}
+
+
+def _by_topic(measures: Sequence[Measure]) -> dict[str, Floats]:
+    return {each.id: each.values for each in measures}
+
+
+def _mean(measures: Mapping[str, Floats]) -> Floats:
+    """Each subject's mean over topics; nobody left one of these blank."""
+    mean: Floats = np.stack(list(measures.values())).mean(axis=0)
+    return mean
+
+
+_TABLES: Final[Mapping[str, Callable[[Setting], Grid]]] = {
+    "5.4": _scores,
+    "5.5": _divisions,
+    "5.6": _outcomes("teleop"),
+    "5.7": _outcomes("rl"),
+    "5.8": _questions,
+    "5.9": _quiz_topics,
+    "text": _text,
+}
+
+
+def is_slip(study: Study, table: Printed, row: str) -> tuple[str, ...]:
+    """The columns of a row in which the print is known to be wrong."""
+    return tuple(
+        cell.column
+        for slip in study.slips
+        if slip.table == table.id
+        for cell in slip.cells
+        if cell.row == row
+    )

@@ -1,0 +1,165 @@
+"""``evaluation.yaml`` becomes records: the raw answers of appendix B.3, the printed tables, their known slips."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from kit.arrays import Floats
+from kit.school.cohort.measures import BLANK, Item, Quiz, Ratings, Reply
+from kit.school.quiz.answers import Outcome
+from kit.school.survey.questions import HIGHEST, LOWEST, Phase, Purpose, Question
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, quoted
+from kit.world.records import Place
+from kit.world.section import Section
+
+FILE: Final = Path(__file__).with_name("evaluation.yaml")
+
+MISSING: Final = "-"
+
+_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
+_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
+_PURPOSES: Final = {each.value: each for each in Purpose}
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A table as the dissertation prints it."""
+
+    id: str
+    title: str
+    columns: tuple[str, ...]
+    rows: Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class SlipCell:
+    """One printed number that is wrong."""
+
+    row: str
+    column: str
+    ours: float
+    """What the raw answers give, to two decimals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slip:
+    """Printed numbers that are wrong for one reason."""
+
+    table: str
+    why: str
+    cells: tuple[SlipCell, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """All that is known of the evaluation."""
+
+    subjects: int
+    ratings: Ratings
+    quiz: Quiz
+    printed: tuple[Printed, ...]
+    slips: tuple[Slip, ...]
+
+
+def read_study(file: Path = FILE) -> Study:
+    """Raises WorldError with all mistakes of the file."""
+    problems = Problems()
+    section = Documents(Enclosure.around(file), {}, problems).section(file, Place(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    subjects = section.integer("subjects", minimum=2)
+    study = Study(
+        subjects,
+        _ratings(section.sections("ratings", at_least=1), subjects),
+        _quiz(section.sections("quiz", at_least=1), subjects),
+        tuple(_printed(each) for each in section.sections("printed")),
+        tuple(_slip(each) for each in section.sections("slips")),
+    )
+    section.finish()
+    problems.raise_if_any()
+    return study
+
+
+def _ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
+    questions: list[Question] = []
+    values: dict[tuple[Phase, str], Floats] = {}
+    for section in sections:
+        purpose = section.choice("purpose", _PURPOSES) or Purpose.WORDS
+        if not section.flag("counted", True):
+            purpose = Purpose.BACKGROUND
+        phase = Phase.BEFORE if purpose is Purpose.EXPERIENCE else Phase.AFTER
+        made = Question(
+            f"q{section.integer('n', minimum=1)}",
+            section.name("text"),
+            purpose,
+            topic=section.name("topic"),
+            phases=(phase,),
+        )
+        questions.append(made)
+        answers = _answers(section, subjects, HIGHEST)
+        values[phase, made.id] = np.array([np.nan if each is None else float(each) for each in answers])
+        section.finish()
+    return Ratings(tuple(questions), values)
+
+
+def _quiz(sections: tuple[Section, ...], subjects: int) -> Quiz:
+    items: list[Item] = []
+    replies: dict[str, tuple[Reply | None, ...]] = {}
+    for section in sections:
+        topic = section.name("topic")
+        item = Item(f"{_TITLES.get(topic, topic)} {section.name('question')}", topic)
+        keys = {int(word) for word in section.name("keys").split() if word.isdigit()}
+        items.append(item)
+        replies[item.id] = tuple(
+            BLANK if each is None else Reply(Outcome.RIGHT if each in keys else Outcome.WRONG, each - 1)
+            for each in _answers(section, subjects, 4)
+        )
+        section.finish()
+    return Quiz(tuple(items), replies)
+
+
+def _answers(section: Section, subjects: int, highest: int) -> list[int | None]:
+    """One for each subject; None for a blank."""
+    words = section.name("answers").split()
+    right = [word == MISSING or (word.isdigit() and LOWEST <= int(word) <= highest) for word in words]
+    if len(words) != subjects or not all(right):
+        section.error(
+            f'"answers" must be {subjects} numbers from {LOWEST} to {highest}, or {quoted(MISSING)}',
+            "answers",
+        )
+        return [None] * subjects
+    return [None if word == MISSING else int(word) for word in words]
+
+
+def _printed(section: Section) -> Printed:
+    columns = section.texts("columns", at_least=1)
+    rows: dict[str, tuple[float, ...]] = {}
+    for row in section.texts("rows", at_least=1):
+        label, _, rest = row.partition("|")
+        try:
+            numbers = tuple(_LETTERS[word] if word in _LETTERS else float(word) for word in rest.split())
+        except ValueError:
+            numbers = ()
+        if len(numbers) != len(columns):
+            section.error(f"{quoted(row)} must be LABEL | {len(columns)} numbers", "rows")
+        rows[label.strip()] = numbers
+    made = Printed(section.name("id"), section.name("title"), columns, rows)
+    section.finish()
+    return made
+
+
+def _slip(section: Section) -> Slip:
+    cells = []
+    for each in section.sections("cells", at_least=1):
+        cells.append(SlipCell(each.name("row"), each.name("column"), each.number("ours")))
+        each.finish()
+    made = Slip(section.name("table"), section.name("why"), tuple(cells))
+    section.finish()
+    return made

@@ -1,0 +1,218 @@
+"""The dissertation's tables beside ours, the slips by name, and what its numbers bear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from kit.school.cohort.chapters import people, quiz, relations
+from kit.school.cohort.chapters.setting import Setting
+from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Report, Style, Table, Text
+from kit.school.cohort.inference import summary
+from kit.school.cohort.items import analyse
+from kit.school.cohort.report import chapters
+from kit.study.evaluation import (
+    Difference,
+    Grid,
+    differences,
+    order_of_scores,
+    recompute,
+    setting_of,
+    unexplained,
+)
+from kit.study.evaluation_data import Printed, Study
+
+LETTERS: Final = ("B", "E")
+WITH_GROUPS: Final = "5.4"
+COUNTS: Final = ("B n", "E n")
+WIDE: Final = 4
+"""Columns from which print and ours stand one below the other."""
+
+
+def study_report(study: Study, *, whole: bool = False) -> Report:
+    """``whole``: also every chapter that a class gets, from the dissertation's raw answers."""
+    setting = setting_of(study)
+    more = chapters(setting) if whole else ()
+    return Report(
+        "The dissertation's evaluation, from its raw answers (appendix B.3)",
+        (_beside(study, setting), _slips(study), _bearing(study, setting), *more),
+    )
+
+
+def _beside(study: Study, setting: Setting) -> Chapter:
+    ours = recompute(study)
+    blocks: list[Block] = [
+        Text(
+            "Each table as printed, and as the raw answers give it. SD is of the sample (n - 1); a blank of the quiz "
+            "counts as not right; both as the dissertation has it."
+        )
+    ]
+    wrong = differences(study)
+    blocks += [_table(table, ours[table.id], wrong, setting) for table in study.printed]
+    return Chapter("printed", "Printed and computed", tuple(blocks))
+
+
+def _table(table: Printed, ours: Grid, wrong: Sequence[Difference], setting: Setting) -> Table:
+    name = f"Table {table.id}" if table.id != "text" else "Text"
+    identity = f"table-{table.id.replace('.', '-')}"
+    title = f"{name}. {table.title}"
+    letters = table.id == WITH_GROUPS
+    found = {(each.row, each.column) for each in wrong if each.table == table.id}
+
+    def cells(row: tuple[float, ...]) -> Iterator[Cell]:
+        for value, column in zip(row, table.columns, strict=True):
+            if letters and column != table.columns[0]:
+                yield LETTERS[int(value)]
+            else:
+                yield int(value) if column in COUNTS else value
+
+    def verdict(row: str) -> str:
+        slips = [column for column in table.columns if (row, column) in found]
+        return f"differs: {', '.join(slips)}" if slips else "same"
+
+    columns = tuple(
+        Column(column, Style.TEXT if letters and i else Style.NUMBER)
+        for i, column in enumerate(table.columns)
+    )
+    if len(columns) >= WIDE and not letters:
+        # One below the other: side by side they would not fit 80 columns.
+        rows = [
+            line
+            for row, printed in table.rows.items()
+            for line in (
+                (row, "printed", *cells(printed), ""),
+                ("", "ours", *cells(ours[row]), verdict(row)),
+            )
+        ]
+        heads = (Column("", Style.TEXT), Column("", Style.TEXT), *columns, Column("", Style.TEXT))
+        return Table(identity, title, heads, tuple(rows))
+    bar = Column("|", Style.TEXT)
+    rows = [
+        (row, *cells(printed), "|", *cells(ours[row]), verdict(row)) for row, printed in table.rows.items()
+    ]
+    note = "Left of the bar as printed, right of it ours."
+    if letters:
+        order = order_of_scores(setting)
+        note += f" Users 1 to {len(order)} are the subjects {', '.join(str(i + 1) for i in order)}."
+    heads = (Column("user" if letters else "", Style.TEXT), *columns, bar, *columns, Column("", Style.TEXT))
+    return Table(identity, title, heads, tuple(rows), note)
+
+
+def _slips(study: Study) -> Chapter:
+    total = sum(len(row) for table in study.printed for row in table.rows.values())
+    wrong, unknown = differences(study), unexplained(study)
+    blocks: list[Block] = [
+        Text(
+            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
+        )
+    ]
+    rows: list[tuple[Cell, ...]] = []
+    for slip in study.slips:
+        cells = [each for each in wrong if each.table == slip.table]
+        rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
+    blocks.append(
+        Table(
+            "slips",
+            "Known slips",
+            (
+                Column("where", Style.TEXT),
+                Column("row", Style.TEXT),
+                Column("column", Style.TEXT),
+                Column("printed"),
+                Column("ours"),
+            ),
+            tuple(rows),
+        )
+    )
+    blocks += [
+        Text(f"{'Table ' if slip.table != 'text' else ''}{slip.table}: {slip.why}") for slip in study.slips
+    ]
+    blocks += [
+        Caution(
+            f"{_named(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
+        )
+        for each in unknown
+    ]
+    two_keys = [
+        each.item.id
+        for each in (analyse(study.quiz, item) for item in study.quiz.items)
+        if len(each.keys) > 1
+    ]
+    if two_keys:
+        blocks.append(
+            Caution(f"{', '.join(two_keys)}: two answers counted as right, so the question is ambiguous.")
+        )
+    blocks.append(
+        Text(
+            "The degrees and the answers of yes or no (tables B.3 and B.4) are missing in the source: that eleven of "
+            "twelve used the prepared machine, and that one had problems, cannot be checked."
+        )
+    )
+    return Chapter("slips", "Where the print is wrong", tuple(blocks))
+
+
+def _places(wrong: Sequence[Difference]) -> str:
+    names = list(
+        dict.fromkeys("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
+    )
+    return " and ".join((", ".join(names[:-1]), names[-1]) if len(names) > 1 else names) or "no table"
+
+
+def _named(each: Difference) -> str:
+    return "text" if each.table == "text" else f"table {each.table}"
+
+
+def _bearing(study: Study, setting: Setting) -> Chapter:
+    """What a reader of the dissertation has to know and it does not say."""
+    first = people.experience(setting)
+    weights = (
+        [each for each in first.blocks if isinstance(each, Table) and each.id == "weights"] if first else []
+    )
+    cautions = [each for each in first.blocks if isinstance(each, Caution)] if first else []
+    robust, together, questions = (
+        relations.robustness(setting),
+        relations.relations(setting),
+        quiz.items(setting),
+    )
+    blocks: list[Block] = [*weights, *cautions]
+    if robust is not None:
+        blocks += robust.blocks
+    if together is not None:
+        blocks += [each for each in together.blocks if isinstance(each, Table | Text)]
+    if questions is not None:
+        blocks += [each for each in questions.blocks if not isinstance(each, Caution)]
+    blocks += [_shape(study), _blanks(study), _layers(study)]
+    return Chapter("bearing", "What these numbers bear", tuple(blocks))
+
+
+def _shape(study: Study) -> Text:
+    from kit.school.cohort.normality import shapiro_wilk
+
+    w, p = shapiro_wilk(study.quiz.score)
+    return Text(
+        f"'The scores seem to follow a standard normal distribution': Shapiro and Wilk's W = {w:.2f}, p = {p:.2f}. "
+        "A normal distribution is not ruled out with twelve subjects; that is all. (A standard one would have mean 0 "
+        "and SD 1.)"
+    )
+
+
+def _blanks(study: Study) -> Text:
+    from kit.school.quiz.answers import Outcome
+
+    blanks = study.quiz.count(Outcome.BLANK)
+    most = int(np.argmax(blanks))
+    return Text(
+        f"{int(blanks.sum())} of {len(blanks) * len(study.quiz.items)} answers of the quiz are blank, "
+        f"{int(blanks[most])} of them subject {most + 1}'s, and count as wrong."
+    )
+
+
+def _layers(study: Study) -> Text:
+    question = next(each for each in study.ratings.questions if each.topic == "layers")
+    found = summary(study.ratings.values[question.phases[0], question.id])
+    return Text(
+        f"The method for the fewest layers was rated {found.mean:.1f} of 7 hard (n = {found.n}), harder than anything "
+        "else; no table shows it."
+    )
