@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grader import planning
+from grader import behaviours, planning
 from grader.assignment import Assignment, GridTask
 from grader.examination import Exam
 from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
@@ -42,8 +42,10 @@ SMALL = GridTask(("########", "#......#", "#.##...#", "#....G.#", "########"), d
 HALLS = (
     ("#######", *("#.....#",) * 2, "#..G..#", *("#.....#",) * 7, "#######"),
     ("############", *("#..........#",) * 2, "#........G.#", *("#....#######",) * 5, "############"),
+    ROOM.rows,
 )
-"""Of the width for which Algorithm 1 was made: in a wide room, looking at much room pays better than arriving."""
+"""A hallway, its corner, and a room so wide that looking at much of it could pay better than arriving; it does not,
+for no agent sees farther than two metres."""
 
 REWARDS = {
     "sparse": ("reached, collided", "return 10.0 * reached - 10.0 * collided - 0.1"),
@@ -93,9 +95,15 @@ def examine(folder: Path, text: str, task: GridTask = SMALL) -> Exam:
     return Exam(file, assignment, Level.LIMITED)
 
 
+@pytest.fixture(scope="module")
+def examined(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Exam]:
+    """Each of the nine in the wide room, examined once."""
+    return cache(lambda name: examine(tmp_path_factory.mktemp("nine"), source(name), ROOM))
+
+
 @pytest.mark.parametrize("name", REWARDS)
-def test_nine_rewards_are_judged_by_what_they_ask_for(tmp_path: Path, name: str) -> None:
-    exam = examine(tmp_path, source(name), ROOM)
+def test_nine_rewards_are_judged_by_what_they_ask_for(examined: Callable[[str], Exam], name: str) -> None:
+    exam = examined(name)
     assert exam.failure is None
     if name in GOOD:
         assert exam.judged.success == pytest.approx(1.0)
@@ -109,16 +117,21 @@ def test_nine_rewards_are_judged_by_what_they_ask_for(tmp_path: Path, name: str)
         assert "G target" in shown
 
 
-@pytest.mark.parametrize("name", ["one-sided", "closeness", "alive", "moving", "turning"])
-def test_the_exploit_is_a_way_that_never_arrives(tmp_path: Path, name: str) -> None:
-    exam = examine(tmp_path, source(name), ROOM)
+@pytest.mark.parametrize("name", sorted(set(REWARDS) - set(GOOD)))
+def test_the_exploit_is_a_way_that_never_arrives(examined: Callable[[str], Exam], name: str) -> None:
+    exam = examined(name)
     assert exam.judged.exploit is not None
     way = planning.follow(exam.plan, exam.judged.exploit, ROOM.max_steps)
     assert len(way) == ROOM.max_steps + 1
     assert exam.model.target not in exam.model.cell_of(way)
+    # Replayed move by move, no other way pays as well: it is what the reward asks for.
+    moves = (way[1:] % LASTS).tolist()
+    own = behaviours.paid(exam.model, exam.rewards, int(way[0]), moves)
+    best = float(exam.plan.values[way[0]].max())
+    assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
 
 
-@pytest.mark.parametrize("rows", HALLS, ids=["hall", "turn"])
+@pytest.mark.parametrize("rows", HALLS, ids=["hall", "turn", "room"])
 @pytest.mark.parametrize("reward", [ALGORITHM_1, ALGORITHM_3], ids=lambda each: each.name)
 def test_the_seeds_own_algorithms_teach_what_they_should(reward: Reward, rows: tuple[str, ...]) -> None:
     model = build(GridTask(rows, 0.98, 200))
@@ -225,9 +238,9 @@ def test_a_broken_contract_is_told_in_words(tmp_path: Path, text: str, kind: Fai
     assert said in exam.failure.message
 
 
-def test_better_drives_are_paid_more(tmp_path: Path) -> None:
-    assert all(pair.is_right for pair in examine(tmp_path, source("progress"), ROOM).pairs)
-    wrong = examine(tmp_path, source("alive"), ROOM)
+def test_better_drives_are_paid_more(examined: Callable[[str], Exam]) -> None:
+    assert all(pair.is_right for pair in examined("progress").pairs)
+    wrong = examined("alive")
     assert not all(pair.is_right for pair in wrong.pairs)
     assert "spinning" in wrong.remark("ordered") or "turning" in wrong.remark("ordered")
 
@@ -236,12 +249,11 @@ def test_better_drives_are_paid_more(tmp_path: Path) -> None:
     ("name", "loop"),
     [("one-sided", "forward and back"), ("turning", "spinning"), ("moving", "forward and back")],
 )
-def test_loops_that_pay_are_named(tmp_path: Path, name: str, loop: str) -> None:
-    exam = examine(tmp_path, source(name), ROOM)
+def test_loops_that_pay_are_named(examined: Callable[[str], Exam], name: str, loop: str) -> None:
+    exam = examined(name)
     assert any(loop in each.name for each in exam.loops if each.pays)
     assert "for ever is paid" in exam.remark("loops")
-    good = examine(tmp_path, source("shaped"), ROOM)
-    assert not any(each.pays for each in good.loops)
+    assert not any(each.pays for each in examined("shaped").loops)
 
 
 def test_a_longer_horizon_changes_what_pays() -> None:
