@@ -1,0 +1,355 @@
+"""Checks of Gymnasium environments: what was returned against what was true."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from grader.checks.contract import Check, NoParams, check
+from grader.environments import Episode, Moment, Visit, sectors
+from grader.kinds.contract import Look
+from kit.geometry import Pose
+
+SECTORS: Final = 9
+NEAR_HOME: Final = (0.15, 0.35)
+"""m, rad: so far from home an episode may begin."""
+ALIKE: Final = 1e-3
+"""How far an observation may be off [m], for numbers of single precision."""
+SLACK: Final = 0.2
+"""How far a move may be off, as a share of it."""
+BAND: Final = 0.06
+"""m: so much nearer to or farther from the target than asked the end may be noticed: more than one step's way."""
+
+NUMBERS: Final = ("float", "int", "float64", "float32", "int64", "int32")
+
+
+def _share(facts: list[str]) -> float:
+    """The share of what is fine: an empty complaint."""
+    return sum(not fact for fact in facts) / len(facts) if facts else 0.0
+
+
+def spaces_facts(seen: Visit) -> Iterator[str]:
+    """Both spaces, each fine or not."""
+    action, observation = (seen.about.get(each, {}) for each in ("action_space", "observation_space"))
+    wanted = len(seen.wish.moves)
+    yield (
+        ""
+        if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", wanted, 0)
+        else f"action_space should be Discrete({wanted}), one number for each action, and is {_space(action)}."
+    )
+    fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
+    if not fits:
+        yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space(observation)}."
+    elif observation.get("low") != 0.0 or observation.get("high") != seen.wish.clip:
+        yield f"observation_space should reach from 0 to {seen.wish.clip:g}, and is {_space(observation)}."
+    elif observation.get("dtype") not in ("float32", "float64"):
+        yield f"what is seen are metres: the Box's dtype should be numpy.float32, not {observation.get('dtype')}."
+    else:
+        yield ""
+
+
+def _space(told: Mapping[str, object]) -> str:
+    return (
+        "missing"
+        if told.get("kind") in (None, "NoneType")
+        else ", ".join(f"{k} {v}" for k, v in told.items())
+    )
+
+
+def resets_facts(seen: Visit) -> Iterator[str]:
+    """For every reset: what it returned, where the robot is, whether it was the newest scan that was seen."""
+    home = seen.wish.place.start or Pose()
+    for episode in seen.episodes.values():
+        returned = episode.returned
+        parts = returned.get("parts", [])
+        turned = abs((episode.pose.theta - home.theta + math.pi) % (2 * math.pi) - math.pi)
+        away = math.hypot(episode.pose.x - home.x, episode.pose.y - home.y)
+        if returned.get("kind") != "tuple" or returned.get("count") != 2:
+            yield f"reset() returns two values, observation and info, not a {returned.get('kind')}."
+        elif parts[1].get("kind") != "dict":
+            yield f"The second value of reset() is info, a dictionary, not a {parts[1].get('kind')}."
+        elif not episode.inside:
+            yield "The observation of reset() is not in observation_space: look at its shape, dtype and bounds."
+        elif away > NEAR_HOME[0] or turned > NEAR_HOME[1]:
+            yield f"After reset() the robot stands {away:.2f} m and {math.degrees(turned):.0f} degrees from its home."
+        elif not _seen_right(parts[0], episode.ranges, seen):
+            yield "The observation of reset() is not of the newest scan: was the old one, from before, kept?"
+        else:
+            yield ""
+
+
+def steps_facts(seen: Visit) -> Iterator[str]:
+    """For every step: five values of the right kinds."""
+    for moment in seen.moments:
+        returned = moment.returned
+        if returned.get("kind") != "tuple" or returned.get("count") != 5:
+            count = returned.get("count", "no")
+            yield f"step() returns five values: observation, reward, terminated, truncated, info; not {count}."
+        elif not moment.inside:
+            yield "The observation of step() is not in observation_space: look at its shape, dtype and bounds."
+        elif moment.part(1).get("kind") not in NUMBERS or moment.part(1).get("value") is None:
+            yield f"The second value of step(), the reward, is a finite number, not a {moment.part(1).get('kind')}."
+        elif (moment.part(2).get("kind"), moment.part(3).get("kind")) != ("bool", "bool"):
+            kinds = f"{moment.part(2).get('kind')} and {moment.part(3).get('kind')}"
+            yield f"terminated and truncated are True or False, not {kinds}."
+        elif moment.part(4).get("kind") != "dict":
+            yield f"The fifth value of step() is info, a dictionary, not a {moment.part(4).get('kind')}."
+        else:
+            yield ""
+
+
+def sees_facts(seen: Visit) -> Iterator[str]:
+    """For every step: nine sectors of the newest scan."""
+    for moment in seen.moments:
+        yield "" if _seen_right(moment.part(0), moment.ranges, seen) else _difference(moment, seen)
+
+
+def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], seen: Visit) -> bool:
+    numbers, wanted = told.get("numbers"), sectors(ranges, SECTORS, seen.wish.clip)
+    return (
+        isinstance(numbers, list)
+        and len(numbers) == len(wanted)
+        and all(
+            isinstance(given, float) and math.isclose(given, right, abs_tol=ALIKE)
+            for given, right in zip(numbers, wanted, strict=True)
+        )
+    )
+
+
+def _difference(moment: Moment, seen: Visit) -> str:
+    numbers, wanted = moment.part(0).get("numbers"), sectors(moment.ranges, SECTORS, seen.wish.clip)
+    if not isinstance(numbers, list) or len(numbers) != len(wanted):
+        return f"An observation is {SECTORS} numbers."
+    place = next(
+        k
+        for k, (one, other) in enumerate(zip(numbers, wanted, strict=True))
+        if not isinstance(one, float) or not math.isclose(one, other, abs_tol=ALIKE)
+    )
+    given = numbers[place]
+    shown = f"{given:.3f}" if isinstance(given, float) else "no finite number"
+    return f"Sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
+
+
+def acts_facts(seen: Visit) -> Iterator[str]:
+    """For every step in which nothing was in the way: whether the robot did what the action says."""
+    for moment in seen.moments:
+        if moment.touched:
+            continue
+        speed, turn = seen.wish.moves[moment.action]
+        gone = math.hypot(moment.after.x - moment.before.x, moment.after.y - moment.before.y)
+        turned = (moment.after.theta - moment.before.theta + math.pi) % (2 * math.pi) - math.pi
+        wanted = speed * seen.wish.step_s, turn * seen.wish.step_s
+        room = SLACK * max(abs(wanted[0]), abs(wanted[1]), 0.01)
+        if abs(gone - wanted[0]) > room or abs(turned - wanted[1]) > room:
+            yield (
+                f"step({moment.action}) should drive {wanted[0]:.3f} m and turn {math.degrees(wanted[1]):.0f} degrees; "
+                f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
+            )
+        else:
+            yield ""
+
+
+def crash_facts(seen: Visit) -> Iterator[str]:
+    """Whether a collision terminates."""
+    episode = seen.episodes["into the wall"]
+    hit = next((k for k, moment in enumerate(episode.moments) if moment.touched), None)
+    yield _ended(episode, hit, "the robot touched a wall", "terminated")
+
+
+def arrival_facts(seen: Visit) -> Iterator[str]:
+    """Whether reaching the target terminates, and not too soon."""
+    episode, radius = seen.episodes["to the target"], seen.wish.place.case.target_radius  # type: ignore[union-attr]
+    moments = episode.moments
+    late = next((k for k, moment in enumerate(moments) if moment.target_m < radius - BAND), None)
+    if moments and moments[-1].is_over and not moments[-1].touched:
+        away = moments[-1].target_m
+        late = len(moments) - 1 if away <= radius + BAND else late
+    yield _ended(episode, late, f"the robot came within {radius:g} m of the target", "terminated")
+
+
+def timeout_facts(seen: Visit) -> Iterator[str]:
+    """Whether running out of time truncates."""
+    last = seen.wish.max_steps - 1
+    episode = seen.episodes["turning on the spot"]
+    yield _ended(episode, last, f"{seen.wish.max_steps} steps were made", "truncated")
+
+
+def _ended(episode: Episode, due: int | None, why: str, how: str) -> str:
+    """A complaint unless the episode ended at this moment, and in this way."""
+    moments = episode.moments
+    over = next((k for k, moment in enumerate(moments) if moment.is_over), None)
+    if over is not None and (due is None or over < due):
+        ended = "terminated" if moments[over].says(2) else "truncated"
+        return f"The episode “{episode.name}” was {ended} after {over + 1} steps, without a reason."
+    if due is None:
+        return f"The episode “{episode.name}” did not come to its end: do the actions do what they should?"
+    if over is None or over > due + 1:
+        return f"After {due + 1} steps {why}: step() should return {how} as True then, and did not."
+    says = moments[over].says(2), moments[over].says(3)
+    if says != ((True, False) if how == "terminated" else (False, True)):
+        hint = (
+            "The world has not ended, only our patience: the agent cannot see the clock."
+            if how == "truncated"
+            else "It is the world that ended the episode, not the clock."
+        )
+        return f"When {why}, step() returned terminated {says[0]}, truncated {says[1]}; it should be {how} alone. {hint}"
+    return ""
+
+
+def repeats_facts(seen: Visit) -> Iterator[str]:
+    """Whether a seed decides all that chance decides."""
+    one, again, other = (seen.episodes[name] for name in ("one seed", "the same seed again", "another seed"))
+    same = _observations(one) == _observations(again)
+    yield (
+        ""
+        if same
+        else (
+            "reset(seed=...) with the same seed, and the same actions, saw something else. Does it call "
+            "super().reset(seed=seed), and draw from self.np_random alone?"
+        )
+    )
+    yield (
+        ""
+        if _start(one) != _start(other)
+        else (
+            "Two seeds began at the very same place: the start should differ a little, drawn from self.np_random."
+        )
+    )
+
+
+def _observations(episode: Episode) -> list[object]:
+    first = episode.returned.get("parts", [{}])
+    seen = [first[0].get("numbers") if first else None]
+    seen += [moment.part(0).get("numbers") for moment in episode.moments]
+    return [[round(n, 3) if isinstance(n, float) else n for n in each or []] for each in seen]
+
+
+def _start(episode: Episode) -> tuple[float, ...]:
+    return tuple(round(each, 4) for each in episode.pose)
+
+
+def pays_facts(seen: Visit) -> Iterator[str]:
+    """Whether arriving pays, and a collision costs."""
+    for name, sign, what in (
+        ("to the target", 1, "reaching the target"),
+        ("into the wall", -1, "a collision"),
+    ):
+        moments = seen.episodes[name].moments
+        paid = moments[-1].part(1).get("value") if moments else None
+        fine = isinstance(paid, float) and paid * sign > 0
+        wanted = "more than 0" if sign > 0 else "less than 0"
+        yield (
+            ""
+            if fine
+            else f"The step that ends with {what} should be rewarded with {wanted}, not with {paid}."
+        )
+
+
+def checker_facts(seen: Visit) -> Iterator[str]:
+    """Whether Gymnasium's own checker is content."""
+    yield f"It says: {seen.checker}" if seen.checker else ""
+
+
+Facts = Callable[[Visit], Iterator[str]]
+"""Each fact is a complaint, or empty where all is well."""
+
+
+def _measure(facts: Facts, look: Look) -> float:
+    return _share(list(facts(look.found)))
+
+
+@check(none=0, full=1, unit="%")
+def spaces(look: Look, params: NoParams) -> float:
+    """The spaces say what an agent may do and what it sees; {actual} of that is right."""
+    return _measure(spaces_facts, look)
+
+
+@check(none=0, full=1, unit="%")
+def resets(look: Look, params: NoParams) -> float:
+    """reset() begins an episode; it did so rightly in {actual} of the cases."""
+    return _measure(resets_facts, look)
+
+
+@check(none=0, full=1, unit="%")
+def steps(look: Look, params: NoParams) -> float:
+    """What step() returned has the right form in {actual} of the steps."""
+    return _measure(steps_facts, look)
+
+
+@check(none=0.5, full=1, unit="%")
+def sees(look: Look, params: NoParams) -> float:
+    """The observation is the nine sectors of the newest scan in {actual} of the steps."""
+    return _measure(sees_facts, look)
+
+
+@check(none=0.5, full=0.98, unit="%")
+def acts(look: Look, params: NoParams) -> float:
+    """The robot did what the action says in {actual} of the steps."""
+    return _measure(acts_facts, look)
+
+
+@check(none=0, full=1, words=("not as it should be", "terminated"))
+def crash(look: Look, params: NoParams) -> float:
+    """A collision ends the episode."""
+    return _measure(crash_facts, look)
+
+
+@check(none=0, full=1, words=("not as it should be", "terminated"))
+def arrival(look: Look, params: NoParams) -> float:
+    """Reaching the target ends the episode."""
+    return _measure(arrival_facts, look)
+
+
+@check(none=0, full=1, words=("not as it should be", "truncated"))
+def timeout(look: Look, params: NoParams) -> float:
+    """When its time is up an episode is cut off."""
+    return _measure(timeout_facts, look)
+
+
+@check(none=0, full=1, unit="%")
+def repeats(look: Look, params: NoParams) -> float:
+    """The seed must decide whatever chance decides, and nothing else may."""
+    return _measure(repeats_facts, look)
+
+
+@check(none=0, full=1, unit="%")
+def pays(look: Look, params: NoParams) -> float:
+    """The reward of an episode's last step tells good ends from bad ones."""
+    return _measure(pays_facts, look)
+
+
+@check(none=0, full=1, words=("complains", "content"))
+def checker(look: Look, params: NoParams) -> float:
+    """Gymnasium's own checker is not content."""
+    return _measure(checker_facts, look)
+
+
+CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
+    {
+        each.name: each
+        for each in (*(spaces, resets, steps, sees, acts, crash, arrival, timeout, repeats, pays, checker),)
+    }
+)
+FACTS: Final[Mapping[str, Facts]] = MappingProxyType(
+    {
+        "spaces": spaces_facts,
+        "resets": resets_facts,
+        "steps": steps_facts,
+        "sees": sees_facts,
+        "acts": acts_facts,
+        "crash": crash_facts,
+        "arrival": arrival_facts,
+        "timeout": timeout_facts,
+        "repeats": repeats_facts,
+        "pays": pays_facts,
+        "checker": checker_facts,
+    }
+)
+"""By the check's name."""
+
+
+def complaint(seen: Visit, name: str) -> str:
+    """The first complaint that a check has."""
+    return next(filter(None, FACTS[name](seen)), "")

@@ -1,0 +1,116 @@
+"""Runs in the student's process, beside their file: makes their environment and does with it what the grader asks.
+
+Never imported by the grader: its text is laid beside the student's file. It judges nothing. What it tells of the
+environment is checked against the world itself, which the grader keeps.
+"""
+
+import json
+import math
+import sys
+import warnings
+from importlib import import_module
+from types import ModuleType
+from typing import Any, Final
+
+import gymnasium
+import numpy as np
+from gymnasium.utils.env_checker import check_env
+
+MOST_NUMBERS: Final = 200
+
+Plain = dict[str, Any]
+
+
+def told(value: object) -> Plain:
+    """A value as plain data: what it is, and its numbers; None for one that is not finite."""
+    kind = type(value).__name__
+    if isinstance(value, tuple):
+        return {"kind": kind, "parts": [told(each) for each in value[:8]], "count": len(value)}
+    if isinstance(value, np.ndarray):
+        plain = value.ravel()[:MOST_NUMBERS].tolist() if value.dtype.kind in "fiub" else []
+        numbers = [finite(each) for each in plain]
+        return {"kind": kind, "dtype": str(value.dtype), "shape": list(value.shape), "numbers": numbers}
+    if isinstance(value, (bool, np.bool_)):
+        return {"kind": "bool", "value": bool(value)}
+    if isinstance(value, (int, float, np.number)):
+        return {"kind": kind, "value": finite(value)}
+    return {"kind": kind}
+
+
+def finite(value: Any) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def space(value: object) -> Plain:
+    """A space as plain data."""
+    if isinstance(value, gymnasium.spaces.Discrete):
+        return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
+    if isinstance(value, gymnasium.spaces.Box):
+        low, high = (finite(bound) for bound in (value.low.min(), value.high.max()))
+        shape = list(value.shape)
+        return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), "low": low, "high": high}
+    return {"kind": type(value).__name__}
+
+
+def inside(env: Any, returned: object) -> bool:
+    """Whether the observation, the first of what was returned, lies in the space of observations."""
+    is_space = isinstance(getattr(env, "observation_space", None), gymnasium.Space)
+    seen = returned[0] if isinstance(returned, tuple) and returned else returned
+    return bool(is_space and env.observation_space.contains(seen))
+
+
+def made(module: ModuleType, name: str) -> tuple[Any, Plain]:
+    """The environment, and what to tell of it."""
+    cls = getattr(module, name, None)
+    classes = [each for each, value in vars(module).items() if isinstance(value, type)][:20]
+    if not isinstance(cls, type):
+        return None, {"missing": classes}
+    env = cls()
+    spaces = {each: space(getattr(env, each, None)) for each in ("action_space", "observation_space")}
+    return env, {"is_env": isinstance(env, gymnasium.Env), **spaces}
+
+
+def reset(env: Any, question: Plain) -> Plain:
+    returned = env.reset(seed=question["seed"])
+    return {"returned": told(returned), "inside": inside(env, returned)}
+
+
+def step(env: Any, question: Plain) -> Plain:
+    returned = env.step(np.int64(question["action"]))
+    return {"returned": told(returned), "inside": inside(env, returned)}
+
+
+def checker(env: Any, question: Plain) -> Plain:
+    """What Gymnasium's own checker says."""
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        try:
+            check_env(env, skip_render_check=True)
+        except Exception as problem:  # noqa: BLE001  # whatever it is, it is for the student to read
+            return {"says": f"{type(problem).__name__}: {problem}"[:500], "warns": []}
+    return {"says": "", "warns": [str(each.message)[:300] for each in heard[:5]]}
+
+
+def main() -> None:
+    # Of the kit's, on the path of a student's process alone.
+    import rclpy
+    from std_msgs.msg import String
+
+    module, name = sys.argv[1:3]
+    rclpy.init()
+    node = rclpy.create_node("examiner", start_parameter_services=False, use_global_arguments=False)
+    questions: list[str] = []
+    node.create_subscription(String, "/examination/ask", lambda heard: questions.append(heard.data), 10)
+    answers = node.create_publisher(String, "/examination/answer", 10)
+    env, answer = made(import_module(module), name)
+    calls = {"reset": reset, "step": step, "checker": checker}
+    while rclpy.ok():
+        answers.publish(String(data=json.dumps(answer)))
+        while not questions:
+            rclpy.spin_once(node)
+        question = json.loads(questions.pop())
+        answer = calls[question["call"]](env, question)
+
+
+if __name__ == "__main__":
+    main()
