@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.drive import Drive
+from grader.drive import LOOK_EVERY, Drive
+from kit.geometry import Pose
 
 LONGEST_STRIDE: Final = 0.1
 """A robot that is farther [m] from where it was one tick ago was moved by hand."""
@@ -35,6 +36,22 @@ class Band:
     low: float = 0.3
     high: float = 0.5
     """m"""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    places: tuple[str, ...] = ("1 0",)
+    """In the order in which the robot should come by: x and y [m], seen from its start."""
+    within: float = 0.15
+    """m"""
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    text: str = ""
+    """What a printed line should hold."""
+    seconds: float = 1.0
+    """One such line so often."""
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
@@ -151,12 +168,48 @@ def obeys(drive: Drive, params: NoParams) -> float:
     return float(len(drive.refused))
 
 
+@check(none=0, full=1, unit="%", params=Places)
+def comes_by(drive: Drive, params: Places) -> float:
+    """Of the asked places the robot came by {actual}, in their order, in the worst episode ({where}). Compare its way
+    in the picture with what was asked."""
+    if not len(drive.track):
+        return 0.0
+    start, passed = Pose(*drive.track[0].tolist()), 0
+    way = drive.track[::LOOK_EVERY, :2]
+    for place in params.places:
+        x, y = (float(number) for number in place.split())
+        near = np.flatnonzero(np.hypot(*(way - start.point(x, y)).T) <= params.within)
+        if not len(near):
+            break
+        way, passed = way[near[0] :], passed + 1
+    return passed / len(params.places)
+
+
+@check(none=1, full=0.15, unit="m")
+def comes_back(drive: Drive, params: NoParams) -> float:
+    """At its end the robot stands {actual} from where it began ({where}); at most {full} earns all points."""
+    if not len(drive.track):
+        return math.nan
+    return float(math.dist(drive.track[0, :2], drive.track[-1, :2]))
+
+
+@check(none=0.5, full=0.1, unit="%", params=Words)
+def says(drive: Drive, params: Words) -> float:
+    """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
+    allowed. A timer sets the rate, and `self.get_logger().info(...)` says it."""
+    heard = sum(params.text.casefold() in line.casefold() for line in drive.printed)
+    if drive.seconds == 0.0 or params.seconds <= 0.0:
+        return math.nan
+    return abs(heard * params.seconds / drive.seconds - 1.0)
+
+
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
         for each in (
             *(runs, reached, in_time, approach, bumps, clearance),
             *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys),
+            *(comes_by, comes_back, says),
         )
     }
 )

@@ -17,7 +17,7 @@ from kit.world.section import Section
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment, Criterion, Trial
-    from grader.grading import Gatherer
+    from grader.grading import Evidence, Gatherer
 
 PACKAGE: Final = "grader.kinds"
 NOT_KINDS: Final = ("contract",)
@@ -106,16 +106,16 @@ class Look:
 
 
 class Looks:
-    """A gatherer of looks that are taken once, for every criterion the same."""
+    """A gatherer of evidence that is gathered once, for every criterion the same."""
 
-    def __init__(self, looks: Sequence[Look], level: Level) -> None:
+    def __init__(self, looks: Sequence[Evidence], level: Level) -> None:
         self.level = level
         self._looks = tuple(looks)
 
-    def evidence(self, criterion: Criterion) -> Sequence[Look]:
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         return self._looks
 
-    def all(self) -> Sequence[Look]:
+    def all(self) -> Sequence[Evidence]:
         return self._looks
 
 
