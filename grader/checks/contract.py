@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -37,6 +38,8 @@ class Check:
 
     def said(self, measure: float) -> str:
         """A measure in words, or with its unit."""
+        if math.isnan(measure):
+            return "not measured"
         if self.words is not None:
             return self.words[measure >= 1.0]
         if self.unit == "%":

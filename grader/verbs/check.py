@@ -105,6 +105,7 @@ def _report(result: Result, form: str, hints: int, picture: str) -> str:
 def _worst(grading: Grading, replay: Path | None) -> str:
     """The worst episode in characters; and kept in a file, if asked for."""
     from grader.drive import Drive
+    from grader.kinds.contract import Look
     from kit.recording import save
 
     worst = grading.worst()
@@ -118,6 +119,8 @@ def _worst(grading: Grading, replay: Path | None) -> str:
         save(worst.recording, replay.absolute())
         ways = f"Watch it move: kit replay {replay}\n"
     title = f"The worst episode, {worst.label} ({worst.outcome})"
-    if not isinstance(worst, Drive):
+    if isinstance(worst, Look):
+        title = f"A look at {worst.label} ({worst.outcome})"
+    elif not isinstance(worst, Drive):
         title = "What a robot does that has learnt this reward perfectly"
     return f"\n{title}:\n{shown}\n{ways}"

@@ -16,6 +16,11 @@ from kit.world.walls import image_walls, read_lines
 
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 
+DRAWN: Mapping[str, str] = MappingProxyType(
+    {**dict.fromkeys((".png", ".jpg", ".jpeg", ".bmp", ".ppm", ".pgm"), "image"), ".dat": "data"}
+)
+"""Endings of files that hold walls themselves, and the key of the layer file that names such a one."""
+
 
 class LayerReader:
     """Reads the layers in order, and hands out their bits in that order."""
@@ -66,6 +71,14 @@ class LayerReader:
     def _walls(self, section: Section) -> Walls | None:
         file = self._documents.named(section, "map")
         if file is None:
+            return None
+        if file.suffix.lower() in DRAWN:
+            key = DRAWN[file.suffix.lower()]
+            section.error(
+                f"a layer's map is a YAML file that names the drawing, not the drawing: name a file in which "
+                f'"{key}: {file.name}" stands',
+                "map",
+            )
             return None
         if file not in self._maps and len(self._maps) == MAX_LAYERS:
             return None  # there are too many layers, which is noted; a stranger's pictures take their time

@@ -1,0 +1,77 @@
+"""What the checks of worlds share: what was seen, and how faults are counted and told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from grader.kinds.contract import Look
+from grader.worlds.facts import RunFacts, WorldFacts
+from kit.world.problems import quoted, suggestion
+
+ANY: Final = math.nan
+"""A number that is not asked for: it differs from nothing by more than anything."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A world that was read, or could not be."""
+
+    world: WorldFacts
+
+    @property
+    def outcome(self) -> str:
+        count = len(self.world.problems)
+        return f"{count} mistake{'s' if count > 1 else ''}" if count else "read"
+
+
+@dataclass(frozen=True)
+class Run:
+    """A world that ran."""
+
+    world: WorldFacts
+    run: RunFacts
+    has_target: bool
+
+    @property
+    def outcome(self) -> str:
+        run = self.run
+        if run.problem:
+            return "not run"
+        if not self.has_target:
+            return f"ran {run.seconds:.1f} s"
+        if run.reached_s is not None:
+            return f"reached after {run.reached_s:.1f} s"
+        return f"not reached, {run.bumps} bumps" if run.bumps else "not reached"
+
+
+AS_ASKED: Final = ("as asked", "not as asked")
+"""What no fault, and any, is called."""
+
+Faults = Callable[[WorldFacts, Any], Iterator[str]]
+RunFaults = Callable[[Run, Any], Iterator[str]]
+
+
+def count(look: Look, faults: Faults, params: Any) -> float:
+    """How many things are wrong; nan for a world that cannot be read."""
+    world: WorldFacts = look.found.world
+    return math.nan if world.problems else float(sum(1 for _ in faults(world, params)))
+
+
+def run_count(look: Look, faults: RunFaults, params: Any) -> float:
+    """The same of a run; nan where there was none."""
+    if not isinstance(look.found, Run) or look.found.run.problem:
+        return math.nan
+    return float(sum(1 for _ in faults(look.found, params)))
+
+
+def metres(value: float) -> str:
+    """A length as one writes it."""
+    return f"{round(value, 3) + 0.0:g} m"
+
+
+def no_model(world: WorldFacts, name: str) -> str:
+    """What to say of a model that is missing."""
+    return f"there is no model {quoted(name)}: {suggestion(name, [model.name for model in world.models])}"

@@ -1,0 +1,131 @@
+"""Checks of worlds: what is in one, and where."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grader.checks.contract import NoParams, check
+from grader.checks.faults import ANY, AS_ASKED, count, metres, no_model
+from grader.kinds.contract import Look
+from grader.worlds.facts import Box, WorldFacts
+from kit.world.problems import quoted
+
+
+@check(none=0, full=1, words=("does not load", "loads"))
+def loads(look: Look, params: NoParams) -> float:
+    """The world does not load. Each line says what is wrong, in which file, and where:"""
+    return 0.0 if look.found.world.problems else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Has:
+    layers: tuple[str, ...] = ()
+    """Names that layers must have."""
+    maps: tuple[str, ...] = ()
+    """Map files, without their ending, that layers must use."""
+    models: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
+    """Each a model and a type, such as ``robot Laser``."""
+
+
+def missing(world: WorldFacts, params: Has) -> Iterator[str]:
+    models = [model.name for model in world.models]
+    for what, wanted, there in (
+        ("layer", params.layers, world.layers),
+        ("map", params.maps, tuple(walls.map for walls in world.walls)),
+        ("model", params.models, tuple(models)),
+    ):
+        for name in wanted:
+            if name not in there:
+                yield f"there is no {what} {quoted(name)} ({', '.join(there) or 'none at all'})"
+    for each in params.plugins:
+        name, _, kind = each.partition(" ")
+        model = world.model(name)
+        if model is None:
+            yield no_model(world, name)
+        elif kind not in (types := [device.type for device in model.devices]):
+            yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Has)
+def has(look: Look, params: Has) -> float:
+    """Something that the task asks for is not there:"""
+    return count(look, missing, params)
+
+
+@dataclass(frozen=True, slots=True)
+class WallsAsked:
+    map: str = ""
+    """By default every wall."""
+    source: str = ""
+    """The picture's name."""
+    left: float = ANY
+    bottom: float = ANY
+    width: float = ANY
+    height: float = ANY
+    """m"""
+    within: float = 0.02
+
+
+def wrong_walls(world: WorldFacts, params: WallsAsked) -> Iterator[str]:
+    some = [walls for walls in world.walls if params.map in ("", walls.map)]
+    boxes = [walls.box for walls in some if walls.box is not None]
+    if not boxes:
+        yield f"no layer shows the walls of {params.map or 'a map'}"
+        return
+    if params.source and (wrong := [walls.source for walls in some if walls.source != params.source]):
+        yield f"its walls come from {wrong[0]}, not from {params.source}"
+    left, bottom, right, top = around(boxes)
+    for what, is_, wanted in (
+        ("wide", right - left, params.width),
+        ("high", top - bottom, params.height),
+    ):
+        if abs(is_ - wanted) > params.within:
+            yield f"it is {metres(is_)} {what}, not {metres(wanted)}"
+    for what, is_, wanted in (
+        ("x of its left side", left, params.left),
+        ("y of its lower side", bottom, params.bottom),
+    ):
+        if abs(is_ - wanted) > params.within:
+            yield f"the {what} is {metres(is_)}, not {metres(wanted)}"
+
+
+def around(boxes: list[Box]) -> Box:
+    left, bottom, right, top = zip(*boxes, strict=True)
+    return min(left), min(bottom), max(right), max(top)
+
+
+@check(none=1, full=0, words=AS_ASKED, params=WallsAsked)
+def walls(look: Look, params: WallsAsked) -> float:
+    """The walls are not where they should be:"""
+    return count(look, wrong_walls, params)
+
+
+@dataclass(frozen=True, slots=True)
+class Stands:
+    model: str = "robot"
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = ANY
+    within: float = 0.01
+    """m, and ten times as much in rad"""
+
+
+def wrong_stand(world: WorldFacts, params: Stands) -> Iterator[str]:
+    model = world.model(params.model)
+    if model is None:
+        yield no_model(world, params.model)
+        return
+    x, y, theta = model.pose
+    if math.hypot(x - params.x, y - params.y) > params.within:
+        yield f"{params.model} stands at [{x:g}, {y:g}], not at [{params.x:g}, {params.y:g}]"
+    if abs(math.remainder(theta - params.theta, math.tau)) > 10 * params.within:
+        yield f"{params.model} looks towards {theta:g} rad, not {params.theta:g}"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Stands)
+def stands(look: Look, params: Stands) -> float:
+    """A model does not stand where it should:"""
+    return count(look, wrong_stand, params)

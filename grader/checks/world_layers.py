@@ -1,0 +1,107 @@
+"""Checks of worlds: who collides with whom, which laser sees whom, by how many layers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grader.checks.contract import NoParams, check
+from grader.checks.faults import AS_ASKED, count
+from grader.kinds.contract import Look
+from grader.worlds.facts import WorldFacts
+from kit.world.problems import quoted, suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    collide: tuple[str, ...] = ()
+    """Each two things with `` - `` between: models, or maps by their file's name. All others must not collide."""
+    free: tuple[str, ...] = ()
+    """Pairs of which it does not matter."""
+    split: tuple[str, ...] = ()
+    """Models whose bodies count one by one, as ``model/body``."""
+
+
+def _called(thing: tuple[str, str], split: tuple[str, ...]) -> str:
+    model, name = thing
+    return name if not model else f"{model}/{name}" if model in split else model
+
+
+def _pair(a: str, b: str) -> tuple[str, str]:
+    return (a, b) if a <= b else (b, a)
+
+
+def wrong_contacts(world: WorldFacts, params: Pairs) -> Iterator[str]:
+    wanted, free = ({_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free))
+    why: dict[tuple[str, str], tuple[bool, str]] = {}
+    for meeting in world.meetings:
+        pair = _pair(_called(meeting.a, params.split), _called(meeting.b, params.split))
+        if pair not in why or (meeting.collides and not why[pair][0]):
+            why[pair] = meeting.collides, meeting.why
+    known = {name for pair in why for name in pair} | {each.name for each in world.models}
+    known |= {each.map for each in world.walls}
+    for name in sorted({name for pair in wanted for name in pair} - known):
+        yield f"there is no {quoted(name)} in this world: {suggestion(name, known)}"
+    for pair, (collides, reason) in why.items():
+        if pair in free or collides == (pair in wanted):
+            continue
+        a, b = pair
+        if collides:
+            yield f"{a} and {b} collide ({reason}), and should not"
+        else:
+            yield f"{a} and {b} do not collide ({reason}), and should"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Pairs)
+def collisions(look: Look, params: Pairs) -> float:
+    """Who collides with whom is not as the task asks:"""
+    return count(look, wrong_contacts, params)
+
+
+@dataclass(frozen=True, slots=True)
+class Sights:
+    sees: tuple[str, ...] = ()
+    """Each a laser and what it must see: ``robot/lidar: hall, crate``. It must see nothing else."""
+    split: tuple[str, ...] = ()
+
+
+def wrong_sights(world: WorldFacts, params: Sights) -> Iterator[str]:
+    for each in params.sees:
+        name, _, listed = each.partition(":")
+        wanted = {part.strip() for part in listed.split(",") if part.strip()}
+        views: dict[str, tuple[bool, str]] = {}
+        for view in world.views:
+            thing = _called(view.thing, params.split)
+            if view.laser == name and (thing not in views or (view.sees and not views[thing][0])):
+                views[thing] = view.sees, view.why
+        if not views:
+            yield f"there is no laser {quoted(name)}"
+            continue
+        for thing in sorted(wanted - views.keys()):
+            yield f"there is no {quoted(thing)} in this world: {suggestion(thing, tuple(views))}"
+        for thing, (sees, why) in views.items():
+            if sees != (thing in wanted):
+                whom = "itself" if thing == name.partition("/")[0] else thing
+                yield (
+                    f"{name} sees {whom} ({why}), and should not"
+                    if sees
+                    else f"{name} does not see {whom} ({why}), and should"
+                )
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Sights)
+def sights(look: Look, params: Sights) -> float:
+    """Which laser sees whom is not as the task asks:"""
+    return count(look, wrong_sights, params)
+
+
+@check(none=17, full=16, unit="layers")
+def few_layers(look: Look, params: NoParams) -> float:
+    """The world has {actual}; {full} would do."""
+    world: WorldFacts = look.found.world
+    return math.nan if world.problems else float(len(world.layers))
+
+
+def names(world: WorldFacts, params: NoParams) -> Iterator[str]:
+    yield f"Every name in a layer's list counts: {', '.join(world.layers)}"

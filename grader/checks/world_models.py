@@ -1,0 +1,220 @@
+"""Checks of worlds: models, their bodies, joints and devices."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from grader.checks.contract import check
+from grader.checks.faults import ANY, AS_ASKED, count, metres, no_model
+from grader.kinds.contract import Look
+from grader.worlds.facts import Device, Joint, Model, Part, WorldFacts
+from kit.world.problems import quoted, suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class BodyAsked:
+    model: str = "robot"
+    body: str = "base"
+    kind: str = ""
+    """dynamic, static or kinematic"""
+    shape: str = ""
+    """circle or polygon"""
+    footprints: int = 0
+    """How many; 0: any number."""
+    x: float = ANY
+    y: float = ANY
+    """Where it is in the model."""
+    length: float = ANY
+    width: float = ANY
+    front: float = ANY
+    """x of its foremost point, in its own frame"""
+    collision: str = ""
+    sensor: str = ""
+    """yes or no, of all its footprints"""
+    within: float = 0.003
+
+
+def _part(world: WorldFacts, model_name: str, body: str) -> Part | str:
+    model = world.model(model_name)
+    if model is None:
+        return no_model(world, model_name)
+    for part in model.parts:
+        if part.name == body:
+            return part
+    names = [part.name for part in model.parts]
+    return f"{model_name} has no body {quoted(body)}: {suggestion(body, names)}"
+
+
+def wrong_body(world: WorldFacts, params: BodyAsked) -> Iterator[str]:
+    part = _part(world, params.model, params.body)
+    if isinstance(part, str):
+        yield part
+        return
+    name = f"{params.model}/{part.name}"
+    if params.kind and part.kind != params.kind:
+        yield f"{name} is {part.kind}, not {params.kind}"
+    if params.footprints and len(part.shapes) != params.footprints:
+        yield f"{name} has {len(part.shapes)} footprints, not {params.footprints}"
+    if params.shape and (other := [each.kind for each in part.shapes if each.kind != params.shape]):
+        yield f"{name} has a {other[0]} for a footprint, not a {params.shape}"
+    if part.box is None:
+        yield f"{name} has no footprint, so it is nowhere"
+        return
+    left, bottom, right, top = part.box
+    for what, is_, wanted in (
+        ("is so long", right - left, params.length),
+        ("is so wide", top - bottom, params.width),
+        ("has its front at x", right, params.front),
+        ("is at x", part.pose[0], params.x),
+        ("is at y", part.pose[1], params.y),
+    ):
+        if abs(is_ - wanted) > params.within:
+            yield f"{name} {what}: {metres(is_)}; {metres(wanted)} is wanted"
+    for what, flags, asked in (
+        ("collision", [each.collision for each in part.shapes], params.collision),
+        ("sensor", [each.sensor for each in part.shapes], params.sensor),
+    ):
+        if asked and any(flag != (asked == "yes") for flag in flags):
+            yield f"{name} has {what}: {str(asked != 'yes').lower()}"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=BodyAsked)
+def body(look: Look, params: BodyAsked) -> float:
+    """A body is not as the task asks:"""
+    return count(look, wrong_body, params)
+
+
+@dataclass(frozen=True, slots=True)
+class JointAsked:
+    model: str = "robot"
+    a: str = "base"
+    b: str = "wheel"
+    kind: str = ""
+    """weld or revolute"""
+    x: float = ANY
+    y: float = ANY
+    """Where both ends are, in the model's frame."""
+    within: float = 0.005
+
+
+def wrong_joint(world: WorldFacts, params: JointAsked) -> Iterator[str]:
+    model = world.model(params.model)
+    if model is None:
+        yield no_model(world, params.model)
+        return
+    joint = _between(model, params)
+    if joint is None:
+        yield f"no joint joins {params.a} and {params.b} of {params.model}"
+        return
+    if params.kind and joint.kind != params.kind:
+        yield f"the joint {joint.name} is {joint.kind}, not {params.kind}"
+    for name, (x, y) in zip(joint.bodies, joint.ends, strict=True):
+        if abs(x - params.x) > params.within or abs(y - params.y) > params.within:
+            yield (
+                f"the joint {joint.name} holds {name} at [{x:.3g}, {y:.3g}] of the model, "
+                f"not at [{params.x:g}, {params.y:g}]: an anchor counts from its own body"
+            )
+
+
+def _between(model: Model, params: JointAsked) -> Joint | None:
+    return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
+
+
+@check(none=1, full=0, words=AS_ASKED, params=JointAsked)
+def joint(look: Look, params: JointAsked) -> float:
+    """A joint is not as the task asks:"""
+    return count(look, wrong_joint, params)
+
+
+@dataclass(frozen=True, slots=True)
+class Topics:
+    model: str = ""
+    """By default any."""
+    topics: tuple[str, ...] = ()
+    """Each a name, perhaps with the type of its messages after a space."""
+
+
+def silent(publishes: bool) -> Callable[[WorldFacts, Topics], Iterator[str]]:
+    def missing(world: WorldFacts, params: Topics) -> Iterator[str]:
+        there = {
+            end.topic: end.type
+            for end in world.ends
+            if end.publishes is publishes and params.model in ("", end.model)
+        }
+        others = {end.topic for end in world.ends if end.publishes is not publishes}
+        does, other = ("publishes", "subscribed") if publishes else ("subscribes", "published")
+        for each in params.topics:
+            topic, _, kind = each.partition(" ")
+            if topic in there:
+                if kind and there[topic] != kind:
+                    yield f"{topic} carries {there[topic]}, not {kind}"
+            elif topic in others:
+                yield f"{topic} is only {other} by a plugin: nothing {does} it"
+            else:
+                yield f"no plugin {does} {topic}: {suggestion(topic, tuple(there))}"
+
+    return missing
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Topics)
+def publishes(look: Look, params: Topics) -> float:
+    """The world's plugins do not say what the task asks:"""
+    return count(look, silent(True), params)
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Topics)
+def subscribes(look: Look, params: Topics) -> float:
+    """The world's plugins do not listen where the task asks:"""
+    return count(look, silent(False), params)
+
+
+@dataclass(frozen=True, slots=True)
+class LaserAsked:
+    laser: str = "robot/lidar"
+    """Model and plugin."""
+    body: str = ""
+    rays: int = 0
+    first: float = ANY
+    last: float = ANY
+    """rad"""
+    range: float = ANY
+    within: float = 0.01
+
+
+def wrong_laser(world: WorldFacts, params: LaserAsked) -> Iterator[str]:
+    device = _device(world, params.laser)
+    if isinstance(device, str):
+        yield device
+        return
+    if params.body and device.body != params.body:
+        yield f"{params.laser} sits on {device.body}, not on {params.body}"
+    if params.rays and device.rays != params.rays:
+        yield (
+            f"{params.laser} has {device.rays} rays, not {params.rays}: there are (max - min) / increment + 1"
+        )
+    for what, is_, wanted in (
+        ("first ray points to", device.first, params.first),
+        ("last ray points to", device.last, params.last),
+        ("range is", device.range, params.range),
+    ):
+        if abs(is_ - wanted) > params.within:
+            yield f"the {what} {is_:.4g}, not {wanted:.4g}"
+
+
+def _device(world: WorldFacts, name: str) -> Device | str:
+    model_name, _, plugin = name.partition("/")
+    model = world.model(model_name)
+    if model is None:
+        return no_model(world, model_name)
+    names = [device.name for device in model.devices]
+    found = next((device for device in model.devices if device.name == plugin), None)
+    if found is None:
+        return f"{model_name} has no plugin {quoted(plugin)}: {suggestion(plugin, names)}"
+    return found if found.rays else f"{name} is a {found.type}, not a Laser"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=LaserAsked)
+def laser(look: Look, params: LaserAsked) -> float:
+    """The laser is not as the task asks:"""
+    return count(look, wrong_laser, params)

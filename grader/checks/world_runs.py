@@ -1,0 +1,121 @@
+"""Checks of worlds: what happens while one runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grader.checks.contract import NoParams, check
+from grader.checks.faults import AS_ASKED, Run, metres, run_count
+from grader.kinds.contract import Look
+
+
+@dataclass(frozen=True, slots=True)
+class TopicRate:
+    topic: str = "/scan"
+    rate: float = 10.0
+    """Messages a second."""
+    within: float = 0.05
+    """A share."""
+
+
+def wrong_rate(run: Run, params: TopicRate) -> Iterator[str]:
+    count = {heard.topic: heard.count for heard in run.run.heard}.get(params.topic, 0)
+    is_ = count / run.run.seconds if run.run.seconds else 0.0
+    if not count:
+        yield f"nothing came on {params.topic}"
+    elif abs(is_ - params.rate) > params.within * params.rate:
+        yield f"{params.topic} came {is_:.3g} times a second, not {params.rate:g}"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=TopicRate)
+def rate(look: Look, params: TopicRate) -> float:
+    """A plugin speaks too often or too rarely:"""
+    return run_count(look, wrong_rate, params)
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    topic: str = "/scan"
+    deviation: float = 0.02
+    """m"""
+    within: float = 0.1
+    """A share."""
+
+
+def wrong_noise(run: Run, params: Noise) -> Iterator[str]:
+    spread = {heard.topic: heard.spread for heard in run.run.heard}.get(params.topic)
+    if spread is None:
+        yield f"nothing came on {params.topic}"
+    elif abs(spread - params.deviation) > params.within * params.deviation:
+        yield f"on {params.topic} one ray's readings spread by {spread:.4g} m, not {params.deviation:g} m"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=Noise)
+def noise(look: Look, params: Noise) -> float:
+    """The laser's noise, measured while the world stood still, is not what was asked ({where}):"""
+    return run_count(look, wrong_noise, params)
+
+
+def not_there(run: Run, params: NoParams) -> Iterator[str]:
+    if run.run.reached_s is None:
+        away = "" if run.run.away is None else f"it ended {metres(run.run.away)} away"
+        yield ", ".join(
+            part
+            for part in (
+                away,
+                f"after {metres(run.run.distance)} of way" if run.run.distance > 0.05 else "and never moved",
+                f"with {run.run.bumps} bumps" if run.run.bumps else "",
+            )
+            if part
+        )
+
+
+@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+def drives(look: Look, params: NoParams) -> float:
+    """Our driver does not reach its target in your world ({where}):"""
+    return run_count(look, not_there, params)
+
+
+@check(none=1, full=0, unit="bumps", params=NoParams)
+def bumps(look: Look, params: NoParams) -> float:
+    """While our driver drove, the robot touched something: {actual} ({where})."""
+    if not isinstance(look.found, Run) or look.found.run.problem:
+        return math.nan
+    return float(look.found.run.bumps)
+
+
+def no_way(run: Run, params: NoParams) -> Iterator[str]:
+    if not run.run.way:
+        yield "Look for a wall too many, a gap too narrow, or a start inside a wall"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+def reachable(look: Look, params: NoParams) -> float:
+    """There is no way that is wide enough for the robot from its start to the target ({where})."""
+    return run_count(look, no_way, params)
+
+
+def leaks(run: Run, params: NoParams) -> Iterator[str]:
+    if not run.run.closed:
+        yield "Look for two walls that should meet and do not"
+
+
+@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+def closed(look: Look, params: NoParams) -> float:
+    """The walls do not hold the robot in: somewhere it can leave."""
+    return run_count(look, leaks, params)
+
+
+def apart(run: Run, params: NoParams) -> Iterator[str]:
+    if run.run.gap > 0.0:
+        yield f"The joint {run.run.widest} was {run.run.gap * 1000:.0f} mm apart"
+
+
+@check(none=0.05, full=0.01, unit="m", params=NoParams)
+def together(look: Look, params: NoParams) -> float:
+    """While it drove the model came apart by {actual} ({where}); at most {full} is allowed."""
+    if not isinstance(look.found, Run) or look.found.run.problem:
+        return math.nan
+    return float(look.found.run.gap)

@@ -1,0 +1,219 @@
+"""What there is to know of a world, as plain records that travel as JSON. Lengths in metres, angles in radians."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
+
+Box = tuple[float, float, float, float]
+"""Left, bottom, right, top."""
+Triple = tuple[float, float, float]
+
+
+class Told:
+    """A record whose fields are plain values and tuples of them; those that hold records say so in ``PARTS``."""
+
+    PARTS: Mapping[str, type[Told]] = {}
+
+    @classmethod
+    def told(cls, said: Mapping[str, Any]) -> Self:
+        """The record that ``dataclasses.asdict`` and JSON made of one."""
+        names = [field.name for field in fields(cls)]  # type: ignore[arg-type]  # every heir is a dataclass
+        return cls(**{name: cls._part(name, said[name]) for name in names})
+
+    @classmethod
+    def _part(cls, name: str, value: Any) -> Any:
+        part = cls.PARTS.get(name)
+        if part is not None:
+            return tuple(map(part.told, value))
+        return _frozen(value)
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+@dataclass(frozen=True)
+class Walls(Told):
+    """One entry of ``layers`` that has a map."""
+
+    map: str
+    """The map file's name without its ending: what checks call these walls."""
+    source: str
+    """The name of the picture or .dat file."""
+    names: tuple[str, ...]
+    box: Box | None
+    """Around all of them; None if there are none."""
+    segments: int
+
+
+@dataclass(frozen=True)
+class Shape(Told):
+    """One footprint."""
+
+    kind: str
+    """circle or polygon"""
+    box: Box
+    """In its body's frame."""
+    sensor: bool
+    collision: bool
+    density: float
+
+
+@dataclass(frozen=True)
+class Part(Told):
+    """One body of a model."""
+
+    PARTS = {"shapes": Shape}  # noqa: RUF012  # read only
+    name: str
+    kind: str
+    pose: Triple
+    """In the model's frame."""
+    shapes: tuple[Shape, ...]
+
+    @property
+    def box(self) -> Box | None:
+        """Around all its footprints, in its own frame."""
+        if not self.shapes:
+            return None
+        left, bottom, right, top = zip(*(shape.box for shape in self.shapes), strict=True)
+        return min(left), min(bottom), max(right), max(top)
+
+
+@dataclass(frozen=True)
+class Joint(Told):
+    """One joint, and where its two ends are in the model's frame at the start."""
+
+    name: str
+    kind: str
+    bodies: tuple[str, str]
+    ends: tuple[tuple[float, float], tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Device(Told):
+    """One plugin of a model."""
+
+    name: str
+    type: str
+    body: str
+    """That carries it; empty where it says none."""
+    rays: int
+    """Of a laser; otherwise these four are 0."""
+    first: float
+    last: float
+    range: float
+
+
+@dataclass(frozen=True)
+class Model(Told):
+    PARTS = {"parts": Part, "joints": Joint, "devices": Device}  # noqa: RUF012  # read only
+    name: str
+    namespace: str
+    pose: Triple
+    parts: tuple[Part, ...]
+    joints: tuple[Joint, ...]
+    devices: tuple[Device, ...]
+
+
+@dataclass(frozen=True)
+class Meeting(Told):
+    """What two things do where they meet. A thing is (model, body), or ("", map) for walls."""
+
+    a: tuple[str, str]
+    b: tuple[str, str]
+    collides: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class View(Told):
+    """Whether a laser, ``model/plugin``, sees a thing."""
+
+    laser: str
+    thing: tuple[str, str]
+    sees: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class Ends(Told):
+    """One topic of a device."""
+
+    model: str
+    topic: str
+    type: str
+    publishes: bool
+
+
+@dataclass(frozen=True)
+class WorldFacts(Told):
+    """A world as it was read; or the problems that kept it from being read, and nothing else."""
+
+    PARTS = {"walls": Walls, "models": Model, "meetings": Meeting, "views": View, "ends": Ends}  # noqa: RUF012
+    problems: tuple[str, ...] = ()
+    layers: tuple[str, ...] = ()
+    """Every layer name."""
+    walls: tuple[Walls, ...] = ()
+    models: tuple[Model, ...] = ()
+    meetings: tuple[Meeting, ...] = ()
+    views: tuple[View, ...] = ()
+    ends: tuple[Ends, ...] = ()
+    picture: str = ""
+
+    def model(self, name: str) -> Model | None:
+        return next((each for each in self.models if each.name == name), None)
+
+
+@dataclass(frozen=True)
+class Heard(Told):
+    """What was said on one topic while the world ran."""
+
+    topic: str
+    count: int
+    spread: float
+    """Of a laser: the standard deviation of one ray's readings, over all rays that always hit; else 0."""
+
+
+@dataclass(frozen=True)
+class RunFacts(Told):
+    """A world that ran for some seconds, or the reason why it could not."""
+
+    PARTS = {"heard": Heard}  # noqa: RUF012  # read only
+    problem: str = ""
+    """Why it did not run to its end: our driver failed, or there is nobody to drive."""
+    seconds: float = 0.0
+    heard: tuple[Heard, ...] = ()
+    reached_s: float | None = None
+    away: float | None = None
+    """From the robot's hull to the target at the end [m]."""
+    distance: float = 0.0
+    bumps: int = 0
+    gap: float = 0.0
+    """How far apart two ends of one joint have been at most, after the first half second [m]."""
+    widest: str = ""
+    """That joint's name."""
+    way: bool = False
+    """Whether a robot of this size finds a way from the start to the target."""
+    closed: bool = False
+    """Whether the walls hold the robot in."""
+    picture: str = ""
+    finished: bool = True
+    """False where the run was ended because it took too long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A run to make."""
+
+    name: str
+    seed: int
+    time_s: float
+    driver: str
+    """A Python file of ours; empty: nobody drives."""
+    robot: str
+    """The model; empty: the first with a drive."""
+    target: tuple[float, float] | None
+    radius: float
+    until_reached: bool

@@ -1,0 +1,78 @@
+"""Whether there is a way between walls: a flood over a grid of cells."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+CELL: Final = 0.02
+"""m; larger where the world is."""
+MOST_CELLS: Final = 1_000
+"""Along one side of the grid."""
+RIM: Final = 4
+"""Cells around everything."""
+
+
+def flood(
+    walls: NDArray[np.float64], start: tuple[float, float], target: tuple[float, float] | None, radius: float
+) -> tuple[bool, bool]:
+    """(whether a disc of this radius [m] comes from the start to the target, whether the walls hold it in).
+
+    ``walls``: (n, 4) ``x1 y1 x2 y2`` [m]. Without a target there is no way to it.
+    """
+    points = np.concatenate([walls.reshape(-1, 2), [start], [] if target is None else [target]], axis=None)
+    points = points.reshape(-1, 2)
+    low, size = points.min(axis=0) - radius, np.ptp(points, axis=0) + 2 * radius
+    cell = max(CELL, float(size.max()) / MOST_CELLS)
+    shape = np.ceil(size / cell).astype(int) + 2 * RIM
+    low = low - RIM * cell
+    free = np.ones(tuple(shape), dtype=np.bool_)
+    for segment in walls:
+        _block(free, segment, low, cell, radius)
+
+    def at(point: tuple[float, float]) -> tuple[int, int]:
+        column, row = ((np.array(point) - low) / cell).astype(int)
+        return int(column), int(row)
+
+    wet = _filled(free, at(start))
+    rim = wet[0].any() or wet[-1].any() or wet[:, 0].any() or wet[:, -1].any()
+    return target is not None and bool(wet[at(target)]), bool(wet.any() and not rim)
+
+
+def _block(
+    free: NDArray[np.bool_],
+    segment: NDArray[np.float64],
+    low: NDArray[np.float64],
+    cell: float,
+    radius: float,
+) -> None:
+    """Takes the cells whose middles are nearer to a wall than the radius."""
+    a, b = segment[:2] - low, segment[2:] - low
+    first = np.maximum(np.floor((np.minimum(a, b) - radius) / cell).astype(int) - 1, 0)
+    last = np.minimum(np.ceil((np.maximum(a, b) + radius) / cell).astype(int) + 1, free.shape)
+    xs = (np.arange(first[0], last[0]) + 0.5) * cell
+    ys = (np.arange(first[1], last[1]) + 0.5) * cell
+    along, length = b - a, math.dist(a, b)
+    x, y = xs[:, None] - a[0], ys[None, :] - a[1]
+    part = np.clip((x * along[0] + y * along[1]) / max(length * length, 1e-12), 0.0, 1.0)
+    near = np.hypot(x - part * along[0], y - part * along[1]) < max(radius, cell)
+    free[first[0] : last[0], first[1] : last[1]] &= ~near
+
+
+def _filled(free: NDArray[np.bool_], start: tuple[int, int]) -> NDArray[np.bool_]:
+    """The free cells that hang together with the start."""
+    wet = np.zeros_like(free)
+    wet[start] = free[start]
+    fresh = wet.copy()
+    while fresh.any():
+        grown = np.zeros_like(free)
+        grown[1:] |= fresh[:-1]
+        grown[:-1] |= fresh[1:]
+        grown[:, 1:] |= fresh[:, :-1]
+        grown[:, :-1] |= fresh[:, 1:]
+        fresh = grown & free & ~wet
+        wet |= fresh
+    return wet
