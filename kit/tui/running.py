@@ -69,8 +69,8 @@ class Running:
     def pacing(self) -> Pacing:
         return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
 
-    def open(self, find: Callable[[], Place], controller: ControllerFile) -> None:
-        """Opens another world in place of the present one, which stays if that fails."""
+    def open(self, find: Callable[[], Place], controller: ControllerFile, *, paused: bool = False) -> None:
+        """Opens another world in place of the present one, which stays if that fails. ``paused``: it stands still."""
 
         def job() -> None:
             from kit.session import Session
@@ -78,6 +78,7 @@ class Running:
             session = Session(find(), seed=self._seed, watched=True)
             self._record(session)
             session.drive_with(controller)
+            session.runner.paused = paused
             self._replace(session)
 
         self._jobs.put(job)
@@ -125,6 +126,15 @@ class Running:
         """Has the session shown to somebody else too, in the world's thread, as often as there are views."""
         self._listener = listener
         self.wish(lambda session: None)
+
+    def shut(self) -> None:
+        """Ends the world and its controller; another may be opened later. Does not wait."""
+
+        def job() -> None:
+            with self._exchange:
+                self._drop()
+
+        self._jobs.put(job)
 
     def close(self) -> None:
         """Ends the world and its controller, and waits for both; not for a world that is being opened."""
@@ -180,6 +190,8 @@ class Running:
             if self._door is not None:
                 runner.guests.append(self._door)
         live.__enter__()
+        if runner.paused:  # nobody ticks, and yet it is to be seen
+            live.post(_nothing)
 
     def _drop(self) -> None:
         live, session, door = self._live, self._session, self._door

@@ -34,7 +34,7 @@ class Visit:
 
     def __init__(self, lesson: Lesson, progress: Progress, workspace: Workspace) -> None:
         self.lesson = lesson
-        self._progress = progress
+        self.progress = progress
         self._workspace = workspace
         self._standing = self._fold()
         self._reports: dict[str, Report] = {}
@@ -136,11 +136,11 @@ class Visit:
         return next(iter(report.lost), None) if report is not None else None
 
     def _note(self, kind: Kind, subject: str, content: dict[str, object] | None = None) -> None:
-        self._progress.add(kind, subject, content)
+        self.progress.add(kind, subject, content)
         self._standing = self._fold()
 
     def _fold(self) -> Standing:
-        return standing(self.lesson, self._progress.events())
+        return standing(self.lesson, self.progress.events())
 
 
 def _hint(lost: Judged, number: int) -> Hint:

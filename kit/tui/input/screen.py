@@ -46,6 +46,10 @@ class DriveScreen(Screen[None]):
     def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
         """Called at once when what the keys ask for has changed: messages like ``p_up``, and strengths."""
 
+    def takes(self, key: str) -> bool:
+        """Whether a key drives here; those that do not are left to the screen's bindings."""
+        return drive_key(key) is not None
+
     def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
         """Called for every key that arrives, with the messages it causes, before ``drove``; kind None: a timeout."""
 
@@ -94,7 +98,7 @@ class DriveScreen(Screen[None]):
         self._tell(self.drive.terminal_answered(flags, hidden_by))
 
     def on_key(self, event: events.Key) -> None:
-        if drive_key(event.key) is None:
+        if not self.takes(event.key):
             self._hear(Kind.PRESS, event.key, ())
             return
         event.stop()
@@ -108,8 +112,9 @@ class DriveScreen(Screen[None]):
         self._hear(Kind.PRESS, event.key, messages)
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
-        self._hear(Kind.REPEAT, event.key, self.drive.repeat(event.key))
-        if drive_key(event.key) is None:
+        takes = self.takes(event.key)
+        self._hear(Kind.REPEAT, event.key, self.drive.repeat(event.key) if takes else ())
+        if not takes:
             # It does what another press does, as on terminals that do not tell repeats apart.
             self.app.post_message(events.Key(event.key, event.character))
 

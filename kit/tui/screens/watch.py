@@ -70,6 +70,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
         Binding("b", "beams", show=False),
         Binding("r", "reset", "reset"),
         Binding("question_mark", "help", "help"),
+        Binding("backspace", "back", show=False),
         Binding("ctrl+c,ctrl+q", "app.quit", "leave", priority=True),
     ]
     DEFAULT_CSS = f"""
@@ -110,7 +111,8 @@ class WatchScreen(StillScreen[None], DriveScreen):
         """Has ``behind`` open what this screen is to show first."""
 
     def on_mount(self) -> None:
-        self._rows("keys").show([self.keys])
+        way_out = row(("Bksp", "bold"), " back ") if self._is_above_another else ()
+        self._rows("keys").show([(*self.keys, *way_out)])
         self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
         self.behind = Running(
             on_view=self._view_arrived,
@@ -181,6 +183,15 @@ class WatchScreen(StillScreen[None], DriveScreen):
         return self.query_one(f"#{name}", TextRows)
 
     # Keys
+
+    @property
+    def _is_above_another(self) -> bool:
+        """Whether there is a screen to go back to."""
+        return len(self.app.screen_stack) > 2
+
+    def action_back(self) -> None:
+        if self._is_above_another:
+            self.dismiss()
 
     def action_pause(self) -> None:
         paused = self.view is not None and self.view.paused

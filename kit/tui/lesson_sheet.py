@@ -1,0 +1,105 @@
+"""The middle of a lesson's screen: the picture first, the words below or beside it, what is asked always in sight."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from textual.app import ComposeResult
+from textual.containers import Container
+
+from kit.tui.scene_view import SceneView
+from kit.tui.text_rows import Row, TextRows, row
+
+LEAST_PICTURE: Final = 8
+MOST_PICTURE: Final = 14
+"""Rows of a scene above the words."""
+BESIDE: Final = 82
+"""Columns of the words, where the picture is beside them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """What stands on the sheet."""
+
+    words: Sequence[Row]
+    asked: Sequence[Row] = ()
+    """Below the words, always in sight."""
+    picture: Sequence[str] = ()
+    """Fixed characters, in place of a scene."""
+    moves: bool = False
+    """Whether the scene is seen."""
+    first_words: int = 0
+    """So many of the words are there from the beginning: the picture's size is made for them."""
+
+
+class LessonSheet(Container):
+    """``scene``: is opened and shut by whoever owns the sheet."""
+
+    DEFAULT_CSS = f"""
+    LessonSheet {{ height: 1fr; layout: vertical; }}
+    LessonSheet #picture {{ height: auto; }}
+    LessonSheet #words {{ height: 1fr; }}
+    LessonSheet #ask {{ height: auto; }}
+    LessonSheet #right {{ height: 1fr; layout: vertical; }}
+    LessonSheet.-beside {{ layout: horizontal; }}
+    LessonSheet.-beside SceneView {{ height: 1fr !important; }}
+    LessonSheet.-beside #picture {{ width: 1fr; height: 1fr; }}
+    LessonSheet.-beside #right {{ width: {BESIDE}; }}
+    """
+
+    def __init__(self, scene: SceneView) -> None:
+        super().__init__()
+        self._scene = scene
+        self._content = Content(())
+        self._top = 0
+        self._room = 1
+        self._scene_rows = 0
+
+    def compose(self) -> ComposeResult:
+        yield self._scene
+        yield TextRows(id="picture")
+        with Container(id="right"):
+            yield TextRows(id="words")
+            yield TextRows(id="ask")
+
+    def show(self, content: Content, room: int, *, beside: bool) -> None:
+        """``room``: rows there are for all of it. ``beside``: the picture is, not above."""
+        self._content = content
+        self.set_class(beside and (content.moves or bool(content.picture)), "-beside")
+        picture = self._rows("picture")
+        picture.show([row("  " + line) for line in content.picture])
+        picture.display = bool(content.picture)
+        self._scene.display = content.moves
+        self._rows("ask").show(content.asked)
+        asked = len(content.asked)
+        least = min(LEAST_PICTURE, max(room // 2, 4))
+        rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
+        if content.moves and self._scene_rows != rows:
+            self._scene.styles.height = self._scene_rows = rows
+        used = 0 if beside else rows if content.moves else len(content.picture)
+        self._room = max(1, room - used - asked)
+        self._show_words()
+
+    def scroll_words(self, lines: int) -> None:
+        self._top += lines
+        self._show_words()
+
+    def scroll_words_to(self, line: int) -> None:
+        """So that a line and what follows is in sight, if not all is."""
+        self._top = line
+        self._show_words()
+
+    def _show_words(self) -> None:
+        words = self._content.words
+        self._top = max(0, min(self._top, len(words) - self._room))
+        shown = list(words[self._top : self._top + self._room])
+        below = len(words) - self._top - len(shown)
+        if below > 0 and shown:
+            key = "PgDn" if self._scene.by_hand else "down"
+            shown[-1] = row((f"  ... {below + 1} more lines: {key}", "dim"))
+        self._rows("words").show(shown)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)

@@ -1,0 +1,392 @@
+"""A lesson: one step a screen, the picture first, the keys that work now in sight, and nothing goes on by itself."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from kit.inspection.sockets import sockets_folder
+from kit.school.lessons.records import Command, How, Option, Step
+from kit.school.lessons.visit import Visit
+from kit.school.lessons.works import WorkError
+from kit.school.progress import ProgressError
+from kit.tui import lesson_rows as say
+from kit.tui.aside import run_aside
+from kit.tui.input.drive import DriveState
+from kit.tui.input.keys import base_key, named
+from kit.tui.input.screen import DriveScreen
+from kit.tui.lesson_sheet import BESIDE, Content, LessonSheet
+from kit.tui.look import Look
+from kit.tui.painting import StillScreen
+from kit.tui.scene_view import SceneView
+from kit.tui.screens.lesson_bench import BenchKeys
+from kit.tui.screens.lesson_keys import LESSON_HELP, Possible, keys
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+from kit.tui.text_rows import Row, TextRows, row
+from kit.tui.workbench import Workbench
+from kit.workspace import Workspace
+
+ARROWS = ("up", "down", "left", "right")
+LOOK_S = 0.2
+"""Between two looks at the exercise's file and its check."""
+BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
+
+
+class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
+    """Goes through one lesson. Draws nothing but what a key, a scene or a check has changed."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("n,enter", "next", show=False),
+        Binding("b", "previous", show=False),
+        Binding("l", "steps", show=False),
+        *(Binding(str(number), f"foresee({number})", show=False) for number in range(1, 5)),
+        Binding("a", "again", show=False),
+        Binding("o", "open", show=False),
+        Binding("k", "questions", show=False),
+        Binding("down,j", "scroll(1)", show=False),
+        Binding("up", "scroll(-1)", show=False),
+        Binding("pagedown,space", "scroll(8)", show=False),
+        Binding("pageup", "scroll(-8)", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "leave", show=False),
+        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
+    ]
+    DEFAULT_CSS = """
+    LessonScreen { layout: vertical; }
+    LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
+    LessonScreen #file, LessonScreen #said { height: auto; }
+    """
+    HORIZONTAL_BREAKPOINTS = BREAKPOINTS
+
+    def __init__(self, look: Look, visit: Visit, desk: Workspace) -> None:
+        super().__init__(look.terminal)
+        self.look = look
+        self.visit = visit
+        self.desk = desk
+        self.step: Step = visit.first_step
+        self.bench: Workbench | None = None
+        self._scene = SceneView(look, desk.controllers, sockets_folder(desk.folder))
+        self._told = True
+        """Whether what there is to say of a prediction may be said: the scene has been seen."""
+        self._is_over = False
+        self._sheet = LessonSheet(self._scene)
+        self._until_answer = 0
+        self._strength = 1.0
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="title")
+        yield self._sheet
+        yield TextRows(id="file")
+        yield TextRows(id="said")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self.set_interval(LOOK_S, self.look_at_bench)
+        self._enter(self.step)
+
+    def on_unmount(self) -> None:
+        self._leave_bench()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self.show)
+
+    def on_screen_resume(self) -> None:
+        self._scene.hold(self._waits)
+        self._scene.draw()
+        self.show()
+
+    def on_screen_suspend(self) -> None:
+        self._scene.hold(True)
+
+    # Steps
+
+    @property
+    def chosen(self) -> Option | None:
+        """What was foreseen in this step."""
+        return self.visit.foreseen(self.step)
+
+    @property
+    def _waits(self) -> bool:
+        """Whether the step waits for a prediction."""
+        return bool(self.step.options) and self.chosen is None
+
+    def _enter(self, step: Step) -> None:
+        """Shows a step from its beginning."""
+        self._leave_bench()
+        self.step, self._is_over = step, False
+        self._sheet.scroll_words_to(0)
+        self._told = not self._waits
+        if step.scene is not None:
+            self._scene.open(step.scene, still=self._waits)
+        else:
+            self._scene.shut()
+        if step.exercise is not None:
+            try:
+                self.bench = Workbench(self.visit, step.exercise)
+            except WorkError as error:
+                self.tell("The exercise cannot be laid out", str(error))
+        self.show()
+
+    def _leave_bench(self) -> None:
+        if self.bench is not None:
+            self.bench.close()
+            self.bench = None
+
+    def tell(self, title: str, text: str) -> None:
+        """What went wrong, as a page over the step."""
+        self.app.push_screen(Page(title, wrapped(text)))
+
+    # What is shown
+
+    def show(self) -> None:
+        """Everything, as it stands now. Rows that are the same cost nothing."""
+        width = self.size.width
+        if not width or not self.is_mounted:
+            return
+        over, step = self._is_over, self.step
+        file = say.file_rows(str(self.bench.file), self.bench.by_hand, width) if self.bench else []
+        said = [self.bench_status()] if self.bench is not None else []
+        self._rows("heading").show([say.heading(self.visit.standing, step, width)])
+        self._show_title()
+        self._rows("file").show(file)
+        self._rows("said").show(said)
+        self._rows("keys").show([self.asked_keys() or keys(self._possible())])
+        content = Content(
+            self._written(),
+            [] if over or not step.options else self._asked(),
+            () if over else tuple(step.picture.splitlines()),
+            moves=step.scene is not None and not over,
+            first_words=self._until_answer,
+        )
+        self._sheet.show(
+            content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide")
+        )
+
+    def _show_title(self) -> None:
+        self._rows("title").show(
+            [row() if self._is_over else say.title(self.step, self._caption(), self.size.width)]
+        )
+
+    def _written(self) -> list[Row]:
+        """The words of the step, and below them what is said to what the student did."""
+        if self._is_over:
+            return say.ending(self.visit.standing, self._width)
+        filled = [(each, self._filled(each.line)) for each in self.step.commands]
+        made = [row(), *say.words(self._filled(self.step.text), self._width)]
+        made += say.commands(filled, self._width)
+        self._until_answer = len(made)
+        if self.chosen is not None and self._told:
+            made += say.feedback(self.step, self.chosen, self._width)
+        report = self.bench.report if self.bench is not None else None
+        if report is not None and self.bench is not None:
+            made += say.verdict(report, self.visit.hints(self.bench.exercise), self._width)
+        return made
+
+    def _asked(self) -> list[Row]:
+        return [row(), *say.question(self.step, self.chosen, self._told, self._width)]
+
+    def _caption(self) -> str:
+        scene, view = self._scene.scene, self._scene.view
+        if scene is None:
+            return ""
+        if view is None:
+            return "opening ..."
+        if view.failure is not None:
+            return "the controller has stopped"
+        if self._waits:
+            return "stands still until you choose"
+        if self._scene.by_hand:
+            return "yours to drive"
+        return "at rest" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
+
+    def _possible(self) -> Possible:
+        if self._is_over:
+            return Possible(questions=True, next=False)
+        return Possible(
+            choose=len(self.step.options) if self._waits else 0,
+            drive_scene=self._scene.by_hand,
+            again=self.step.scene is not None and not self._waits,
+            open=bool(self._openable()),
+            back=self.step.number > 1,
+            next=not self._waits,
+            **self.bench_possible(),
+        )
+
+    @property
+    def _width(self) -> int:
+        """Of the words."""
+        return min(self.size.width, BESIDE) if self.has_class("-wide") else self.size.width
+
+    def _filled(self, text: str) -> str:
+        """With the student's own paths."""
+        if self.bench is None:
+            return text
+        return text.replace("{file}", str(self.bench.file)).replace("{folder}", str(self.bench.file.parent))
+
+    def show_answer(self) -> None:
+        """Scrolls to what is said to what the student did, where it is not in sight anyway."""
+        self.show()
+        self._sheet.scroll_words_to(self._until_answer)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # The scene
+
+    def on_scene_view_moved(self) -> None:
+        if not self.is_active:
+            return
+        if not self._told and not self._waits and self._scene.is_resting:
+            self._tell_answer()
+        self._rows("title").show(
+            [row() if self._is_over else say.title(self.step, self._caption(), self.size.width)]
+        )
+
+    def on_scene_view_trouble(self, event: SceneView.Trouble) -> None:
+        self.tell("The scene cannot be shown", event.text)
+        if not self._waits:
+            self._tell_answer()
+
+    def takes(self, key: str) -> bool:
+        return self._scene.by_hand and base_key(key) in ARROWS
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
+        if (messages or strength != self._strength) and self._scene.by_hand:
+            self._scene.press(messages, strength)
+        self._strength = strength
+
+    # Keys
+
+    def on_key(self, event: events.Key) -> None:
+        if event.key != "y" and self.leave_question():
+            event.stop()
+            event.prevent_default()
+
+    def action_foresee(self, number: int) -> None:
+        if not self._waits or number > len(self.step.options):
+            return
+        try:
+            self.visit.foresee(self.step, number - 1)
+        except ProgressError as error:
+            self.tell("Your choice could not be kept", str(error))
+            return
+        if self.step.scene is not None and self._scene.view is not None:
+            self._scene.go()
+            self.show()
+        else:
+            if self.step.scene is not None:
+                self._scene.again()
+            self._tell_answer()
+
+    def _tell_answer(self) -> None:
+        self._told = True
+        self.show_answer()
+
+    def action_next(self) -> None:
+        if self._is_over:
+            return
+        if self._waits:
+            return
+        if not self._told:
+            self._tell_answer()
+            return
+        if self.step.exercise is None:
+            try:
+                self.visit.go_through(self.step)
+            except ProgressError as error:
+                self.tell("This step could not be noted", str(error))
+                return
+        if self.step.number == len(self.visit.lesson.steps):
+            self._leave_bench()
+            self._scene.shut()
+            self._is_over = True
+            self.show()
+            self._sheet.scroll_words_to(0)
+        else:
+            self._enter(self.visit.step(self.step.number + 1))
+
+    def action_previous(self) -> None:
+        if self._is_over:
+            self._enter(self.step)
+        elif self.step.number > 1:
+            self._enter(self.visit.step(self.step.number - 1))
+
+    @work
+    async def action_steps(self) -> None:
+        standing = self.visit.standing
+        choices = [
+            Choice(
+                str(step.number),
+                f"{'[x]' if standing.is_step_done(step) else '[ ]'} {step.number}",
+                step.title,
+            )
+            for step in self.visit.lesson.steps
+        ]
+        chosen = await self.app.push_screen_wait(
+            Picker(self.visit.lesson.title, choices, str(self.step.number))
+        )
+        if chosen is not None:
+            self._enter(self.visit.step(int(chosen)))
+
+    def action_again(self) -> None:
+        if self.step.scene is not None and not self._waits and not self._is_over:
+            self._scene.again()
+
+    def action_scroll(self, lines: int) -> None:
+        self._sheet.scroll_words(lines)
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("This lesson", LESSON_HELP))
+
+    def action_leave(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()
+
+    def _openable(self) -> list[Command]:
+        """The commands that can be run here; for those that look into a world, what opens that world."""
+        made = [each for each in self.step.commands if each.how is not How.BESIDE]
+        places = dict.fromkeys(each.place for each in self.step.commands if each.how is How.BESIDE)
+        return made + [Command(f"kit play {place}", How.SCREEN, place) for place in places]
+
+    @work
+    async def action_open(self) -> None:
+        commands = self._openable() if not self._is_over else []
+        if not commands:
+            return
+        chosen: str | None = "0"
+        if len(commands) > 1:
+            choices = [Choice(str(at), self._filled(each.line)) for at, each in enumerate(commands)]
+            chosen = await self.app.push_screen_wait(Picker("Open", choices))
+        if chosen is None:
+            return
+        command = commands[int(chosen)]
+        self._scene.hold(True)
+        done = run_aside(
+            self.app,
+            self._filled(command.line),
+            self.look.terminal,
+            workspace=self.desk.folder,
+            folder=self.bench.file.parent if self.bench is not None else None,
+            waits=command.how is How.ALONE,
+        )
+        self._scene.hold(self._waits)
+        if not done:
+            self.tell(
+                "That cannot be opened here", f"Type it in a second terminal: {self._filled(command.line)}"
+            )
+
+    @work
+    async def action_questions(self) -> None:
+        if self._is_over:
+            from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
+
+            await ask_of_lesson(self, self.visit.progress, self.visit.lesson.name)

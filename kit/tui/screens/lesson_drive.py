@@ -1,0 +1,195 @@
+"""What a lesson opens with a world of its own: a drive by hand that is kept, and a run looked at again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual.binding import Binding, BindingType
+from textual.message import Message
+
+from kit.controllers import find
+from kit.inspection.sockets import sockets_folder
+from kit.tui.input.drive import DriveState
+from kit.tui.input.keys import drive_key, named
+from kit.tui.key_rows import key_line, key_page
+from kit.tui.screens.replay import ReplayScreen
+from kit.tui.screens.watch import WatchScreen
+from kit.tui.text_rows import Row, row
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kit.places import Place
+    from kit.school.lessons.records import Scene
+    from kit.session import Session
+    from kit.tui.look import Look
+    from kit.workspace import Workspace
+
+TELEOP: Final = "teleop"
+
+
+class Kept(Message):
+    """The drive is on the disk, or could not be put there."""
+
+
+class HandDrive(WatchScreen):
+    """The student drives; the clock starts with the first key. Leaving keeps the drive, and so does the target."""
+
+    keys = key_line(
+        ("←↑↓→", "drive"),
+        ("space", "stop"),
+        ("r", "from the start"),
+        ("p", "pause"),
+        ("+ -", "zoom"),
+        ("?", "help"),
+        ("Esc", "keep it and have it checked"),
+    )
+    help = key_page(
+        (
+            ("arrows, W A S D", "drive; the clock starts with the first one"),
+            ("Space", "stop"),
+            ("r", "from the start again: a new drive"),
+            ("p", "pause and go on"),
+            ("x", "how keys drive: automatic, latch, repeat"),
+            ("+  -  0  v", "nearer, farther, everything, follow the robot"),
+            ("b", "show the laser's beams"),
+            ("Esc  Enter", "keep this drive and have it checked"),
+        )
+    )
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,enter,q,backspace", "back", show=False),
+        Binding("x", "next_drive_mode", show=False),
+    ]
+
+    def __init__(self, look: Look, scene: Scene, file: Path, desk: Workspace) -> None:
+        """``file``: where the drive is kept."""
+        super().__init__(
+            look,
+            scene.case or scene.place,
+            seed=scene.seed,
+            doors=sockets_folder(desk.folder),
+            records=True,
+        )
+        self._scene = scene
+        self._file = file
+        self._teleop = find(TELEOP)
+        self._strength = 1.0
+        self._started = self._saving = self._reached = False
+        self.was_kept = False
+        self.problem = ""
+        """Why the drive could not be kept."""
+
+    def open_world(self) -> None:
+        self._started = self._reached = False
+        self.behind.open(self._place, self._teleop, paused=True)
+
+    def _place(self) -> Place:
+        """In the helper thread."""
+        from kit.places import find_place
+
+        return find_place(self._scene.place, self._scene.case)
+
+    def takes(self, key: str) -> bool:
+        found = drive_key(key)
+        return found is not None and (found.moves or found.name == "space")
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
+        if self._reached or (not messages and strength == self._strength):
+            return
+        self._strength = strength
+        if not self._started and any(message.startswith("p_") for message in messages):
+            self._started = True
+            self.behind.set_paused(False)
+        self.behind.wish(lambda session: session.keys.publish(messages, strength))
+
+    def _show(self) -> None:
+        super()._show()
+        view = self.view
+        if view is None or view.failure is not None:
+            return
+        if view.score.reached_s is not None and not self._reached:
+            self._reached = True
+            self.stop_driving()
+            self.behind.set_paused(True)
+            self.behind.wish(self._keep)
+        if (remark := self._remark()) and self.is_active:
+            self._rows("said").show([remark])
+
+    def _remark(self) -> Row:
+        if self._reached:
+            return row(
+                (" The target is reached, and the drive is kept.", "good"),
+                " Esc has it checked; r drives anew.",
+            )
+        if not self._started:
+            return row((" The clock starts with your first key.", "bold"))
+        return ()
+
+    def _keep(self, session: Session) -> None:
+        """In the world's thread, between two ticks."""
+        self._save()
+
+    def _save(self) -> None:
+        from kit.recording import save
+
+        recording = self.behind.recording()
+        if recording is None or not recording.ticks:
+            return
+        try:
+            save(recording, self._file)
+            self.was_kept, self.problem = True, ""
+        except OSError as error:
+            self.problem = f"{self._file}: {error.strerror}."
+
+    def on_unmount(self) -> None:
+        """Whoever leaves the whole kit keeps the drive too."""
+        self.behind.close()
+        if self._started and not self._saving and not self._reached:
+            self._save()
+
+    # Keys
+
+    def action_reset(self) -> None:
+        """A new drive, recorded from its first tick."""
+        self.open_world()
+
+    def action_back(self) -> None:
+        if self._saving:
+            return
+        if self._started and self.view is not None and not self._reached:
+            self._saving = True
+            self.stop_driving()
+            self.behind.wish(self._keep_and_leave)
+        else:
+            self.dismiss()
+
+    def _keep_and_leave(self, session: Session) -> None:
+        session.runner.pause()
+        self._keep(session)
+        self.post_message(Kept())
+
+    def on_kept(self) -> None:
+        self.dismiss()
+
+
+class WorstRun(ReplayScreen):
+    """A run of a check, looked at again; Esc goes back to the lesson."""
+
+    keys = key_line(
+        ("p", "pause"),
+        (".", "step"),
+        ("123", "speed"),
+        ("r", "from the start"),
+        ("+ -", "zoom"),
+        ("?", "help"),
+        ("Esc", "back"),
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter,backspace", "back", show=False)]
+
+    def takes(self, key: str) -> bool:
+        return False
+
+    def action_back(self) -> None:
+        self.dismiss()

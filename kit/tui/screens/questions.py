@@ -1,0 +1,94 @@
+"""The quiz, opened from another screen: which questions, and what is said where there is nothing to ask."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from typing import TYPE_CHECKING, Any
+
+from kit.school.progress import Progress, ProgressError
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+from kit.world.problems import WorldError
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from kit.school.quiz.items import Bank
+    from kit.school.quiz.sitting import Plan
+
+TWELVE, TODAY, SCORES = "twelve", "today", "scores"
+
+
+async def ask_of_lesson(screen: Screen[Any], progress: Progress, lesson: str) -> None:
+    """Asks a lesson's questions, and comes back. To be called in a worker."""
+    from kit.school.quiz.sitting import of_lesson
+
+    bank = await _bank(screen)
+    if bank is not None:
+        await _ask(screen, progress, bank, of_lesson(bank, lesson))
+
+
+async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
+    """Has the student choose what to be asked, and asks it. To be called in a worker."""
+    from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.schedule import schedule_of
+    from kit.school.quiz.sitting import Today, local_now, of_lesson, the_twelve
+    from kit.school.quiz.words import scores_lines, today_line
+
+    bank = await _bank(screen)
+    if bank is None:
+        return
+    try:
+        events = progress.events()
+    except ProgressError as error:
+        screen.app.push_screen(Page("Progress cannot be read", wrapped(str(error))))
+        return
+    schedule = schedule_of(bank, events, local_now())
+    plans: dict[str, Plan] = {TODAY: Today(bank), TWELVE: the_twelve(bank)}
+    choices = [
+        Choice(TODAY, "today", today_line(schedule)),
+        Choice(TWELVE, "the twelve", "The twelve ideas, one question each."),
+        Choice(SCORES, "scores", "What you know by topic, and how well you judge it."),
+    ]
+    for name in dict.fromkeys(item.lesson for item in bank.items):
+        plans[name] = plan = of_lesson(bank, name)
+        choices.append(Choice(name, f"lesson {name.partition('-')[0].lstrip('0')}", plan.title))
+    chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
+    if chosen == SCORES:
+        from kit.tui.screens.scroll_page import ScrollPage  # of no use to the first frame
+        from kit.tui.text_rows import row
+
+        lines = scores_lines(bank, answers_of(events), schedule)
+        await screen.app.push_screen_wait(ScrollPage("Scores", [row(" " + line) for line in lines]))
+    elif chosen is not None:
+        await _ask(screen, progress, bank, plans[chosen])
+
+
+async def _bank(screen: Screen[Any]) -> Bank | None:
+    """Read in another thread: there are many files."""
+    from kit.school.quiz.reading import read_bank
+
+    try:
+        return await to_thread(read_bank)
+    except (WorldError, FileNotFoundError) as error:
+        screen.app.push_screen(Page("The questions cannot be read", wrapped(str(error))))
+        return None
+
+
+async def _ask(screen: Screen[Any], progress: Progress, bank: Bank, plan: Plan) -> None:
+    from kit.school.quiz.sitting import Sitting, student_seed
+    from kit.tui.screens.quiz import QuizScreen
+
+    try:
+        sitting = Sitting(progress, bank, plan, seed=student_seed(progress))
+        if sitting.item is None:  # all were asked: once more, for practice
+            sitting = Sitting(progress, bank, plan, seed=student_seed(progress), anew=True)
+    except ProgressError as error:
+        screen.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+        return
+    if sitting.item is None:
+        screen.app.push_screen(
+            Page(plan.title, wrapped("There is nothing to ask now. Come back another day."))
+        )
+        return
+    await screen.app.push_screen_wait(QuizScreen(sitting))

@@ -1,0 +1,66 @@
+"""A long text over the whole screen, to be scrolled: a solution, what a program printed, a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, Final
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from kit.tui.key_rows import key_line
+from kit.tui.painting import StillScreen
+from kit.tui.text_rows import Row, TextRows, row
+
+KEYS: Final = key_line(("up down PgUp PgDn", "scroll"), ("Esc", "back"))
+
+
+class ScrollPage(StillScreen[None]):
+    """Shows rows as they are; Esc, q or Enter goes back."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("down,j", "scroll(1)", show=False),
+        Binding("up,k", "scroll(-1)", show=False),
+        Binding("pagedown,space", "scroll(18)", show=False),
+        Binding("pageup", "scroll(-18)", show=False),
+        Binding("home", "scroll(-1000000)", show=False),
+        Binding("end", "scroll(1000000)", show=False),
+        Binding("escape,q,enter", "back", show=False),
+    ]
+    DEFAULT_CSS = """
+    ScrollPage { layout: vertical; }
+    ScrollPage #heading, ScrollPage #keys { height: 1; }
+    ScrollPage #body { height: 1fr; }
+    """
+
+    def __init__(self, title: str, rows: Sequence[Row]) -> None:
+        super().__init__()
+        self._title = title
+        self._shown = tuple(rows)
+        self._top = 0
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="body")
+        yield TextRows(id="keys")
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self) -> None:
+        room = max(1, self.size.height - 2)
+        self._top = max(0, min(self._top, len(self._shown) - room))
+        last = min(len(self._shown), self._top + room)
+        where = f"  lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""
+        self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
+        self.query_one("#body", TextRows).show(self._shown[self._top : last])
+        self.query_one("#keys", TextRows).show([KEYS])
+
+    def action_scroll(self, lines: int) -> None:
+        self._top += lines
+        self._show()
+
+    def action_back(self) -> None:
+        self.dismiss()
