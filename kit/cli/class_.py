@@ -153,7 +153,9 @@ def _items() -> Mapping[str, Item]:
         return {}
     ordered = (*bank.twelve, *(item for item in bank.items if not item.idea))
     return {
-        item.id: Item(item.id, item.topic.value, tuple(option.text for option in item.options))
+        item.id: Item(
+            item.id, item.topic.value, tuple(option.text for option in item.options), bool(item.idea)
+        )
         for item in ordered
     }
 
@@ -185,12 +187,12 @@ def _give_out(
     for folder in (svg_folder, csv_folder):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
+    _write(files)
     if to_terminal:
         click.echo(as_json(made), nl=False)
     else:
         chosen = ASCII if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCKS
         click.echo("\n".join(rows_of(made, chosen)))
-    _write(files)
 
 
 def _write(files: Mapping[Path, str]) -> None:

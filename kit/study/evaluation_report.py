@@ -83,11 +83,11 @@ def _table(table: Printed, ours: Grid, wrong: Sequence[Difference], setting: Set
             for row, printed in table.rows.items()
             for line in (
                 (row, "printed", *cells(printed), ""),
-                ("", "ours", *cells(ours[row]), verdict(row)),
+                (row, "ours", *cells(ours[row]), verdict(row)),
             )
         ]
         heads = (Column("", Style.TEXT), Column("", Style.TEXT), *columns, Column("", Style.TEXT))
-        return Table(identity, title, heads, tuple(rows))
+        return Table(identity, title, heads, tuple(rows), grouped=True)
     bar = Column("|", Style.TEXT)
     rows = [
         (row, *cells(printed), "|", *cells(ours[row]), verdict(row)) for row, printed in table.rows.items()

@@ -77,10 +77,11 @@ def _table(table: Table) -> Iterator[str]:
         for kind, column in zip(kinds, table.columns, strict=True)
     )
     yield "</tr></thead><tbody>"
-    for row in table.rows:
+    for number, row in enumerate(table.rows):
+        shown = (row[0] if table.shows_first(number) else "", *row[1:])
         cells = (
             f"<td{kind}>{_safe(written(cell, column))}</td>"
-            for kind, cell, column in zip(kinds, row, table.columns, strict=True)
+            for kind, cell, column in zip(kinds, shown, table.columns, strict=True)
         )
         yield f"<tr>{''.join(cells)}</tr>"
     yield "</tbody></table>"

@@ -1,4 +1,4 @@
-"""A plot as an SVG picture: one file, no script, no font of its own, groups told apart by pattern as well as by shade."""
+"""A plot as an SVG picture: one file, no script, no font of its own, groups told apart by light and dark."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ WIDTH: Final = 640
 MARGIN: Final = 16
 LINE: Final = 18
 """Of text."""
-TICKS: Final = 6
+LABEL: Final = 34
+"""Characters of one line of a bar's label."""
 
 _SHADES: Final = ("#b9c6d6", "#2f5d8a", "#e8b04a")
-_FONT: Final = 'font-family="sans-serif" font-size="12" fill="#222222"'
+_FONT: Final = 'font-family="sans-serif" font-size="12" fill="#222222" stroke="none"'
 
 
 Scale = Callable[[float], float]
@@ -76,7 +77,9 @@ def _bars(bars: Bars) -> tuple[list[str], int]:
     body += _across(bars.low, bars.high, x, top, bottom)
     for number, (label, values) in enumerate(bars.rows):
         y = top + apart / 2 + number * step
-        body.append(_text(left - 8, y + (step - apart) / 2 + 4, _shortened(label, 34), anchor="end"))
+        lines = _lines(label, LABEL)[: len(values) + 1]
+        first = y + (step - apart) / 2 + 4 - (len(lines) - 1) * 6.5
+        body += [_text(left - 8, first + 13 * i, line, anchor="end") for i, line in enumerate(lines)]
         for i, value in enumerate(values):
             at = y + i * thick
             if math.isnan(value):
@@ -109,7 +112,7 @@ def _histogram(histogram: Histogram) -> tuple[list[str], int]:
 
 def _scatter(scatter: Scatter) -> tuple[list[str], int]:
     left, right = 72.0, WIDTH - 2.0 * MARGIN
-    top = _top(scatter.title)
+    top = _top(scatter.title) + LINE
     bottom = top + 300
     (least_x, most_x), (least_y, most_y) = scatter.x_range, scatter.y_range
 
@@ -120,8 +123,7 @@ def _scatter(scatter: Scatter) -> tuple[list[str], int]:
         return bottom - (value - least_y) / (most_y - least_y) * (bottom - top)
 
     body = list(_across(least_x, most_x, x, top, bottom))
-    for i in range(TICKS + 1):
-        value = least_y + (most_y - least_y) * i / TICKS
+    for value in _ticks(least_y, most_y):
         body.append(_stroke(left, y(value), right, y(value), "#dddddd"))
         body.append(_text(left - 8, y(value) + 4, f"{value:.3g}", anchor="end"))
     if scatter.line is not None:
@@ -137,11 +139,7 @@ def _scatter(scatter: Scatter) -> tuple[list[str], int]:
             f'<circle cx="{x(px):.1f}" cy="{y(py):.1f}" r="{4 + 2 * (count - 1)}" fill="#2f5d8a" fill-opacity="0.8"/>'
         )
     body.append(_text((left + right) / 2, bottom + 2 * LINE, scatter.x, anchor="middle"))
-    middle = (top + bottom) / 2
-    body.append(
-        f'<text x="20" y="{middle:.1f}" text-anchor="middle" transform="rotate(-90 20 {middle:.1f})">'
-        f"{_safe(scatter.y)}</text>"
-    )
+    body.append(_text(left, top - 8, f"{scatter.y} (up)", anchor="start"))
     return body, round(bottom + 2.8 * LINE)
 
 
@@ -161,11 +159,16 @@ def _within(
 
 def _across(low: float, high: float, x: Scale, top: float, bottom: float) -> Iterator[str]:
     """Lines and numbers along the horizontal scale."""
-    for i in range(TICKS + 1):
-        value = low + (high - low) * i / TICKS
+    for value in _ticks(low, high):
         yield _stroke(x(value), top, x(value), bottom, "#dddddd")
         yield _text(x(value), bottom + LINE, f"{value:.3g}", anchor="middle")
     yield _stroke(x(low), bottom, x(high), bottom, "#222222")
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """Whole numbers where they are few enough, else fifths of the range."""
+    steps = int(high - low) if 2 <= high - low <= 10 and float(high - low).is_integer() else 5
+    return [low + (high - low) * i / steps for i in range(steps + 1)]
 
 
 def _legend(groups: Sequence[str], left: float, y: float) -> Iterator[str]:
@@ -201,10 +204,6 @@ def _text(x: float, y: float, text: str, *, anchor: str = "start", weight: str =
 
 def _whole_ticks(most: int) -> range:
     return range(0, most + 1, max(1, math.ceil(most / 8)))
-
-
-def _shortened(text: str, most: int) -> str:
-    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def _safe(text: str) -> str:

@@ -30,6 +30,7 @@ WIDTH: Final = 79
 GAP: Final = "  "
 LEAST_TEXT: Final = 8
 """Columns that a column of words keeps when room is short."""
+LONGEST_CELL: Final = 120
 BAR: Final = 40
 SCATTER: Final = (56, 15)
 """Columns and rows of the field in which points are drawn."""
@@ -58,7 +59,8 @@ def rows_of(report: Report, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
         yield title
         yield "=" * min(len(title), WIDTH)
         for block in chapter.blocks:
-            yield ""
+            if not isinstance(block, Said):
+                yield ""
             yield from block_rows(block, glyphs)
 
 
@@ -78,8 +80,8 @@ def block_rows(block: Block, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
         case Caution():
             yield from wrap(clean(block.text), WIDTH, initial_indent="! ", subsequent_indent="  ")
         case Said():
-            yield f"{clean(block.who)}:"
-            yield from wrap(clean(block.text), WIDTH, initial_indent="  ", subsequent_indent="  ")
+            head = f"  {clean(block.who)}: "
+            yield from wrap(clean(block.text), WIDTH, initial_indent=head, subsequent_indent=" " * 6)
 
 
 def clean(text: str) -> str:
@@ -91,17 +93,40 @@ def table_rows(table: Table) -> Iterator[str]:
     """Its title, heads, cells and note. Words that do not fit their column go on below."""
     yield from wrap(clean(table.title), WIDTH)
     cells = [
-        [clean(written(cell, column)) for cell, column in zip(row, table.columns, strict=True)]
+        [_short(clean(written(cell, column))) for cell, column in zip(row, table.columns, strict=True)]
         for row in table.rows
     ]
     heads = [column.title for column in table.columns]
     widths = _widths([heads, *cells], table.columns)
     yield from _line(heads, widths, table.columns)
     yield GAP.join("-" * width for width in widths)
-    for row in cells:
-        yield from _line(row, widths, table.columns)
+    for rows in _together(table, cells):
+        if table.grouped:
+            _flow(rows, widths[0])
+        for row in rows:
+            yield from _line(row, widths, table.columns)
     if table.note:
         yield from wrap(clean(table.note), WIDTH)
+
+
+def _short(text: str) -> str:
+    """What fits a cell: nobody's text may push the rest off the screen."""
+    return text if len(text) <= LONGEST_CELL else text[: LONGEST_CELL - 3] + "..."
+
+
+def _together(table: Table, cells: list[list[str]]) -> Iterator[list[list[str]]]:
+    """The rows in groups; without groups each for itself."""
+    starts = [i for i in range(len(cells)) if not table.grouped or table.shows_first(i)]
+    for start, end in zip(starts, [*starts[1:], len(cells)], strict=True):
+        yield cells[start:end]
+
+
+def _flow(rows: list[list[str]], width: int) -> None:
+    """Writes what a group shares down its rows, as far as it goes; what is left stays in the last."""
+    words = wrap(rows[0][0], width)
+    for number, row in enumerate(rows):
+        last = number == len(rows) - 1
+        row[0] = " ".join(words[number:]) if last else "".join(words[number : number + 1])
 
 
 def _widths(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> list[int]:

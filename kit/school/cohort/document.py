@@ -36,6 +36,12 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     note: str = ""
     """What a reader has to know, below the table."""
+    grouped: bool = False
+    """Rows that begin alike belong together: people see what they share once, machines on every row."""
+
+    def shows_first(self, number: int) -> bool:
+        """Whether people see the first cell of this row."""
+        return not self.grouped or not number or self.rows[number][0] != self.rows[number - 1][0]
 
 
 @dataclass(frozen=True, slots=True)

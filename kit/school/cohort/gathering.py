@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,13 +51,10 @@ def gather(roll: Roll, form: Form, known: Mapping[str, Item] | None = None) -> C
     names = tuple(each.label for each in roll.students)
     answers = [Answers.of(form, each.events) for each in roll.students]
     cautions = list(roll.cautions)
-    for student, given in zip(roll.students, answers, strict=True):
-        if given.odd:
-            cautions.append(
-                f"{student.files[0]}: {len(given.odd)} answers of the form cannot be answers to their questions "
-                f"({', '.join(given.odd[:3])}{', ...' if len(given.odd) > 3 else ''}). They are left out."
-            )
-    quiz, later, bank = _quizzes(roll.students, known)
+    cautions += _odd(roll.students, answers)
+    sheets = [_Sheet(each.events) for each in roll.students]
+    cautions += _strange(roll.students, sheets, known)
+    quiz, later, bank = _quizzes(sheets, known)
     return ClassData(
         names,
         _ratings(form, answers),
@@ -110,18 +107,75 @@ def _counted(form: Form, answers: Sequence[Answers]) -> list[tuple[Question, Pha
     return found
 
 
-def _quizzes(students: Sequence[Student], known: Mapping[str, Item]) -> tuple[Quiz, Quiz, Quiz]:
+class _Sheet:
+    """One student's answers, sorted: in the quiz, first of all, and the newest of those given after the quiz."""
+
+    def __init__(self, events: Sequence[Event]) -> None:
+        self.quiz: dict[str, Reply] = {}
+        self.first: dict[str, Reply] = {}
+        self.again: dict[str, Reply] = {}
+        self.topics: dict[str, str] = {}
+        for event in events:
+            try:
+                answer = answer_of(event)
+            except TypeError:  # a list, say, where a number belongs
+                answer = None
+            if answer is None:
+                continue
+            chosen = event.content.get("chosen")
+            reply = Reply(answer.outcome, chosen if isinstance(chosen, int) else None)
+            topic = event.content.get("topic")
+            self.topics[answer.item] = topic if isinstance(topic, str) else "other"
+            self.first.setdefault(answer.item, reply)
+            if answer.item in self.quiz:
+                self.again[answer.item] = reply
+            elif answer.occasion is Occasion.QUIZ:
+                self.quiz[answer.item] = reply
+
+
+def _odd(students: Sequence[Student], answers: Sequence[Answers]) -> Iterator[str]:
+    """Answers of the form that cannot be. By file, so that nobody learns which student is which."""
+    for file, odd in sorted(
+        (each.files[0], given.odd) for each, given in zip(students, answers, strict=True)
+    ):
+        if odd:
+            yield (
+                f"{file}: {len(odd)} answers of the form cannot be answers to their questions "
+                f"({', '.join(odd[:3])}{', ...' if len(odd) > 3 else ''}). They are left out."
+            )
+
+
+def _strange(
+    students: Sequence[Student], sheets: Sequence[_Sheet], known: Mapping[str, Item]
+) -> Iterator[str]:
+    """Answers to questions that this kit does not have, so that nobody else could give any."""
+    if not known:
+        return
+    found = [
+        (student.files[0], sheet.topics.keys() - known.keys())
+        for student, sheet in zip(students, sheets, strict=True)
+    ]
+    files = sorted(str(file) for file, unknown in found if unknown)
+    if files:
+        questions = {name for _, unknown in found for name in unknown}
+        yield (
+            f"{', '.join(files[:3])}{f' and {len(files) - 3} more' if len(files) > 3 else ''}: "
+            f"{len(questions)} of the questions answered there are not in this kit. They are left out; was another "
+            "version used?"
+        )
+
+
+def _quizzes(sheets: Sequence[_Sheet], known: Mapping[str, Item]) -> tuple[Quiz, Quiz, Quiz]:
     """The quiz by first answers, the same items by newest ones, and the rest of the bank."""
-    sheets = [_Sheet(each.events) for each in students]
-    topics = {item: topic for sheet in sheets for item, topic in sheet.topics.items()}
-
-    def items(wanted: set[str]) -> tuple[Item, ...]:
-        order = {name: number for number, name in enumerate(known)}
-        names = sorted(wanted, key=lambda name: (order.get(name, len(order)), topics[name], name))
-        return tuple(known.get(name) or Item(name, topics[name]) for name in names)
-
-    asked = items({name for sheet in sheets for name in sheet.quiz})
-    rest = items(set(topics) - {item.id for item in asked})
+    found = {name: topic for sheet in sheets for name, topic in sheet.topics.items()}
+    answered = {name for sheet in sheets for name in sheet.quiz}
+    if known:
+        items = [item for name, item in known.items() if name in found]
+        asked = tuple(item for item in items if item.in_quiz and item.id in answered)
+    else:
+        items = [Item(name, topic) for name, topic in sorted(found.items(), key=lambda pair: pair[::-1])]
+        asked = tuple(item for item in items if item.id in answered)
+    rest = tuple(item for item in items if item not in asked)
     return (
         # Who took the quiz at all had every item before them: what they did not reach is blank.
         Quiz(
@@ -130,26 +184,3 @@ def _quizzes(students: Sequence[Student], known: Mapping[str, Item]) -> tuple[Qu
         Quiz(asked, {i.id: tuple(s.again.get(i.id) for s in sheets) for i in asked}),
         Quiz(rest, {i.id: tuple(s.first.get(i.id) for s in sheets) for i in rest}),
     )
-
-
-class _Sheet:
-    """One student's answers, sorted: in the quiz, first of all, and the newest of those given again."""
-
-    def __init__(self, events: Sequence[Event]) -> None:
-        self.quiz: dict[str, Reply] = {}
-        self.first: dict[str, Reply] = {}
-        self.again: dict[str, Reply] = {}
-        self.topics: dict[str, str] = {}
-        for event in events:
-            answer = answer_of(event)
-            if answer is None:
-                continue
-            chosen = event.content.get("chosen")
-            reply = Reply(answer.outcome, chosen if isinstance(chosen, int) else None)
-            topic = event.content.get("topic")
-            self.topics[answer.item] = topic if isinstance(topic, str) else "other"
-            if answer.item in self.first:
-                self.again[answer.item] = reply
-            self.first.setdefault(answer.item, reply)
-            if answer.occasion is Occasion.QUIZ:
-                self.quiz.setdefault(answer.item, reply)

@@ -111,9 +111,11 @@ def _beta_share(x: float, a: float, b: float) -> float:
     value = 1.0
     for k in range(200, 0, -1):
         m = k // 2
-        even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
-        odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
-        value = 1 + (odd if k % 2 else even) / value
+        if k % 2:
+            term = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
+        else:
+            term = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
+        value = 1 + term / value
     return front / (a * value)
 
 

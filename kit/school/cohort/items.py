@@ -55,7 +55,7 @@ class ItemAnalysis:
             ),
             (self.difficulty < HARD, f"only {self.difficulty:.0%} had it right"),
             (self.difficulty > EASY, "nearly everybody had it right: it tells nobody apart"),
-            (self.with_rest < LOOSE, f"goes with the rest by r = {self.with_rest:.2f} only"),
+            (self.with_rest < LOOSE, f"goes with the rest by r = {round(self.with_rest, 2) + 0.0:.2f} only"),
         )
         return tuple(text for holds, text in checks if holds)
 

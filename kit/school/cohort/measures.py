@@ -33,6 +33,8 @@ class Item:
     topic: str
     options: tuple[str, ...] = ()
     """Their texts, where they are known."""
+    in_quiz: bool = False
+    """Whether the quiz asks it; else only lessons and repetition do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -119,9 +119,13 @@ def _attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
 
 def _number(value: object) -> float:
     """A finite number of at least 0; 0 for anything else."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return 0.0
-    return max(0.0, float(value))
+    try:
+        number = float(value)
+    except OverflowError:
+        return 0.0
+    return max(0.0, number) if math.isfinite(number) else 0.0
 
 
 def lessons_of(works: Iterable[Work]) -> tuple[str, ...]:

@@ -34,19 +34,15 @@ def people(setting: Setting, files: int) -> Chapter:
         ("lessons", sum(bool(work) for work in data.work)),
     )
     blocks.append(Table("class", "Who is in this report", (Column("", Style.TEXT), Column("n")), rows))
-    counted = tuple(
-        (question.text, f"{count} {word}")
+    counted: tuple[tuple[Cell, ...], ...] = tuple(
+        (question.text, word, count)
         for question, _, counts in data.counted
         for word, count in counts.items()
         if count
     )
     if counted:
-        rows = tuple(
-            (text if not i or counted[i - 1][0] != text else "", said)
-            for i, (text, said) in enumerate(counted)
-        )
-        columns = (Column("", Style.TEXT), Column("answers", Style.TEXT))
-        blocks.append(Table("facts", "What they said of themselves", columns, rows))
+        columns = (Column("", Style.TEXT), Column("answer", Style.TEXT), Column("n"))
+        blocks.append(Table("facts", "What they said of themselves", columns, counted, grouped=True))
     blocks.append(
         Text(
             "How to read: n counts who answered; blanks are left out, never taken for anything. SD is of the sample "

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from kit.learning.intervals import wilson
-from kit.school.cohort.chapters.setting import SHARE, Setting, means_bars, means_table, title_of
+from kit.school.cohort.chapters.setting import SHARE, Setting, means_bars, means_table, slug, title_of
 from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Histogram, Style, Table, Text
 from kit.school.cohort.inference import paired_test, present, summary
 from kit.school.cohort.items import ItemAnalysis, analyse, kr20
-from kit.school.cohort.measures import Item, Measure, Quiz
+from kit.school.cohort.measures import Measure, Quiz
 from kit.school.cohort.normality import shapiro_wilk
 from kit.school.quiz.answers import Outcome
 
@@ -79,7 +79,7 @@ def _by_question(setting: Setting, topic: str) -> Table:
             p = chance.p if chance is not None and i == len(setting.groups) - 1 else ""
             rows.append(
                 (
-                    item.id if not i else "",
+                    item.id,
                     group.name,
                     len(replies),
                     share,
@@ -101,10 +101,11 @@ def _by_question(setting: Setting, topic: str) -> Table:
     )
     divided = setting.division is not None
     return Table(
-        f"quiz-{topic}" if topic.isalnum() else "quiz-other",
+        f"quiz-{slug(topic)}",
         f"Questions on {title_of(topic)}",
         heads if divided else heads[:-1],
         tuple(row if divided else row[:-1] for row in rows),
+        grouped=True,
     )
 
 
@@ -199,6 +200,7 @@ def _bank(setting: Setting) -> Iterator[Block]:
                 Column("blank"),
             ),
             tuple(rows),
+            grouped=True,
         )
 
 
@@ -244,7 +246,9 @@ def _difficulties(found: list[ItemAnalysis]) -> Table:
         Column("95%"),
         Column("with rest r"),
     )
-    return Table("items", "How hard each question is, and how it goes with the rest", heads, rows)
+    return Table(
+        "items", "How hard each question is, and how it goes with the rest", heads, rows, grouped=True
+    )
 
 
 def _distractors(found: list[ItemAnalysis]) -> Table:
@@ -272,7 +276,7 @@ def _distractors(found: list[ItemAnalysis]) -> Table:
     note = (
         f"{MARKED} counted as right. A wrong option that nobody takes can go; one that many take is a lesson."
     )
-    return Table("distractors", "Who chose which option", heads, rows, note)
+    return Table("distractors", "Who chose which option", heads, rows, note, grouped=True)
 
 
 def _texts(each: ItemAnalysis) -> Iterator[Block]:
@@ -284,8 +288,4 @@ def _texts(each: ItemAnalysis) -> Iterator[Block]:
         for number, text in enumerate(each.item.options)
     )
     heads = (Column("", Style.TEXT), Column("option", Style.TEXT), Column("chose it"))
-    yield Table(f"item-{_plain(each.item)}", f"{each.item.id}: the options", heads, rows)
-
-
-def _plain(item: Item) -> str:
-    return "".join(c if c.isalnum() and c.isascii() else "-" for c in item.id)
+    yield Table(f"item-{slug(each.item.id)}", f"{each.item.id}: the options", heads, rows)

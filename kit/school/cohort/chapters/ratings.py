@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.school.cohort.chapters.setting import SCALE, Setting, means_bars, means_table, title_of
+from kit.school.cohort.chapters.setting import SCALE, Setting, means_bars, means_table, slug, title_of, within
 from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Style, Table
 from kit.school.cohort.inference import paired_test, present, summary
 from kit.school.cohort.measures import Measure
@@ -126,9 +126,9 @@ def _by_topic(setting: Setting, purpose: Purpose, title: str) -> Chapter | None:
         Measure(each.id, title_of(each.id), each.values) for each in ratings.by_topic(purpose, Phase.AFTER)
     )
     single: tuple[tuple[Cell, ...], ...] = tuple(
-        (title_of(topic) if not i else "", each.label, found.n, found.mean, found.sd, found.interval)
+        (title_of(topic), each.label, found.n, found.mean, found.sd, within(found.interval, SCALE))
         for topic in ratings.topics(purpose, Phase.AFTER)
-        for i, each in enumerate(ratings.of_topic(purpose, Phase.AFTER, topic))
+        for each in ratings.of_topic(purpose, Phase.AFTER, topic)
         for found in [summary(present(each.values))]
     )
     heads = (
@@ -148,11 +148,6 @@ def _by_topic(setting: Setting, purpose: Purpose, title: str) -> Chapter | None:
                 kind.id, kind.title, (*topics, Measure("all", kind.all, everything)), setting, SCALE, note
             ),
             means_bars(f"{kind.id}-bars", kind.title, topics, setting),
-            Table(f"{kind.id}-single", f"{title}, question by question", heads, single),
+            Table(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
         ),
     )
-
-
-def slug(text: str) -> str:
-    """For a file's name."""
-    return "".join(c if c.isalnum() and c.isascii() else "-" for c in text.lower()) or "other"

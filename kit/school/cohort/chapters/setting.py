@@ -12,7 +12,7 @@ import numpy as np
 from kit.arrays import Floats
 from kit.learning.intervals import Interval
 from kit.school.cohort.document import Bars, Caution, Cell, Column, Style, Table
-from kit.school.cohort.expertise import Division
+from kit.school.cohort.expertise import SMALL, Division
 from kit.school.cohort.gathering import ClassData
 from kit.school.cohort.inference import Chance, difference_test, summary
 from kit.school.cohort.measures import Group, Measure
@@ -88,9 +88,8 @@ def means_table(
             found = summary(measure.values[group.members])
             last = i == len(setting.groups) - 1
             p = chance.p if chance is not None and last else ""
-            label = measure.label if not i else ""
             cut = within(found.interval, bounds)
-            rows.append((label, group.name, found.n, found.mean, found.sd, cut, p))
+            rows.append((measure.label, group.name, found.n, found.mean, found.sd, cut, p))
     columns = (
         Column("", Style.TEXT),
         Column("group", Style.TEXT),
@@ -101,12 +100,15 @@ def means_table(
         Column("p", Style.CHANCE, 3),
     )
     divided = setting.division is not None
+    if any(isinstance(row[2], int) and row[2] < SMALL for row in rows):
+        note = f"{note} Groups with n below {SMALL} are too small to speak for others.".strip()
     return Table(
         identity,
         title,
         columns if divided else columns[:-1],
         tuple(row if divided else row[:-1] for row in rows),
         note,
+        grouped=True,
     )
 
 
@@ -145,3 +147,8 @@ def cautions_of(division: Division | None) -> tuple[Caution, ...]:
     if division is None:
         return ()
     return tuple(Caution(f"Division {division.title}: {text}.") for text in division.cautions)
+
+
+def slug(text: str) -> str:
+    """For a file's name."""
+    return "".join(c if c.isalnum() and c.isascii() else "-" for c in text.lower()) or "other"
