@@ -11,7 +11,7 @@ import math
 import random
 import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -200,7 +200,7 @@ class _Examination:
             self._episode(name, seed, lambda done: moves[done], len(moves))
         self.seen.checker = self._checked()
 
-    def _episode(self, name: str, seed: int, choose: Any, steps: int) -> None:
+    def _episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
         """Drives until it is over, and a little on if it does not end where it should."""
         answer = self._call(f"reset(seed={self._seed + seed})", call="reset", seed=self._seed + seed)
         episode = Episode(
@@ -212,7 +212,7 @@ class _Examination:
             done = len(episode.moments)
             if name not in ENDING and done >= steps:
                 return
-            moment = self._step(int(choose(done)))
+            moment = self._step(choose(done))
             episode.moments.append(moment)
             if moment.is_over:
                 return
@@ -229,7 +229,7 @@ class _Examination:
         returned, inside = answer.get("returned", {}), answer.get("inside") is True
         return Moment(action, returned, inside, before, self._pose(), self._touched, away, self._ranges)
 
-    def _pilot(self) -> Any:
+    def _pilot(self) -> Callable[[int], int]:
         """Chooses moves along the way: turn towards the next point, then go."""
         way = list(self._wish.way)
 
@@ -239,11 +239,10 @@ class _Examination:
                 way.pop(0)
             off = math.atan2(way[0][1] - pose.y, way[0][0] - pose.x) - pose.theta
             off = (off + math.pi) % (2 * math.pi) - math.pi
-            wanted = max(
+            return max(
                 range(len(self._wish.moves)),
                 key=lambda k: self._wish.moves[k][0] if abs(off) < 0.12 else off * self._wish.moves[k][1],
             )
-            return wanted
 
         return choose
 
