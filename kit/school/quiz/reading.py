@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Final
 
+from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import IDEAS, OPTIONS, Bank, Item, Option, Topic, bank_of
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
@@ -21,15 +22,6 @@ TALLEST: Final = 8
 """Rows of a picture: question, options and feedback share the screen with it."""
 
 _ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-
-
-def lessons_folder() -> Path:
-    """Where the lessons lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
-    package = Path(__file__).resolve().parents[2]
-    for folder in (package / "data" / "lessons", package.parent / "lessons"):
-        if folder.is_dir():
-            return folder
-    raise FileNotFoundError(f"the lessons are missing: neither in {package / 'data'} nor beside {package}")
 
 
 def read_bank(folder: Path | None = None) -> Bank:

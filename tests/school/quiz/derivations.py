@@ -1,0 +1,20 @@
+"""How an item's answer is found anew: by letting the kit do what the item asks about."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from tests.school.quiz.derived.fields import FIELDS
+from tests.school.quiz.derived.finding import Derivation
+from tests.school.quiz.derived.layers import LAYERS
+from tests.school.quiz.derived.learning import LEARNING
+from tests.school.quiz.derived.motion import MOTION
+from tests.school.quiz.derived.talk import TALK
+from tests.school.quiz.derived.worlds import WORLDS
+
+DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
+    {**MOTION, **TALK, **WORLDS, **LAYERS, **LEARNING, **FIELDS}
+)
+"""By the name that an item's ``derived`` gives."""

@@ -1,0 +1,264 @@
+"""Who collides, who is seen, how few layers do: found out from the item's own picture."""
+
+from __future__ import annotations
+
+import random
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+from kit.layers.assignment import breaches
+from kit.layers.examples import EXAMPLES
+from kit.layers.greedy import greedy
+from kit.layers.planning import solve
+from kit.layers.requirements import Case, Contact, Entity, Laser
+from kit.school.quiz.items import Item
+from kit.world.touching import Touch, Touching
+from tests.school.quiz.derived.finding import Derivation, Finding, nearest
+from tests.sim.workshop import Workshop
+
+EYE: dict[str, Any] = {
+    "type": "Laser",
+    "name": "eye",
+    "body": "base",
+    "range": 5,
+    "angle": {"min": -3, "max": 3, "increment": 0.1},
+}
+
+
+def _table(item: Item) -> dict[str, list[str]]:
+    """Rows of the picture such as ``cart  layers  a, c``."""
+    rows = [row.split("layers") for row in item.picture]
+    return {name.strip(): [layer.strip() for layer in layers.split(",")] for name, layers in rows}
+
+
+def _world(item: Item, folder: Path) -> Touching:
+    """The picture as a world; ``laser`` is on a post that is in no layer, ``wall`` does not move."""
+    shop, table = Workshop(folder), _table(item)
+    watched = table.pop("laser", None)
+    models = {
+        name: shop.model(shop.circle(0.1, layers=layers), type="static" if name == "wall" else "dynamic")
+        for name, layers in table.items()
+    }
+    if watched is not None:
+        models["post"] = shop.model(shop.circle(0.1, layers=[]), plugins=[{**EYE, "layers": watched}])
+    names = sorted({layer for layers in (*table.values(), watched or []) for layer in layers})
+    return Touching(shop.world(models, dict.fromkeys(names, ())))
+
+
+def collisions_in_picture(item: Item, folder: Path) -> Finding:
+    pairs = frozenset(
+        frozenset({a.model, b.model})
+        for a, b, verdict in _world(item, folder).pairs()
+        if verdict.touch is Touch.COLLIDES
+    )
+    names = list(_table(item))
+    return Finding(
+        pairs,
+        {
+            "All three: the drone links them": frozenset(map(frozenset, combinations(names, 2))),
+            "cart with drone, and drone with barrow": frozenset(
+                {frozenset({"cart", "drone"}), frozenset({"drone", "barrow"})}
+            ),
+            "None: no two lists are equal": frozenset(),
+        },
+    )
+
+
+def sight_in_picture(item: Item, folder: Path) -> Finding:
+    seen = frozenset(thing.model for _, thing, seeing in _world(item, folder).views() if seeing.sees)
+    return Finding(
+        seen,
+        {
+            "cart and drone": frozenset({"cart", "drone"}),
+            "Only cart": frozenset({"cart"}),
+            "All three": frozenset({"cart", "drone", "barrow"}),
+        },
+    )
+
+
+def robot_and_wall(item: Item, folder: Path) -> Finding:
+    touching = _world(item, folder)
+    found = touching.between(*touching.things).touch is Touch.COLLIDES
+    return Finding(
+        found,
+        {
+            "Yes, one shared layer is enough": True,
+            "No, the two lists differ": False,
+            "Only half of the robot does": "half",  # a verdict is of whole bodies
+        },
+    )
+
+
+def laser_inside_hull(item: Item, folder: Path) -> Finding:
+    """By the rule, and by the rays themselves: nothing else is in the world."""
+    from kit.msg.sensor_msgs import LaserScan
+    from kit.sim.simulation import Simulation
+
+    shop = Workshop(folder)
+    hull = shop.rectangle(-0.2, 0.2, -0.1, 0.1, layers=["a"])
+    world = shop.world({"robot": shop.model(hull, plugins=[{**EYE, "layers": ["a"]}])}, {"a": ()})
+    sent = Simulation(world).step()
+    (scan,) = [out.message for out in sent if isinstance(out.message, LaserScan)]
+    hits = sum(value == value for value in scan.ranges)  # nan is not equal to itself
+    touching = Touching(world)
+    assert touching.seeing(touching.lasers[0], touching.things[0]).sees == (hits > 0)
+    found = "all" if hits == len(scan.ranges) else "some" if hits else "nothing"
+    return Finding(
+        found,
+        {
+            "The hull all round, at a few cm": "all",
+            "Only the hull's corners": "some",
+            "Nothing of the hull": "nothing",
+        },
+    )
+
+
+def laser_own_wheels(item: Item, folder: Path) -> Finding:
+    shop = Workshop(folder)
+    bodies = [
+        {"name": "base", "footprints": [shop.circle(0.1, layers=["a"])]},
+        {"name": "wheel", "pose": [0, 0.2, 0], "footprints": [shop.circle(0.05, layers=["a"])]},
+    ]
+    model = {"bodies": bodies, "plugins": [{**EYE, "layers": ["a"]}]}
+    touching = Touching(shop.world({"robot": model}, {"a": ()}))
+    seen = {thing.body: touching.seeing(touching.lasers[0], thing).sees for thing in touching.things}
+    assert not seen["base"]
+    return Finding(
+        "always" if seen["wheel"] else "never",  # the verdict knows of no movement
+        {
+            "Nothing, since they are its own": "never",
+            "The wheels, like anything else": "always",
+            "The wheels, but only as they turn": "moving",
+        },
+    )
+
+
+def static_crate(item: Item, folder: Path) -> Finding:
+    shop = Workshop(folder)
+    crate = shop.model(shop.circle(0.1, layers=["a"]), type="static")
+    touching = Touching(shop.world({"crate": crate}, {"a": [(0, -1, 0, 1)]}))
+    found = touching.between(*touching.things).touch
+    return Finding(
+        found,
+        {
+            "Yes: they share a layer": Touch.COLLIDES,
+            "Yes: but only by a sensor": Touch.SENSES,
+            "No: neither of them moves": Touch.PASSES,
+        },
+    )
+
+
+def one_model_two_bodies(item: Item, folder: Path) -> Finding:
+    """By the rule, and by a bumper in a run in which they overlap."""
+    from kit.msg.flatland_msgs import Collisions
+    from kit.sim.simulation import Simulation
+
+    shop = Workshop(folder)
+    bodies = [{"name": name, "footprints": [shop.circle(0.1, layers=["a"])]} for name in ("one", "other")]
+    bumper = {"type": "Bumper", "name": "bumper"}
+    world = shop.world({"robot": {"bodies": bodies, "plugins": [bumper]}}, {"a": ()})
+    touching = Touching(world)
+    collide = touching.between(*touching.things).touch is Touch.COLLIDES
+    sent = Simulation(world).step(5)
+    reported = any(isinstance(out.message, Collisions) and out.message.collisions for out in sent)
+    return Finding(
+        (collide, reported),
+        {
+            "No: bodies of one model never collide": (False, False),
+            "Yes: they are bodies like any other": (True, True),
+            "Yes: but no bumper reports it": (True, False),
+        },
+    )
+
+
+# The fewest
+
+
+def _case(item: Item) -> Case:
+    """The picture as a case: rows ``collide:``, ``ghost:``, ``laser: NAME sees WHOM``."""
+    pairs: list[tuple[str, str]] = []
+    ghosts: list[str] = []
+    lasers: list[Laser] = []
+    for row in item.picture:
+        kind, _, said = row.partition(":")
+        if kind == "collide":
+            pairs += [(a, b) for a, b in (pair.split("-") for pair in said.split())]
+        elif kind == "ghost":
+            ghosts += said.split()
+        elif kind == "laser":
+            name, _, seen = said.partition(" sees ")
+            lasers.append(Laser(name.strip(), frozenset(seen.split())))
+        else:
+            assert row == "all other pairs must not", row
+    names = dict.fromkeys([*(name for pair in pairs for name in pair), *ghosts])
+    entities = [
+        Entity(name, kind="map" if name == "walls" else "bodies", model="" if name == "walls" else name)
+        for name in names
+        if name not in ghosts
+    ]
+    entities += [Entity(name, model=name, ghost=True) for name in ghosts]
+    return Case(tuple(entities), tuple(Contact(a, b) for a, b in pairs), lasers=tuple(lasers))
+
+
+def fewest_in_picture(item: Item, folder: Path) -> Finding:
+    plan = solve(_case(item))
+    assert plan.optimal
+    return nearest(item, plan.size, 0)
+
+
+def proof_of_fewest(item: Item, folder: Path) -> Finding:
+    """What never contradicts the fewest there are: the certificate, of which no two fit one layer, and not the number
+    that the method ends with. (Trying for long cannot be computed: it says nothing of what was not tried.)"""
+    plans = {name: solve(case) for name, case in EXAMPLES.items()}
+    assert all(plan.optimal for plan in plans.values())
+    assert any(plan.certificate.bound == plan.size == 3 for plan in plans.values())
+    return Finding(
+        True,
+        {
+            "The step-by-step method ended with three": all(
+                len(greedy(plan.case).assignment.layers) <= plan.size for plan in plans.values()
+            ),
+            "An hour of trying has found none with two": False,
+            "Three requirements, no two of which fit one layer": all(
+                plan.certificate.bound <= plan.size for plan in plans.values()
+            ),
+        },
+    )
+
+
+def greedy_promise(item: Item, folder: Path) -> Finding:
+    """Random cases of collisions: does the method's plan always do what is asked, always with the fewest layers?"""
+    chance = random.Random(1)
+    works, fewest = True, True
+    for _ in range(60):
+        names = "abcdefgh"
+        pairs = [pair for pair in combinations(names, 2) if chance.random() < 0.55]
+        case = Case(
+            tuple(Entity(name, model=name) for name in names), tuple(Contact(*pair) for pair in pairs)
+        )
+        assignment = greedy(case).assignment
+        works = works and not breaches(case, assignment)
+        fewest = fewest and len(assignment.layers) == solve(case).size
+    return Finding(
+        (works, fewest),
+        {
+            "A plan that works and has the fewest layers": (True, True),
+            "A plan that works, perhaps with too many layers": (True, False),
+            "A plan with few layers that may miss an edge": (False, True),
+        },
+    )
+
+
+LAYERS: dict[str, Derivation] = {
+    "collisions-in-picture": collisions_in_picture,
+    "sight-in-picture": sight_in_picture,
+    "robot-and-wall": robot_and_wall,
+    "laser-inside-hull": laser_inside_hull,
+    "laser-own-wheels": laser_own_wheels,
+    "static-crate": static_crate,
+    "one-model-two-bodies": one_model_two_bodies,
+    "fewest-in-picture": fewest_in_picture,
+    "proof-of-fewest": proof_of_fewest,
+    "greedy-promise": greedy_promise,
+}

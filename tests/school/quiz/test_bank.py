@@ -1,0 +1,107 @@
+"""The bank that comes with the kit: enough items, no giveaways, and every screen of it fits 80 by 24."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.school.lessons.reading import lessons_folder
+from kit.school.quiz.answers import BLANK, NOT_SURE, Choice
+from kit.school.quiz.items import IDEAS, OPTIONS, Item, Topic
+from kit.school.quiz.reading import SHEET, read_bank
+from kit.tui.quiz_rows import option_rows, question_rows, sure_rows, told_rows
+
+BANK = read_bank()
+COMMANDS = sorted({item.attempt for item in BANK.items if item.attempt})
+ROOM = 24 - 3
+every_item = pytest.mark.parametrize("item", BANK.items, ids=lambda item: item.id)
+
+
+def test_there_are_enough_of_every_lesson_and_idea() -> None:
+    folders = {path.name for path in lessons_folder().iterdir() if path.is_dir()}
+    assert set(BANK.lessons) == folders
+    assert len(BANK.lessons) >= 13
+    assert len(BANK.items) >= 65
+    assert all(len(BANK.of_lesson(lesson)) >= 5 for lesson in BANK.lessons)
+    assert [item.idea for item in BANK.twelve] == list(range(1, IDEAS + 1))
+    assert all(len(BANK.of_topic(topic)) >= 4 for topic in Topic)
+
+
+def test_the_right_option_stands_anywhere() -> None:
+    places = Counter(item.right for item in BANK.items)
+    assert all(0.27 <= places[i] / len(BANK.items) <= 0.40 for i in range(OPTIONS))
+    twelve = Counter(item.right for item in BANK.twelve)
+    assert all(2 <= twelve[i] <= 6 for i in range(OPTIONS))
+    for lesson in BANK.lessons:
+        assert len({item.right for item in BANK.of_lesson(lesson)}) >= 2
+
+
+def test_the_right_option_is_not_given_away_by_its_length() -> None:
+    longest = shortest = 0.0
+    for item in BANK.items:
+        lengths = [len(option.text) for option in item.options]
+        right = lengths[item.right]
+        longest += (right == max(lengths)) / lengths.count(max(lengths))
+        shortest += (right == min(lengths)) / lengths.count(min(lengths))
+    assert 0.2 <= longest / len(BANK.items) <= 0.45
+    assert 0.2 <= shortest / len(BANK.items) <= 0.5
+
+
+@every_item
+def test_options_are_of_like_length(item: Item) -> None:
+    lengths = [len(option.text) for option in item.options]
+    assert max(lengths) - min(lengths) <= 14 or max(lengths) <= 1.6 * min(lengths)
+
+
+@every_item
+def test_every_choice_is_told_something_of_its_own(item: Item) -> None:
+    told = [option.feedback for option in item.options]
+    assert len(set(told)) == OPTIONS
+    assert all(len(text) >= 20 for text in told)
+    assert item.question.endswith(("?", ")")) or "?" in item.question
+
+
+@every_item
+def test_it_fits_the_smallest_full_screen(item: Item) -> None:
+    width = 80
+    choices = [*(Choice(i) for i in range(OPTIONS)), NOT_SURE, BLANK]
+    asked = [*question_rows(item, width), *option_rows(item, width, choices[0]), *sure_rows()]
+    pages = [asked]
+    pages += [
+        [
+            *question_rows(item, width),
+            *option_rows(item, width, each, told=True),
+            *told_rows(item, each, width),
+        ]
+        for each in choices
+    ]
+    for rows in pages:
+        assert len(rows) + 1 <= ROOM
+        assert all(sum(len(text) for text, _ in row) <= width for row in rows)
+        assert all(text.isascii() for row in rows for text, _ in row)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_what_one_is_told_to_type_works(command: str, tmp_path: Path) -> None:
+    words = command.split()[1:]
+    result = CliRunner().invoke(main, words, input="", env={"KIT_WORKSPACE": str(tmp_path), "TERM": "dumb"})
+    assert result.exit_code == 0, result.output
+
+
+def test_commands_within_the_words_are_verbs_of_the_kit() -> None:
+    texts = [
+        text for item in BANK.items for text in (item.question, *(option.feedback for option in item.options))
+    ]
+    named = {found for text in texts for found in re.findall(r"`kit (\w+)", text)}
+    assert named
+    for verb in named:
+        assert CliRunner().invoke(main, [verb, "--help"]).exit_code == 0, verb
+
+
+def test_sheets_lie_in_the_lessons_folders() -> None:
+    assert {path.parent.name for path in lessons_folder().glob(f"*/{SHEET}")} == set(BANK.lessons)

@@ -1,0 +1,91 @@
+"""Scores: wrong, not sure and blank are three things; how sure against how often right."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from kit.school.progress import Event, Kind
+from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, Outcome, answer_of, answers_of
+from kit.school.quiz.items import Topic
+from kit.school.quiz.rounds import rounds_of
+from kit.school.quiz.scores import Tally, by_topic, calibration, latest, tally
+from kit.school.quiz.words import calibration_lines, tally_line
+from tests.school.quiz.made import MONDAY, answered, bank
+
+BANK = bank(ros2=4, layers=2)
+ITEMS = BANK.items
+WRONG = Choice(1)
+
+
+def test_each_outcome_is_counted_by_itself() -> None:
+    choices = [Choice(0), WRONG, NOT_SURE, BLANK]
+    answers = answers_of(answered(item, 0, choice) for item, choice in zip(ITEMS, choices, strict=False))
+    counted = by_topic(ITEMS, latest(answers))
+    assert [answer.outcome for answer in answers] == list(Outcome)
+    assert counted[Topic.ROS2] == Tally(1, 1, 1, 1)
+    assert tally(ITEMS, latest(answers)) == Tally(1, 1, 1, 1, 2)
+    assert counted[Topic.LAYERS].items == 2
+    assert tally_line(Tally(1, 1, 1, 1, 2)) == "1 of 6 right, 1 wrong, 1 not sure, 1 blank, 2 not asked yet"
+
+
+def test_the_latest_answer_counts() -> None:
+    answers = answers_of([answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 1)])
+    assert tally(ITEMS[:1], latest(answers)) == Tally(right=1)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {},
+        {"occasion": "exam", "chosen": 1},
+        {"occasion": "quiz", "chosen": 7},
+        {"occasion": "quiz", "chosen": "1"},
+        {"occasion": 3, "chosen": 1},
+        {"occasion": "quiz", "chosen": [1]},
+    ],
+    ids=str,
+)
+def test_what_cannot_be_understood_is_passed_over(content: dict[str, object]) -> None:
+    assert answer_of(Event("u", MONDAY.isoformat(), Kind.ANSWER, "x", content)) is None
+
+
+def test_who_chose_nothing_is_sure_of_nothing() -> None:
+    (answer,) = answers_of([answered(ITEMS[0], 0, NOT_SURE, confidence=4)])
+    assert answer.confidence is None
+
+
+def _calibrated(figures: Sequence[tuple[int, int, int]]) -> list[str]:
+    """Lines for (confidence, answers, right)."""
+    events = [
+        answered(ITEMS[0], i, Choice(0) if i < right else WRONG, confidence=confidence)
+        for confidence, count, right in figures
+        for i in range(count)
+    ]
+    return calibration_lines(calibration(answers_of(events)))
+
+
+def test_how_well_one_judges_oneself() -> None:
+    assert "surer than right" in _calibrated([(4, 10, 5)])[-1]
+    assert "judge yourself well" in _calibrated([(4, 10, 10), (1, 3, 1)])[-1]
+    assert "more than you trust" in _calibrated([(1, 10, 9)])[-1]
+    assert "After 8" in _calibrated([(4, 7, 1)])[-1]
+    assert _calibrated([]) == ["No answer says yet how sure you were."]
+    assert "5 of 10" in _calibrated([(4, 10, 5)])[3]
+
+
+def test_rounds_are_counted_one_after_the_other() -> None:
+    answers = answers_of(answered(item, day) for day in range(2) for item in ITEMS[:4])
+    rounds = rounds_of(ITEMS[:4], answers, Occasion.LESSON)
+    assert len(rounds.finished) == 2
+    assert rounds.under_way == {}
+    assert {item.id for item in rounds.left(1)} == {item.id for item in ITEMS[:4]}
+    assert rounds_of(ITEMS[:4], answers, Occasion.QUIZ).finished == ()
+
+
+def test_within_a_round_the_first_answer_counts() -> None:
+    events = [answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 0.1), answered(ITEMS[1], 0.2)]
+    rounds = rounds_of(ITEMS[:2], answers_of(events), Occasion.LESSON)
+    assert rounds.finished[0][ITEMS[0].id].outcome is Outcome.WRONG
+    assert rounds.under_way == {}

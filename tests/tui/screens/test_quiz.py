@@ -1,0 +1,179 @@
+"""The quiz on a full screen: an answer, how sure, what is said to it; nothing kept before, all kept after."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+
+from kit.school.progress import Event, Kind, Progress
+from kit.school.quiz.reading import read_bank
+from kit.school.quiz.sitting import Sitting, of_lesson, the_twelve
+from kit.tui.screens.page import Page
+from kit.tui.screens.quiz import QuizScreen, Stage
+
+BANK = read_bank()
+Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
+
+
+@pytest.fixture
+def progress(tmp_path: Path) -> Iterator[Progress]:
+    with Progress(tmp_path) as opened:
+        yield opened
+
+
+def play(scene: Scene, progress: Progress, *, lesson: str = "", size: tuple[int, int] = (80, 24)) -> None:
+    plan = of_lesson(BANK, lesson) if lesson else the_twelve(BANK)
+
+    async def run() -> None:
+        app: App[None] = App()
+        async with app.run_test(size=size) as pilot:
+            screen = QuizScreen(Sitting(progress, BANK, plan, seed=1))
+            await app.push_screen(screen)
+            await pilot.pause()
+            await scene(screen, pilot)
+
+    asyncio.run(run())
+
+
+def rows(screen: QuizScreen) -> list[str]:
+    return [
+        "".join(segment.text for segment in strip).rstrip()
+        for strip in screen.app.screen._compositor.render_strips()
+    ]
+
+
+def flat(screen: QuizScreen) -> str:
+    return " ".join(" ".join(rows(screen)).split())
+
+
+def kept(progress: Progress) -> list[Event]:
+    return progress.events(Kind.ANSWER)
+
+
+def test_choose_say_how_sure_be_told_go_on(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        item = screen._item
+        assert item is not None
+        assert "question 1 of 12" in rows(screen)[0]
+        assert all(option.text in flat(screen) for option in item.options)
+        wrong = (item.right + 1) % 3
+        await pilot.press(str(wrong + 1))
+        assert screen.stage is Stage.CHOSEN
+        assert any(row.startswith(f"> {wrong + 1}") for row in rows(screen))
+        assert "How sure are you?" in flat(screen)
+        assert kept(progress) == []
+        await pilot.press("4")
+        (event,) = kept(progress)
+        assert (event.content["chosen"], event.content["confidence"]) == (wrong, 4)
+        assert " ".join(item.options[wrong].feedback.split()) in flat(screen)
+        assert any(row.startswith(f"x {wrong + 1}") for row in rows(screen))
+        assert any(row.startswith(f"+ {item.right + 1}") for row in rows(screen))
+        await pilot.press("n")
+        assert "question 2 of 12" in rows(screen)[0]
+        assert screen.stage is Stage.ASKED
+
+    play(scene, progress)
+
+
+def test_another_answer_before_one_says_how_sure(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("1", "left", "3", "2")
+        (event,) = kept(progress)
+        assert (event.content["chosen"], event.content["confidence"]) == (2, 2)
+
+    play(scene, progress)
+
+
+def test_not_sure_and_blank_are_told_too(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("0")
+        assert "not counted as wrong" in flat(screen)
+        await pilot.press("enter", "s")
+        assert "once more" in rows(screen)[-2]
+        assert len(kept(progress)) == 1
+        await pilot.press("s")
+        assert "Left blank" in flat(screen)
+        assert [event.content["not_sure"] for event in kept(progress)] == [True, False]
+
+    play(scene, progress)
+
+
+def test_a_key_too_many_changes_nothing(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("n", "4", "left")
+        assert screen.stage is Stage.ASKED
+        await pilot.press("1", "0", "s", "n")
+        assert screen.stage is Stage.CHOSEN
+        await pilot.press("1", "2", "3", "0", "s", "s")
+        assert screen.stage is Stage.TOLD
+        assert len(kept(progress)) == 1
+
+    play(scene, progress)
+
+
+def test_to_the_end_and_what_came_of_it(progress: Progress) -> None:
+    count = len(BANK.of_lesson("08-fewest-layers"))
+
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        for _ in range(count):
+            item = screen._item
+            assert item is not None
+            await pilot.press(str(item.right + 1), "4", "n")
+        assert screen.stage is Stage.OVER
+        assert f"{count} of {count} right" in flat(screen)
+        assert f"certain {count} of {count}" in flat(screen)
+        assert "Next: tomorrow" in flat(screen)
+        assert rows(screen)[-1].startswith("Esc leave")
+
+    play(scene, progress, lesson="08-fewest-layers")
+
+
+def test_the_keys_that_work_are_in_sight_all_the_time(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        seen = []
+        for key in ("1", "3", "n"):
+            seen.append(rows(screen)[-1])
+            await pilot.press(key)
+        assert "0 not sure" in seen[0]
+        assert "how sure" in seen[1]
+        assert "n next" in seen[2]
+        assert all(len(line) <= 80 for line in seen)
+
+    play(scene, progress)
+
+
+def test_an_answer_that_cannot_be_kept_is_said(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        progress.close()
+        await pilot.press("1", "1")
+        assert "Not kept" in rows(screen)[-2]
+        assert screen.stage is Stage.CHOSEN
+
+    play(scene, progress)
+
+
+def test_a_small_window_scrolls(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        assert "more lines below" in flat(screen)
+        before = rows(screen)
+        await pilot.press("down")
+        assert rows(screen)[1] == before[2]
+        await pilot.press("up", "0")
+        assert "See lesson" in flat(screen)  # what is said stands at the end
+
+    play(scene, progress, size=(40, 12))
+
+
+def test_help(progress: Progress) -> None:
+    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        assert isinstance(screen.app.screen, Page)
+        await pilot.press("x")
+        assert screen.app.screen is screen
+
+    play(scene, progress)
