@@ -36,6 +36,8 @@ class Talk:
     kind: str
     """Of message, such as ``geometry_msgs/msg/Twist``."""
     count: int
+    nodes: tuple[str, ...] = ()
+    """Who said it, by full name."""
 
 
 @dataclass(frozen=True, eq=False)

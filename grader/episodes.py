@@ -102,6 +102,7 @@ class Listener:
 
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[tuple[str, str], int] = {}
+        self._nodes: dict[tuple[str, str], set[str]] = {}
         self.stop = graph.watch(self._hear)
 
     def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
@@ -109,9 +110,13 @@ class Listener:
             return
         key = name, type_name(type(message))
         self._counts[key] = self._counts.get(key, 0) + 1
+        self._nodes.setdefault(key, set()).add(node.handle.full_name)
 
     def talk(self) -> Mapping[str, Talk]:
-        return {name: Talk(kind, count) for (name, kind), count in sorted(self._counts.items())}
+        return {
+            name: Talk(kind, count, tuple(sorted(self._nodes[name, kind])))
+            for (name, kind), count in sorted(self._counts.items())
+        }
 
 
 def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:

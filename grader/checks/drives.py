@@ -13,9 +13,7 @@ import numpy as np
 from grader.checks.contract import Check, NoParams, check
 from grader.drive import LOOK_EVERY, Drive
 from kit.geometry import Pose
-
-LONGEST_STRIDE: Final = 0.1
-"""A robot that is farther [m] from where it was one tick ago was moved by hand."""
+from kit.recording import ACCEPT
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +26,8 @@ class Topic:
 @dataclass(frozen=True, slots=True)
 class Topics:
     topics: tuple[str, ...] = ("/cmd_vel geometry_msgs/msg/Twist",)
-    """Each a name, perhaps with the type of its messages after a space."""
+    """Each a name, perhaps with the type of its messages after a space, and after another the only node that may
+    publish it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +43,14 @@ class Places:
     """In the order in which the robot should come by: x and y [m], seen from its start."""
     within: float = 0.15
     """m"""
+
+
+@dataclass(frozen=True, slots=True)
+class Speeds:
+    speeds: tuple[str, ...] = ("0.5",)
+    """m/s, forward."""
+    within: float = 0.02
+    """m/s"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +132,10 @@ def moves(drive: Drive, params: NoParams) -> float:
 def top_speed(drive: Drive, params: NoParams) -> float:
     """The robot was told to drive as no robot can: it went up to {actual} ({where}); {full} is the limit."""
     strides = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) if drive.steps > 1 else np.zeros(1)
-    driven = strides[strides <= LONGEST_STRIDE]
-    return float(driven.max(initial=0.0)) / drive.recording.step_size
+    # Sent home it is elsewhere at once, and has not driven there.
+    sent = [told.tick - 1 for told in drive.recording.inputs if told.kind != ACCEPT]
+    strides[[tick for tick in sent if 0 <= tick < len(strides)]] = 0.0
+    return float(strides.max(initial=0.0)) / drive.recording.step_size
 
 
 @check(none=2.0, full=1.2)
@@ -153,12 +162,14 @@ def rate(drive: Drive, params: Topic) -> float:
 @check(none=0, full=1, unit="%", params=Topics)
 def topics(drive: Drive, params: Topics) -> float:
     """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
-    what the task says: `kit topic list` shows what there is."""
-    wanted = [each.split() for each in params.topics]
-    heard = [
-        name in drive.talk and all(kind == drive.talk[name].kind for kind in kinds) for name, *kinds in wanted
-    ]
+    what the task says: `kit ros topic list` shows what there is, `kit ros node info` who publishes."""
+    heard = [_is_heard(drive, *each.split()) for each in params.topics]
     return sum(heard) / len(heard) if heard else math.nan
+
+
+def _is_heard(drive: Drive, name: str, kind: str = "", node: str = "") -> bool:
+    talk = drive.talk.get(name)
+    return talk is not None and kind in ("", talk.kind) and (not node or talk.nodes == (node,))
 
 
 @check(none=1, full=0, unit="changes")
@@ -193,6 +204,16 @@ def comes_back(drive: Drive, params: NoParams) -> float:
     return float(math.dist(drive.track[0, :2], drive.track[-1, :2]))
 
 
+@check(none=0, full=1, unit="%", params=Speeds)
+def drives_at(drive: Drive, params: Speeds) -> float:
+    """Of the speeds that were asked for, the robot was ever told {actual} ({where}). Compare the numbers you publish,
+    and when, with the task's."""
+    told = drive.commands[:, 1]
+    return float(
+        np.mean([bool(np.any(np.abs(told - float(each)) <= params.within)) for each in params.speeds])
+    )
+
+
 @check(none=0.5, full=0.1, unit="%", params=Words)
 def says(drive: Drive, params: Words) -> float:
     """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
@@ -209,7 +230,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
         for each in (
             *(runs, reached, in_time, approach, bumps, clearance),
             *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys),
-            *(comes_by, comes_back, says),
+            *(comes_by, comes_back, drives_at, says),
         )
     }
 )
