@@ -131,6 +131,11 @@ class Report:
         )
 
 
+def chance_text(p: float) -> str:
+    """A p value in a sentence."""
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
+
+
 def written(cell: Cell, column: Column) -> str:
     """A cell as people read it."""
     if isinstance(cell, Interval):

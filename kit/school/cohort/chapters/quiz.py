@@ -9,7 +9,18 @@ import numpy as np
 
 from kit.learning.intervals import wilson
 from kit.school.cohort.chapters.setting import SHARE, Setting, means_bars, means_table, slug, title_of
-from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Histogram, Style, Table, Text
+from kit.school.cohort.document import (
+    Block,
+    Caution,
+    Cell,
+    Chapter,
+    Column,
+    Histogram,
+    Style,
+    Table,
+    Text,
+    chance_text,
+)
 from kit.school.cohort.inference import paired_test, present, summary
 from kit.school.cohort.items import ItemAnalysis, analyse, kr20
 from kit.school.cohort.measures import Measure, Quiz
@@ -128,7 +139,7 @@ def _shape(sheet: Quiz) -> Iterator[Block]:
             "is not what a normal distribution gives" if p < 0.05 else "does not speak against a normal one"
         )
         yield Text(
-            f"Shape of the scores: Shapiro and Wilk's W = {w:.3f}, p = {p:.3f}, n = {n}. This {verdict}; with few "
+            f"Shape of the scores: Shapiro and Wilk's W = {w:.3f}, {chance_text(p)}, n = {n}. This {verdict}; with few "
             "students it can hardly tell either way."
         )
 

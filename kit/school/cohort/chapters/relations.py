@@ -9,7 +9,18 @@ import numpy as np
 
 from kit.arrays import Floats
 from kit.school.cohort.chapters.setting import SCALE, SHARE, Setting
-from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Scatter, Style, Table, Text
+from kit.school.cohort.document import (
+    Block,
+    Caution,
+    Cell,
+    Chapter,
+    Column,
+    Scatter,
+    Style,
+    Table,
+    Text,
+    chance_text,
+)
 from kit.school.cohort.inference import (
     MOST_ORDERS,
     SHUFFLES,
@@ -191,10 +202,10 @@ def _caution(title: str, each: Sensitivity, names: Sequence[str]) -> Caution:
     """A result that is on the other side of the line without this student or that."""
     most = sorted(each.turning, key=lambda one: -abs(one.chance.p - each.chance.p))
     shown = "; ".join(
-        f"without {names[one.student]} {one.value:.2f}, p = {one.chance.p:.3f}" for one in most[:3]
+        f"without {names[one.student]} {one.value:.2f}, {chance_text(one.chance.p)}" for one in most[:3]
     )
     more = f"; and so without {len(most) - 3} more" if len(most) > 3 else ""
     return Caution(
-        f"{title}: {each.value:.2f}, p = {each.chance.p:.3f}; but {shown}{more}. One student decides on which side "
+        f"{title}: {each.value:.2f}, {chance_text(each.chance.p)}; but {shown}{more}. One student decides on which side "
         "of 0.05 it lies."
     )
