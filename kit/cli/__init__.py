@@ -11,12 +11,11 @@ import click
 import kit
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
-    "play": (
-        "kit.cli.play",
-        "Open the kit on a map: watch, drive, edit a controller (what `kit` alone does).",
-    ),
+    "start": ("kit.cli.start", "Open the kit: a robot to drive, and a menu (what `kit` alone does)."),
+    "play": ("kit.cli.play", "Open a map at once: watch, drive, edit a controller."),
     "drive": ("kit.cli.play", "The same as `play`: `kit drive pair_turn --controller fields`."),
     "lesson": ("kit.cli.lesson", "Go through a lesson: predict, run, explain, modify, make; or list them."),
+    "game": ("kit.cli.game", "Levels, stars, ghosts, time trials; a hall of fame for this machine."),
     "run": ("kit.cli.run", "Run a world without a screen, as fast as it goes; print what happened."),
     "replay": ("kit.cli.replay", "Watch a recorded run again, or check that it runs the same to the bit."),
     "maps": ("kit.cli.maps", "List the maps that come with the kit, or show one as a picture."),
@@ -104,9 +103,10 @@ class LazyGroup(click.Group):
 def main(ctx: click.Context) -> None:
     """The terminal robot-learning kit: drive a robot, program it, teach it.
 
-    `kit` alone opens the maze with a robot finding its own way; press an arrow key to take over.
+    `kit` alone opens a robot in its maze, to be driven with the arrow keys, and beside it a menu: Enter begins the
+    first lesson, or goes on where you left off.
     """
     if ctx.invoked_subcommand is None:
-        play = main.get_command(ctx, "play")
-        assert play is not None
-        ctx.invoke(play)
+        start = main.get_command(ctx, "start")
+        assert start is not None
+        ctx.invoke(start)

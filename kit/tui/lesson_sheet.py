@@ -45,7 +45,7 @@ class LessonSheet(Container):
     LessonSheet #right {{ height: 1fr; layout: vertical; }}
     LessonSheet.-beside {{ layout: horizontal; }}
     LessonSheet.-beside SceneView {{ height: 1fr !important; }}
-    LessonSheet.-beside #picture {{ width: 1fr; height: 1fr; }}
+    LessonSheet.-beside #picture {{ width: 1fr; }}
     LessonSheet.-beside #right {{ width: {BESIDE}; }}
     """
 
@@ -69,10 +69,10 @@ class LessonSheet(Container):
         self._content = content
         self.set_class(beside and (content.moves or bool(content.picture)), "-beside")
         picture = self._rows("picture")
-        picture.show([row("  " + line) for line in content.picture])
+        picture.show_all([row("  " + line) for line in content.picture])
         picture.display = bool(content.picture)
         self._scene.display = content.moves
-        self._rows("ask").show(content.asked)
+        self._rows("ask").show_all(content.asked)
         asked = len(content.asked)
         least = min(LEAST_PICTURE, max(room // 2, 4))
         rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)

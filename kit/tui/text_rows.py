@@ -88,6 +88,12 @@ class TextRows(Widget):
             if line >= len(old) or line >= len(new) or old[line] != new[line]:
                 self.refresh(Region(0, line, max(1, self.size.width), 1))
 
+    def show_all(self, rows: Sequence[Row]) -> None:
+        """Replaces the rows, and takes as many lines as there are now."""
+        if len(rows) != len(self._rows) or self.styles.height is None or not self.styles.height.is_cells:
+            self.styles.height = len(rows)
+        self.show(rows)
+
     def get_content_width(self, container: Size, viewport: Size) -> int:
         return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)
 

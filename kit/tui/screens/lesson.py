@@ -154,15 +154,15 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         said = [self.bench_status()] if self.bench is not None else []
         self._rows("heading").show([say.heading(self.visit.standing, step, width)])
         self._show_title()
-        self._rows("file").show(file)
-        self._rows("said").show(said)
-        self._rows("keys").show([self.asked_keys() or keys(self._possible())])
+        self._rows("file").show_all(file)
+        self._rows("said").show_all(said)
+        self._rows("keys").show([self.asked_keys() or keys(self._possible(), width)])
         content = Content(
             self._written(),
             [] if over or not step.options else self._asked(),
             () if over else tuple(step.picture.splitlines()),
             moves=step.scene is not None and not over,
-            first_words=self._until_answer,
+            first_words=self._words_needed(),
         )
         self._sheet.show(
             content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide")
@@ -187,6 +187,11 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         if report is not None and self.bench is not None:
             made += say.verdict(report, self.visit.hints(self.bench.exercise), self._width)
         return made
+
+    def _words_needed(self) -> int:
+        """Rows for the words, or for the longest thing that may be said to a prediction: not both at once."""
+        answers = (len(say.feedback(self.step, option, self._width)) for option in self.step.options)
+        return max(self._until_answer, *answers, 0)
 
     def _asked(self) -> list[Row]:
         return [row(), *say.question(self.step, self.chosen, self._told, self._width)]

@@ -195,7 +195,9 @@ class BenchKeys(Screen[None]):
         except WorkError as error:
             self.tell("The exercise stays as it was", str(error))
         else:
-            self._say(f" As at first. What you had: {kept}" if kept else " As at first.")
+            self._say(
+                f" As at first. What you had is in {kept.name}, beside it." if kept else " As at first."
+            )
         self.show()
 
     def leave_question(self) -> bool:

@@ -30,8 +30,8 @@ class Possible:
     back: bool = True
 
 
-def keys(now: Possible) -> Row:
-    """One row, at most 80 characters."""
+def keys(now: Possible, width: int) -> Row:
+    """One row; where it is too long, what the help page says too is left out."""
     shown = [
         (f"1-{now.choose}", "foresee", bool(now.choose)),
         ("←↑↓→", "drive", now.drive_scene),
@@ -39,20 +39,27 @@ def keys(now: Possible) -> Row:
         ("r", "check", now.check),
         ("h", "hint", now.hint),
         ("w", "worst run", now.worst),
-        ("p", "printed", now.printed),
         ("s", "solution", now.solution),
-        ("x", "anew", now.begin_again),
+        ("p", "printed", now.printed),
         ("o", "open", now.open),
-        ("a", "again", now.again),
-        ("k", "what stayed", now.questions),
+        ("k", "questions", now.questions),
         ("n", "on", now.next),
         ("b", "back", now.back),
+        ("a", "again", now.again),
+        ("x", "anew", now.begin_again),
         ("?", "help", True),
         ("Esc", "leave", True),
     ]
-    return key_line(*((key, text) for key, text, works in shown if works))
+    fitting = [(key, text) for key, text, works in shown if works]
+    while sum(len(key) + len(text) + 2 for key, text in fitting) > max(width, 40):
+        least = next((key for key in DISPENSABLE if key in dict(fitting)), None)
+        if least is None:
+            break
+        fitting = [(key, text) for key, text in fitting if key != least]
+    return key_line(*fitting)
 
 
+DISPENSABLE: Final = ("x", "a", "p", "o", "w", "s", "b")
 ASK_BEGIN_AGAIN: Final = key_line(("y", "begin this exercise anew; what you have is kept"), ("n", "no"))
 CHECKING_KEYS: Final = key_line(("n", "on"), ("b", "back"), ("Esc", "leave; each ends the check"))
 

@@ -111,7 +111,8 @@ class WatchScreen(StillScreen[None], DriveScreen):
         """Has ``behind`` open what this screen is to show first."""
 
     def on_mount(self) -> None:
-        way_out = row(("Bksp", "bold"), " back ") if self._is_above_another else ()
+        says = self._is_above_another and not any("Esc" in text for text, _ in self.keys)
+        way_out = row(("Bksp", "bold"), " back ") if says else ()
         self._rows("keys").show([(*self.keys, *way_out)])
         self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
         self.behind = Running(

@@ -1,0 +1,88 @@
+"""``kit`` alone: the start screen, or where you stand and what to type where there is no full screen."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.workspace import Workspace
+
+WAYS: Final = (
+    ("kit lesson", "the lessons: predict, run, explain, change, make"),
+    ("kit play", "drive: any map, any controller"),
+    ("kit train turn", "have an agent learn to drive"),
+    ("kit layers", "plan a world's collision layers"),
+    ("kit quiz", "find out what you know; kit quiz --today: what is due"),
+    ("kit progress", "what you have done, and how to take it along"),
+    ("kit --help", "everything else"),
+)
+
+
+@click.command()
+@options.seed
+@options.workspace
+@click.option("--plain", is_flag=True, help="Where you stand and what to type, instead of a full screen.")
+@options.glyphs
+@options.color
+def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
+    """Open the kit: a robot to drive with the arrow keys, and a menu of everything there is.
+
+    Enter goes on where you left off: for a new student that is the first lesson.
+    """
+    from kit.desk import open_desk
+    from kit.workspace import WorkspaceError
+
+    try:
+        desk = open_desk(workspace)
+    except WorkspaceError as error:
+        options.fail(str(error))
+    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    if terminal.plain.value:
+        click.echo(f"The kit, line by line. {terminal.plain.reason}")
+        _tell(desk)
+        return
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+    from kit.tui.overview import School
+    from kit.tui.screens.start import StartScreen
+
+    app = KitApp(terminal)
+    app.begin(StartScreen(app.look, School(desk), seed=seed))
+    app.run()
+    if app.return_code:
+        raise SystemExit(app.return_code)
+
+
+def _tell(desk: Workspace) -> None:
+    from kit.tui.overview import School
+
+    school = School(desk)
+    try:
+        overview = school.look()
+        notice = school.take_notice()
+    finally:
+        school.close()
+    for line in filter(None, (notice, overview.problem)):
+        click.echo(line, err=True)
+    entry = overview.going_on
+    if entry is not None and entry.standing is not None:
+        step = entry.standing.next_step
+        where = (
+            f", step {step.number}: {step.title}" if entry.is_begun else f". {entry.standing.lesson.summary}"
+        )
+        click.echo(
+            f"{'Begin' if overview.is_new else 'Go on'}: `kit lesson {entry.number}`, {entry.title}{where}"
+        )
+    if overview.shelf:
+        click.echo(f"{overview.done} of {len(overview.shelf)} lessons done.")
+    if overview.due:
+        click.echo(f"{overview.due} questions are due today: `kit quiz --today`")
+    click.echo("")
+    for line, text in WAYS:
+        click.echo(f"  {line:<16} {text}")

@@ -1,0 +1,99 @@
+"""The school behind the start screen: the student's journal, where they stand, and what is due. No Textual."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kit.workspace import Workspace
+
+if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is drawn first
+    from kit.school.lessons.records import Lesson
+    from kit.school.lessons.shelf import Entry
+    from kit.school.lessons.visit import Visit
+    from kit.school.progress import Progress
+
+
+@dataclass(frozen=True, slots=True)
+class Overview:
+    """Where a student stands."""
+
+    shelf: tuple[Entry, ...] = ()
+    going_on: Entry | None = None
+    """Where to go on; None: all is done, or there is nothing."""
+    due: int | None = None
+    """Questions due today; None: they cannot be read."""
+    problem: str = ""
+    """Why progress, or lessons, cannot be read."""
+
+    @property
+    def done(self) -> int:
+        return sum(each.is_done for each in self.shelf)
+
+    @property
+    def is_new(self) -> bool:
+        """Whether nothing was done yet."""
+        return not any(each.is_begun for each in self.shelf)
+
+
+class School:
+    """One student's lessons and journal. ``lessons``: another folder than the kit's own."""
+
+    def __init__(self, desk: Workspace, lessons: Path | None = None) -> None:
+        self.desk = desk
+        self._lessons = lessons
+        self._progress: Progress | None = None
+        self._opening = threading.Lock()
+
+    def progress(self) -> Progress:
+        """The journal, opened when it is first asked for. Raises ProgressError."""
+        from kit.school.progress import Progress
+
+        with self._opening:
+            if self._progress is None:
+                self._progress = Progress(self.desk.folder)
+            return self._progress
+
+    def take_notice(self) -> str:
+        """What has to be said of how the journal was found; once."""
+        notice = ""
+        if self._progress is not None:
+            notice, self._progress.notice = self._progress.notice, ""
+        return notice
+
+    def look(self) -> Overview:
+        """Reads everything. Slow: to be called in another thread."""
+        from kit.school.lessons.shelf import entries, going_on
+        from kit.school.progress import ProgressError
+
+        try:
+            events = self.progress().events()
+            shelf = entries(events, self._lessons)
+        except (ProgressError, FileNotFoundError) as error:
+            return Overview(problem=str(error))
+        return Overview(shelf, going_on(shelf), self._due())
+
+    def visit(self, lesson: Lesson) -> Visit:
+        """To go through a lesson. Raises ProgressError."""
+        from kit.school.lessons.visit import Visit
+
+        return Visit(lesson, self.progress(), self.desk)
+
+    def close(self) -> None:
+        with self._opening:
+            if self._progress is not None:
+                self._progress.close()
+                self._progress = None
+
+    def _due(self) -> int | None:
+        from kit.school.quiz.reading import read_bank
+        from kit.school.quiz.schedule import schedule_of
+        from kit.school.quiz.sitting import local_now
+        from kit.world.problems import WorldError
+
+        try:
+            return len(schedule_of(read_bank(), self.progress().events(), local_now()).queue)
+        except (WorldError, FileNotFoundError):
+            return None

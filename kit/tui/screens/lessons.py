@@ -1,0 +1,118 @@
+"""All lessons: what each is about, what is done of it; Enter opens one."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from kit.school.progress import ProgressError
+from kit.tui import lessons_rows as say
+from kit.tui.key_rows import key_line
+from kit.tui.look import Look
+from kit.tui.overview import Overview, School
+from kit.tui.painting import StillScreen
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.text_rows import TextRows, row
+
+if TYPE_CHECKING:
+    from kit.school.lessons.shelf import Entry
+
+SUMMARY_ROWS: Final = 6
+KEYS: Final = key_line(("up down", "choose"), ("Enter", "open"), ("Esc", "back"))
+
+
+class LessonsScreen(StillScreen[None]):
+    """Draws nothing but what a key has changed."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("down,j", "move(1)", show=False),
+        Binding("up,k", "move(-1)", show=False),
+        Binding("pagedown", "move(8)", show=False),
+        Binding("pageup", "move(-8)", show=False),
+        Binding("home", "move(-1000)", show=False),
+        Binding("end", "move(1000)", show=False),
+        Binding("enter,right", "open", show=False),
+        Binding("escape,q,backspace,left", "back", show=False),
+    ]
+    DEFAULT_CSS = f"""
+    LessonsScreen {{ layout: vertical; }}
+    LessonsScreen #heading {{ height: 2; }}
+    LessonsScreen #list {{ height: 1fr; }}
+    LessonsScreen #about {{ height: {SUMMARY_ROWS}; }}
+    LessonsScreen #keys {{ height: 1; }}
+    """
+
+    def __init__(self, look: Look, school: School, overview: Overview) -> None:
+        super().__init__()
+        self._look = look
+        self._school = school
+        self._overview = overview
+        first = overview.going_on
+        self._at = overview.shelf.index(first) if first is not None else 0
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="list")
+        yield TextRows(id="about")
+        yield TextRows(id="keys")
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    @property
+    def chosen(self) -> Entry | None:
+        """The lesson that Enter opens."""
+        shelf = self._overview.shelf
+        return shelf[self._at] if shelf else None
+
+    def _show(self) -> None:
+        if not self.size.width:
+            return
+        shelf, chosen = self._overview.shelf, self.chosen
+        told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
+        self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
+        room = max(1, self.size.height - 3 - SUMMARY_ROWS)
+        top = max(0, min(self._at - room // 2, len(shelf) - room))
+        self._rows("list").show([say.line(each, each is chosen) for each in shelf[top : top + room]])
+        self._rows("about").show(say.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])
+        self._rows("keys").show([KEYS])
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_move(self, lines: int) -> None:
+        self._at = max(0, min(self._at + lines, len(self._overview.shelf) - 1))
+        self._show()
+
+    @work
+    async def action_open(self) -> None:
+        entry = self.chosen
+        if entry is None or not self.is_active:
+            return
+        if entry.lesson is None:
+            self.app.push_screen(Page("This lesson cannot be read", wrapped(entry.problem)))
+            return
+        from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame
+
+        try:
+            visit = self._school.visit(entry.lesson)
+        except ProgressError as error:
+            self.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+            return
+        await self.app.push_screen_wait(LessonScreen(self._look, visit, self._school.desk))
+        self._overview = await to_thread(self._school.look)
+        self._at = min(self._at, max(0, len(self._overview.shelf) - 1))
+        self._show()
+
+    def action_back(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()

@@ -1,0 +1,50 @@
+"""What a student has done so far: lessons, exercises, the quiz by topic, and how to take it along."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from typing import Any
+
+from textual.screen import Screen
+
+from kit.tui import lessons_rows as say
+from kit.tui.overview import School
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.scroll_page import ScrollPage
+from kit.tui.text_rows import Row
+
+
+async def show_progress(screen: Screen[Any], school: School) -> None:
+    """Opens the page, and comes back when it is left. To be called in a worker."""
+    found = await to_thread(_rows, school)
+    if isinstance(found, str):
+        screen.app.push_screen(Page("Progress cannot be read", wrapped(found)))
+    else:
+        await screen.app.push_screen_wait(ScrollPage("Progress", found))
+
+
+def _rows(school: School) -> list[Row] | str:
+    """In another thread: there are many files. What is wrong, if something is."""
+    overview = school.look()
+    if overview.problem:
+        return overview.problem
+    return say.progress(overview.shelf, _quiz(school), str(school.desk.folder))
+
+
+def _quiz(school: School) -> list[str]:
+    from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.reading import read_bank
+    from kit.school.quiz.schedule import schedule_of
+    from kit.school.quiz.sitting import local_now
+    from kit.school.quiz.words import scores_lines
+    from kit.world.problems import WorldError
+
+    events = school.progress().events()
+    try:
+        bank = read_bank()
+    except (WorldError, FileNotFoundError) as error:
+        return str(error).splitlines()
+    answers = answers_of(events)
+    if not answers:
+        return ["Nothing answered yet."]
+    return list(scores_lines(bank, answers, schedule_of(bank, events, local_now())))

@@ -1,0 +1,221 @@
+"""What ``kit`` opens: a robot in its maze, to be driven with the arrow keys, and beside it everything there is."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from textual import work
+from textual.binding import Binding, BindingType
+from textual.screen import Screen
+
+from kit.inspection.sockets import sockets_folder
+from kit.tui.input.keys import base_key
+from kit.tui.look import Look
+from kit.tui.overview import Overview, School
+from kit.tui.readout import said
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.play import TELEOP, PlayScreen
+from kit.tui.screens.start_keys import MENU, PANEL_WIDTH, START_HELP, START_KEYS, menu
+from kit.tui.screens.watch import MESSAGE_ROWS
+from kit.tui.text_rows import row, spread
+
+if TYPE_CHECKING:
+    from kit.showing import View
+
+ARROWS = ("up", "down", "left", "right")
+PLACE, CONTROLLER = "maze", "random_walk"
+
+
+class StartScreen(PlayScreen, inherit_bindings=False):
+    """The arrow keys drive, and no others; what the menu opens comes back here."""
+
+    keys = START_KEYS
+    help = START_HELP
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(str(number), f"open({number - 1})", show=False) for number in range(1, len(MENU) + 1)),
+        Binding("enter", "open", show=False),
+        Binding("tab,j", "choose(1)", show=False),
+        Binding("shift+tab,k", "choose(-1)", show=False),
+        Binding("g", "hand_back", show=False),
+        Binding("r", "reset", show=False),
+        Binding("x", "next_drive_mode", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
+    ]
+    DEFAULT_CSS = f"""
+    StartScreen #panel {{ width: {PANEL_WIDTH}; }}
+    StartScreen.-narrow #middle {{ layout: vertical; }}
+    StartScreen.-narrow #panel {{ display: block; width: 1fr; height: 12; }}
+    """
+
+    def __init__(self, look: Look, school: School, *, seed: int = 0) -> None:
+        desk = school.desk
+        doors = sockets_folder(desk.folder)
+        super().__init__(
+            look, PLACE, CONTROLLER, folder=desk.controllers, runs=desk.runs, seed=seed, doors=doors
+        )
+        self._school = school
+        self._overview: Overview | None = None
+        self._chosen = 0
+        self._is_reading = self._is_away = False
+
+    def on_mount(self) -> None:
+        self._show_menu()
+        # At the latest; at the best, when the robot is on the screen and the processor is free.
+        self.set_timer(1.5, self._read_once)
+
+    def on_unmount(self) -> None:
+        self._school.close()
+
+    def takes(self, key: str) -> bool:
+        return base_key(key) in ARROWS
+
+    def on_new_view(self) -> None:
+        self._read_once()
+
+    # What is shown
+
+    def _show(self) -> None:
+        view = self.view
+        self._show_menu()
+        if view is None or not self.is_active or self._is_away:
+            return
+        self.world.offer(self._newest_scene)
+        self._rows("heading").show([self._heading(view)])
+        self._rows("said").show(said(view, MESSAGE_ROWS, self.size.width))
+
+    def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
+        driver = "you drive" if view.controller == TELEOP else "it finds its own way"
+        return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
+
+    def _show_menu(self) -> None:
+        self._rows("panel").show(menu(self._overview, self._chosen))
+
+    # Where the student stands
+
+    def _read_once(self) -> None:
+        if not self._is_reading and self._overview is None:
+            self._is_reading = True
+            self._read()
+
+    @work(exclusive=True, group="overview")
+    async def _read(self) -> None:
+        await self._overview_now()
+
+    async def _overview_now(self) -> Overview:
+        """Read anew, and shown."""
+        overview = await to_thread(self._school.look)
+        self._overview = overview
+        if notice := self._school.take_notice():
+            self.app.push_screen(Page("Your progress", wrapped(notice)))
+        self._show_menu()
+        return overview
+
+    # Keys
+
+    def action_choose(self, lines: int) -> None:
+        self._chosen = (self._chosen + lines) % len(MENU)
+        self._show_menu()
+
+    @work(exclusive=True, group="menu")
+    async def action_open(self, number: int | None = None) -> None:
+        """A line of the menu; by default the one that is chosen."""
+        if not self.is_active:
+            return
+        self._chosen = self._chosen if number is None else number
+        self._show_menu()
+        await getattr(self, f"_open_{MENU[self._chosen].name}")()
+
+    async def _visit(self, screen: Screen[Any]) -> None:
+        """Opens a screen in place of this one, and comes back to the robot at its start."""
+        self._go_away()
+        await self.app.push_screen_wait(screen)
+        await self._come_back()
+
+    def _go_away(self) -> None:
+        self.stop_driving()
+        self._is_away = True
+        self.behind.shut()  # one world at a time
+
+    async def _come_back(self) -> None:
+        self._is_away = False
+        self.open_world()
+        await self._overview_now()
+
+    async def _open_continue(self) -> None:
+        overview = self._overview or await self._overview_now()
+        if overview.problem:
+            self.app.push_screen(Page("Progress cannot be read", wrapped(overview.problem)))
+            return
+        entry = overview.going_on
+        if entry is None or entry.lesson is None:
+            await self._open_lessons()
+            return
+        from kit.school.progress import ProgressError
+        from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame, like all below
+
+        try:
+            visit = self._school.visit(entry.lesson)
+        except ProgressError as error:
+            self.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+            return
+        await self._visit(LessonScreen(self._look, visit, self._school.desk))
+
+    async def _open_lessons(self) -> None:
+        from kit.tui.screens.lessons import LessonsScreen
+
+        overview = self._overview or await self._overview_now()
+        if overview.problem:
+            self.app.push_screen(Page("Progress cannot be read", wrapped(overview.problem)))
+        else:
+            await self._visit(LessonsScreen(self._look, self._school, overview))
+
+    async def _open_drive(self) -> None:
+        desk = self._school.desk
+        await self._visit(
+            PlayScreen(
+                self._look,
+                PLACE,
+                CONTROLLER,
+                folder=desk.controllers,
+                runs=desk.runs,
+                doors=sockets_folder(desk.folder),
+            )
+        )
+
+    async def _open_train(self) -> None:
+        from kit.tui.screens.trainings import choose_training
+
+        screen = await choose_training(self, self._look, self._school.desk.runs)
+        if screen is not None:
+            await self._visit(screen)
+
+    async def _open_layers(self) -> None:
+        from kit.layers.tasks import open_task
+        from kit.tui.screens.layers import LayersScreen
+
+        await self._visit(
+            LayersScreen(self._look, open_task("two"), "two", saved_to=self._school.desk.worlds)
+        )
+
+    async def _open_quiz(self) -> None:
+        from kit.school.progress import ProgressError
+        from kit.tui.screens.questions import choose_questions
+
+        try:
+            progress = await to_thread(self._school.progress)
+        except ProgressError as error:
+            self.app.push_screen(Page("Progress cannot be read", wrapped(str(error))))
+            return
+        self._go_away()
+        await choose_questions(self, progress)
+        await self._come_back()
+
+    async def _open_progress(self) -> None:
+        from kit.tui.screens.progress import show_progress
+
+        self._go_away()
+        await show_progress(self, self._school)
+        await self._come_back()

@@ -1,0 +1,115 @@
+"""The start screen's menu and keys, in words."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass
+from typing import Final
+
+from kit.tui.key_rows import key_line, key_page
+from kit.tui.overview import Overview
+from kit.tui.text_rows import Row, row
+
+PANEL_WIDTH: Final = 31
+TEXT: Final = PANEL_WIDTH - 2
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One line of the menu."""
+
+    name: str
+    """Of the screen's method that opens it."""
+    title: str
+    about: str
+
+
+MENU: Final = (
+    Item("continue", "Continue", ""),
+    Item("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
+    Item("drive", "Drive", "Any map and any controller, your own too."),
+    Item("train", "Train", "Have an agent learn to drive, and watch it learn."),
+    Item("layers", "Layers", "Who collides, who sees whom: the fewest layers that do it."),
+    Item("quiz", "Quiz", "What do you know, and how sure are you?"),
+    Item("progress", "Progress", "What you have done, and how to take it along."),
+)
+
+START_KEYS: Final = key_line(
+    ("Enter", "opens"),
+    ("1-7", "or"),
+    ("Tab", "choose"),
+    ("←↑↓→", "drive the robot"),
+    ("?", "help"),
+    ("^C", "leave"),
+)
+START_HELP: Final = key_page(
+    (
+        ("Enter", "opens what is chosen: at first, where you go on"),
+        ("1 to 7", "opens that line of the menu"),
+        ("Tab  Shift-Tab", "chooses the next line, the one before"),
+    ),
+    (
+        ("arrows", "drive the robot in the picture: you take over"),
+        ("g", "it finds its own way again"),
+        ("r", "from the start again"),
+        ("x", "how keys drive: automatic, latch, repeat"),
+    ),
+    (
+        ("Backspace, Esc", "from wherever the menu led, back to it"),
+        ("Ctrl-C", "leave"),
+    ),
+)
+
+
+def menu(overview: Overview | None, chosen: int) -> list[Row]:
+    """The menu, always as many rows. ``overview``: None while it is being read."""
+    rows = [row()]
+    for number, item in enumerate(MENU):
+        is_chosen = number == chosen
+        title = _begin(overview) if item.name == "continue" else item.title
+        told = _told(item.name, overview)
+        rows.append(
+            row(
+                (">" if is_chosen else " ", "bold"),
+                (f" {number + 1}  ", "bold"),
+                (f"{title:<9}", "bold" if is_chosen else ""),
+                (f"  {told}", "dim"),
+            )
+        )
+        if item.name == "continue":
+            rows += [row("     ", each) for each in _padded(_where(overview), 3, TEXT - 5)]
+    about = _padded(MENU[chosen].about, 3, TEXT)
+    return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
+
+
+def _begin(overview: Overview | None) -> str:
+    return "Begin" if overview is not None and overview.is_new else "Continue"
+
+
+def _where(overview: Overview | None) -> str:
+    """Where one goes on."""
+    if overview is None:
+        return ""
+    entry = overview.going_on
+    if overview.problem:
+        return "Progress cannot be read."
+    if entry is None or entry.standing is None:
+        return "Every lesson is done." if overview.shelf else "No lessons were installed."
+    step = entry.standing.next_step
+    where = f", step {step.number} of {len(entry.standing.lesson.steps)}" if entry.is_begun else ""
+    return f"Lesson {entry.number}, {entry.title}{where}"
+
+
+def _told(name: str, overview: Overview | None) -> str:
+    if overview is None or overview.problem:
+        return ""
+    if name == "lessons":
+        return f"{overview.done} of {len(overview.shelf)} done"
+    if name == "quiz" and overview.due:
+        return f"{overview.due} due today"
+    return ""
+
+
+def _padded(text: str, rows: int, width: int) -> list[str]:
+    lines = textwrap.wrap(text, width, max_lines=rows, placeholder=" ...")
+    return lines + [""] * (rows - len(lines))

@@ -1,0 +1,65 @@
+"""Trainings, opened from another screen: go on looking at one, or begin one."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from kit.learning.runs import Run
+    from kit.tui.look import Look
+    from kit.tui.screens.training import TrainingScreen
+
+NEW: Final = "new/"
+"""Before a task's name: begin a training of it."""
+
+
+async def choose_training(screen: Screen[Any], look: Look, runs: Path) -> TrainingScreen | None:
+    """The screen of the training that was chosen; None if none was, or it could not be begun."""
+    choices = await to_thread(_choices, runs)
+    chosen = await screen.app.push_screen_wait(Picker("Train", choices))
+    if chosen is None:
+        return None
+    try:
+        run = await to_thread(_run, runs, chosen)
+    except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a damaged run: all of it is told
+        screen.app.push_screen(Page("This cannot be trained", wrapped(str(error))))
+        return None
+    from kit.tui.screens.training import TrainingScreen
+
+    return TrainingScreen(look, run)
+
+
+def _choices(folder: Path) -> list[Choice]:
+    """Called in another thread: the learning side takes a moment to import."""
+    from kit.learning.runs import RunError, all_runs
+    from kit.learning.tasks import TASKS
+
+    choices = [Choice(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
+    for run in all_runs(folder):
+        try:
+            choices.append(Choice(run.name, run.name, f"look at it: {run.config().choice.title}"))
+        except RunError:
+            choices.append(Choice(run.name, run.name, "damaged"))
+    return choices
+
+
+def _run(folder: Path, chosen: str) -> Run:
+    """The run, begun where it is to be a new one."""
+    from kit.learning.choice import TaskChoice
+    from kit.learning.extra import require_learner
+    from kit.learning.runs import RunConfig, find_run, new_run
+    from kit.learning.worker import start
+
+    if not chosen.startswith(NEW):
+        return find_run(folder, chosen)
+    require_learner()
+    run = new_run(folder, RunConfig(TaskChoice(chosen.removeprefix(NEW))), None)
+    start(run)
+    return run
