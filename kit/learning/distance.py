@@ -32,8 +32,10 @@ class Table(NamedTuple):
 
 
 @cache
-def ways(ground: Ground, target: tuple[float, float]) -> Table:
-    """The length of the way to ``target`` from everywhere on the map.
+def ways(
+    ground: Ground, target: tuple[float, float], clear: float = CLEAR, dearest: float = DEAREST
+) -> Table:
+    """The length of the way to ``target`` from everywhere on the map, keeping ``clear`` [m] of walls where it can.
 
     Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
     times the mean price of its ends.
@@ -42,10 +44,10 @@ def ways(ground: Ground, target: tuple[float, float]) -> Table:
     corner = points.min(axis=0) - 2 * CELL
     columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - corner) / CELL).astype(int) + 1
     x, y = corner[0] + CELL * np.arange(columns), corner[1] + CELL * np.arange(rows)
-    clear = _clearance(x, y, ground.walls)
-    price = 1.0 + (DEAREST - 1.0) * np.maximum(0.0, 1.0 - clear / CLEAR)
+    room = _clearance(x, y, ground.walls)
+    price = 1.0 + (dearest - 1.0) * np.maximum(0.0, 1.0 - room / clear)
     # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
-    price[clear < CELL / math.sqrt(2)] = math.inf
+    price[room < CELL / math.sqrt(2)] = math.inf
     lengths = np.full((rows, columns), math.inf)
     start = round((target[1] - corner[1]) / CELL), round((target[0] - corner[0]) / CELL)
     lengths[start] = 0.0

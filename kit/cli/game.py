@@ -1,0 +1,244 @@
+"""``kit game``: levels, stars, time trials and the hall of fame."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+
+if TYPE_CHECKING:
+    from kit.learning.policies import Policy
+    from kit.recording import Recording
+    from kit.school.game.levels import Level
+    from kit.school.game.race import Driver, Finish
+    from kit.school.game.standing import LevelStanding
+    from kit.school.progress import Progress
+    from kit.workspace import Workspace
+
+STAR, NO_STAR = "*", "."
+PLACES = 5
+"""Rows of the hall of fame a level."""
+
+
+@contextmanager
+def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
+    """The journal and the desk; every mistake ends the verb with a message."""
+    from kit.desk import open_desk
+    from kit.school.game.fame import FameError
+    from kit.school.game.levels import UnknownLevel
+    from kit.school.progress import Progress, ProgressError
+    from kit.workspace import WorkspaceError
+    from kit.world.problems import WorldError
+
+    try:
+        desk = open_desk(workspace)
+        with Progress(desk.folder) as progress:
+            if progress.notice:
+                click.echo(progress.notice, err=True)
+            yield progress, desk
+    except (ProgressError, WorkspaceError, WorldError, UnknownLevel, FameError, FileNotFoundError) as error:
+        options.fail(str(error))
+
+
+def _standings(progress: Progress) -> tuple[LevelStanding, ...]:
+    from kit.school.game.levels import all_levels
+    from kit.school.game.standing import standings
+
+    return standings(all_levels(), progress.events())
+
+
+@click.group(invoke_without_command=True)
+@options.workspace
+@click.option("--plain", is_flag=True, help="The list as text instead of a full screen.")
+@click.pass_context
+def command(context: click.Context, workspace: Path | None, plain: bool) -> None:
+    """Levels from the first drive to two wheelchairs: three stars each, ghosts to race, a hall of fame.
+
+    \b
+    kit game                                   the levels, and your stars
+    kit game play first-drive                  drive one by hand
+    kit game race the-maze --controller my_controller.py
+    kit game race left-turn --agent my_run     an agent that you trained, on the same level
+    kit game fame                              who was quickest on this machine
+
+    Stars: one for finishing, one for touching nothing, one for being under par.
+    """
+    context.obj = workspace
+    if context.invoked_subcommand is not None:
+        return
+    with _opened(workspace) as (progress, desk):
+        terminal = options.terminal(plain=plain)
+        if not terminal.plain.value:
+            from kit.cli.game_screen import show_on_screen
+
+            show_on_screen(progress, desk, terminal)
+        _list(_standings(progress))
+
+
+@command.command("play")
+@click.argument("level")
+@click.option("--plain", is_flag=True, help="Line by line instead of a full screen.")
+@click.pass_obj
+def play(workspace: Path | None, level: str, plain: bool) -> None:
+    """Drive LEVEL (its name or number) by hand."""
+    from kit.school.game.levels import find_level
+    from kit.school.game.race import Driver
+
+    with _opened(workspace) as (progress, desk):
+        chosen = find_level(level)
+        terminal = options.terminal(plain=plain)
+        if not terminal.plain.value:
+            from kit.cli.game_screen import show_on_screen
+
+            show_on_screen(progress, desk, terminal, chosen)
+        from kit.cli.game_plain import drive_by_lines
+
+        click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
+        finish, recording = drive_by_lines(chosen, desk)
+        _note(progress, desk, chosen, Driver.KEYS, finish, recording)
+
+
+@command.command("race")
+@click.argument("level")
+@click.option("--controller", help="A controller by name, or a Python file with a ROS 2 node.")
+@click.option("--agent", help="A training run by name, or a policy's file.")
+@click.pass_obj
+def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
+    """Let a program or a trained agent drive LEVEL against the clock."""
+    from kit.controllers import find
+    from kit.learning.policies import PolicyError
+    from kit.school.game.levels import find_level
+    from kit.school.game.race import Driver, race, race_agent
+
+    if (controller is None) == (agent is None):
+        options.fail(
+            "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
+        )
+    with _opened(workspace) as (progress, desk):
+        chosen = find_level(level)
+        try:
+            if controller is not None:
+                driver = Driver.CONTROLLER
+                finish, recording = race(chosen, find(controller, desk.controllers), on_second=_tell)
+            else:
+                driver = Driver.AGENT
+                finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_tell)
+        except (LookupError, PolicyError) as error:
+            options.fail(str(error))
+        finally:
+            _tell(None)
+        _note(progress, desk, chosen, driver, finish, recording)
+
+
+@command.command("fame")
+@click.pass_obj
+def fame(workspace: Path | None) -> None:
+    """Show who was quickest on this machine, of those who joined."""
+    from kit.school.game.fame import entries, hall, has_joined
+    from kit.school.game.levels import all_levels
+
+    with _opened(workspace) as (_progress, _):
+        found = entries(hall())
+        for level in all_levels():
+            best = [each for each in found if each.level == level.id]
+            if best:
+                click.echo(f"{level.title} (par {level.par:g} s)")
+            for place, each in enumerate(best[:PLACES], 1):
+                me = "  <- you" if each.is_mine else ""
+                click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
+        if not found:
+            click.echo("Nobody is in the hall of fame yet.")
+        if not has_joined(hall()):
+            click.echo(
+                "You are not in it. `kit game join` puts your name and times there; `kit game leave` takes them out."
+            )
+
+
+@command.command("join")
+@click.option("--name", help="What to be called there; by default what `kit progress name` was told.")
+@click.pass_obj
+def join(workspace: Path | None, name: str | None) -> None:
+    """Put your name and best times where all users of this machine can see them."""
+    from kit.school.game.fame import hall, publish
+
+    with _opened(workspace) as (progress, _):
+        called = name or _called(progress)
+        if not called or not called.isprintable():
+            options.fail("Say what to be called: `kit game join --name Ada`.")
+        publish(hall(), called, _standings(progress))
+        click.echo(f"{called} is in the hall of fame of this machine ({hall()}). `kit game leave` undoes it.")
+
+
+@command.command("leave")
+@click.pass_obj
+def leave_(workspace: Path | None) -> None:
+    """Take your name and times out of the hall of fame."""
+    from kit.school.game.fame import hall, leave
+
+    with _opened(workspace):
+        leave(hall())
+        click.echo("You are not in the hall of fame.")
+
+
+def _list(found: tuple[LevelStanding, ...]) -> None:
+    for number, each in enumerate(found, 1):
+        stars = "".join(STAR if has else NO_STAR for has in each.stars)
+        times = ", ".join(f"{driver} {time:.1f} s" for driver, time in each.best.items())
+        state = times if each.is_open else f"opens after {' or '.join(each.level.after)}"
+        level = each.level
+        click.echo(f"{number:>2}  {stars}  {level.id:<18} par {level.par:>4g} s  {state}")
+    have = sum(each.count for each in found)
+    click.echo(f"\n{have} of {3 * len(found)} stars. `kit game play NAME` drives one by hand.")
+
+
+def _note(
+    progress: Progress, desk: Workspace, level: Level, driver: Driver, finish: Finish, recording: Recording
+) -> None:
+    """Keeps a drive, and says what it earned."""
+    from kit.school.game.drives import note
+    from kit.school.game.ghosts import reference_ghost
+
+    if finish.failure is not None:
+        click.echo(f"The program stopped: {finish.failure}")
+    if finish.foul:
+        click.echo(f"It does not count: {finish.foul}.")
+    noted = note(progress, desk, level, driver, finish, recording)
+    end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
+    click.echo(f"{level.title}: {end}, {finish.bumps} bumps.")
+    for title, has in zip(
+        ("finished", "touched nothing", f"under par ({level.par:g} s)"), noted.stars, strict=True
+    ):
+        click.echo(f"  {STAR if has else NO_STAR} {title}")
+    if noted.kept is not None:
+        click.echo(f"Your best so far with {driver}; watch it: kit replay {noted.kept}")
+    ghost = reference_ghost(desk, level)
+    if ghost is not None:
+        click.echo(f"The reference takes {ghost.seconds:.2f} s.")
+
+
+def _policy(agent: str, desk: Workspace) -> Policy:
+    from kit.learning.policies import load_policy
+    from kit.learning.runs import find_run
+
+    file = Path(agent)
+    return load_policy(file) if file.is_file() else find_run(desk.runs, agent).policy()
+
+
+def _called(progress: Progress) -> str:
+    from kit.school.progress import Kind
+
+    names = [str(event.content.get("value", "")) for event in progress.events(Kind.ABOUT, "name")]
+    return names[-1] if names else ""
+
+
+def _tell(seconds: float | None) -> None:
+    """How far a race is, where somebody looks."""
+    if sys.stderr.isatty():
+        text = "" if seconds is None else f"driving: {seconds:.0f} s"
+        click.echo(f"\r{text:<24}" + ("\r" if seconds is None else ""), nl=False, err=True)

@@ -1,0 +1,101 @@
+"""The levels: where each is, what is asked, which ones open it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from kit.places import Place, find_place
+from kit.school.lessons.reading import lessons_folder
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, WorldError, quoted, suggestion
+from kit.world.records import Place as At
+from kit.world.section import Section
+
+FILE: Final = "levels.yaml"
+
+
+class UnknownLevel(LookupError):
+    """No level has that name; the message offers the nearest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """One level."""
+
+    id: str
+    title: str
+    place: str
+    """A map of the kit."""
+    case: str
+    par: float
+    """s"""
+    hint: str
+    after: tuple[str, ...]
+    """Levels any of which, once finished, opens this one; empty: it is open."""
+    row: int
+    """On the map of levels: how many levels come before it at least."""
+
+    def find(self) -> Place:
+        """Where it is driven. Raises LookupError and WorldError."""
+        return find_place(self.place, self.case, None)
+
+
+def all_levels(folder: Path | None = None) -> tuple[Level, ...]:
+    """Every level in order. Raises WorldError with all mistakes of the file."""
+    file = (lessons_folder() if folder is None else folder) / FILE
+    problems = Problems()
+    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, At(file))
+    problems.raise_if_any()
+    assert section is not None  # None is noted as a problem
+    levels = tuple(_levels(section))
+    section.finish()
+    problems.raise_if_any()
+    return levels
+
+
+def find_level(name: str, levels: tuple[Level, ...] | None = None) -> Level:
+    """A level by its id or its number from 1. Raises UnknownLevel."""
+    levels = all_levels() if levels is None else levels
+    for number, level in enumerate(levels, 1):
+        if name in (level.id, str(number)):
+            return level
+    ids = [level.id for level in levels]
+    raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
+
+
+def _levels(section: Section) -> Iterator[Level]:
+    rows: dict[str, int] = {}
+    for each in section.sections("levels", at_least=1):
+        identity = each.name("id")
+        after = each.texts("after", ())
+        for before in after:
+            if before not in rows:
+                each.error(
+                    f"no level {quoted(before)} stands before this one: {suggestion(before, tuple(rows))}",
+                    "after",
+                )
+        row = 1 + max((rows.get(before, 0) for before in after), default=-1)
+        if identity in rows:
+            each.error(f"a level {quoted(identity)} exists already", "id")
+        rows[identity] = row
+        level = Level(
+            id=identity,
+            title=each.name("title"),
+            place=each.name("place"),
+            case=each.name("case"),
+            par=each.number("par", above=0, maximum=3600),
+            hint=each.text("hint"),
+            after=after,
+            row=row,
+        )
+        each.finish()
+        try:
+            level.find()
+        except (LookupError, WorldError) as error:
+            each.error(str(error), "place")
+            continue
+        yield level

@@ -1,0 +1,205 @@
+"""One drive of a level, judged: whoever drives, by keys, as a program or as a trained agent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+from kit.controllers import ControllerFile, find
+from kit.host.failure import Failure
+from kit.places import Place
+from kit.recording import Recorder, Recording
+from kit.school.game.guide import Guide
+from kit.school.game.levels import Level
+from kit.session import Session
+from kit.sim.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kit.learning.policies import Policy
+
+LONGEST: Final = 6.0
+"""A drive ends when it has taken so many times the level's par."""
+LOOK_EVERY: Final = 10
+"""Ticks between two looks at the program."""
+FASTEST: Final = 1.05
+"""m/s that the robot may be driven at: it could be told more, but no such robot would do it."""
+STRIDE: Final = 0.5
+"""m: farther in one step is no driving, but being sent home after a bump."""
+ALLOWED: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
+"""What the world may be told during a race; models are moved home, and nowhere else."""
+SEED: Final = 1
+"""Of every race: the same luck for all."""
+PAIR_DRIVER: Final = "abreast"
+"""The kit's controller that drives two as one."""
+
+
+class Driver(StrEnum):
+    """Who drove."""
+
+    KEYS = "keys"
+    CONTROLLER = "controller"
+    AGENT = "agent"
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """How a drive ended."""
+
+    reached: bool
+    """Whether everyone who drives got to the target."""
+    seconds: float
+    """Simulated, until then or until the end."""
+    bumps: int
+    """Of all who drive together."""
+    failure: Failure | None = None
+    foul: str = ""
+    """What was not fair about it; then nothing was reached."""
+
+    def stars(self, par: float) -> tuple[bool, bool, bool]:
+        """Finished, finished safely (nothing touched), finished under par."""
+        return self.reached, self.reached and self.bumps == 0, self.reached and self.seconds <= par
+
+    def as_event(self, driver: Driver, recording: str | None) -> dict[str, Any]:
+        """What the journal keeps."""
+        return {
+            "driver": driver.value,
+            "reached": self.reached,
+            "seconds": round(self.seconds, 3),
+            "bumps": self.bumps,
+            "recording": recording,
+        }
+
+
+class Judge:
+    """Watches a runner's ticks: when all who drive have reached the target, and how often they touched something."""
+
+    def __init__(self, place: Place) -> None:
+        self._place = place
+        self._last_tick = -1
+        self._begin()
+
+    def _begin(self) -> None:
+        self._touching: dict[str, bool] = {}
+        self._bumps = 0
+        self._seconds = 0.0
+        self._reached: float | None = None
+        self._foul = ""
+        self._at: dict[str, tuple[float, float]] = {}
+
+    @property
+    def finish(self) -> Finish:
+        """As of the last tick."""
+        seconds = self._seconds if self._reached is None else self._reached
+        return Finish(self._reached is not None and not self._foul, seconds, self._bumps, foul=self._foul)
+
+    def accepted(self, topic: str, message: Any) -> None:
+        """Only what comes of it counts."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Whoever changes the world does not race in it."""
+        if service in ALLOWED[1:] or self._reached is not None:
+            return
+        homes = dict(zip(self._place.partners, self._place.starts, strict=True))
+        if service != ALLOWED[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
+            self._foul = f"the world was changed during the race ({service})"
+
+    def ticked(self, simulation: Simulation) -> None:
+        if simulation.tick <= self._last_tick:  # it was reset: a new drive
+            self._begin()
+        self._last_tick = simulation.tick
+        self._seconds = simulation.time_ns / 1e9
+        if self._reached is not None:
+            return
+        for name in self._place.partners:
+            touching = simulation.touches(name)
+            self._bumps += touching and not self._touching.get(name, False)
+            self._touching[name] = touching
+            pose = simulation.pose(name)
+            before = self._at.get(name, (pose.x, pose.y))
+            stride = math.hypot(pose.x - before[0], pose.y - before[1])
+            self._at[name] = pose.x, pose.y
+            if FASTEST * simulation.step_size < stride < STRIDE:
+                self._foul = f"it drove faster than {FASTEST:g} m/s, which this robot cannot"
+        case = self._place.case
+        if case is not None and all(
+            simulation.hull_distance(name, case.target) <= case.target_radius for name in self._place.partners
+        ):
+            self._reached = self._seconds
+
+
+def reference(level: Level) -> tuple[Finish, Recording]:
+    """The drive to be measured against: the guide's for one robot, the kit's own controller's for two."""
+    place = level.find()
+    if len(place.partners) > 1:
+        return race(level, find(PAIR_DRIVER))
+    return _run(level, place, lambda session: session.runner.guests.append(Guide(session)))
+
+
+def race(
+    level: Level, controller: ControllerFile, *, on_second: Callable[[float], None] | None = None
+) -> tuple[Finish, Recording]:
+    """A program drives the level, as fast as it goes."""
+
+    def sit(session: Session) -> None:
+        session.drive_with(controller)
+        session.wait_until_driven()
+
+    return _run(level, level.find(), sit, on_second)
+
+
+def race_agent(
+    level: Level, policy: Policy, *, on_second: Callable[[float], None] | None = None
+) -> tuple[Finish, Recording]:
+    """A trained policy drives the level, as the ROS 2 node it would be on a robot. Raises PolicyError."""
+    from kit.learning.policy_node import node_source
+
+    source = node_source(policy)
+    with TemporaryDirectory(prefix="agent-") as folder:
+        file = Path(folder, "agent.py")
+        file.write_text(source)
+        return race(level, find(str(file)), on_second=on_second)
+
+
+def judged(level: Level, recording: Recording) -> Finish:
+    """How a recorded drive of the level ended: it is run again, to the bit. ValueError if it is of another level."""
+    place = level.find()
+    if (recording.place, recording.case) != (place.name, level.case):
+        raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
+    with Session(place, seed=recording.seed, step_size=recording.step_size) as session:
+        judge = Judge(place)
+        session.runner.observers.append(judge)
+        session.play_back(recording)
+        for _ in range(recording.ticks):
+            session.runner.tick()
+            if judge.finish.reached:
+                break
+        return judge.finish
+
+
+def _run(
+    level: Level,
+    place: Place,
+    sit: Callable[[Session], None],
+    on_second: Callable[[float], None] | None = None,
+) -> tuple[Finish, Recording]:
+    with Session(place, seed=SEED) as session:
+        simulation = session.runner.simulation
+        judge, recorder = Judge(place), Recorder(place.name, level.case, simulation)
+        session.runner.observers += [judge, recorder]
+        sit(session)
+        step = simulation.step_size
+        for tick in range(math.ceil(LONGEST * level.par / step)):
+            if session.failure is not None or judge.finish.reached:
+                break
+            session.runner.tick()
+            if tick % LOOK_EVERY == 0:
+                session.listen()
+                if on_second is not None:
+                    on_second(tick * step)
+        found = judge.finish
+        return replace(found, failure=session.failure), recorder.recording()

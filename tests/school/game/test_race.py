@@ -1,0 +1,205 @@
+"""Levels driven by the reference, by programs, unfairly; what is kept of it, and the hall of fame."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from kit.controllers import find
+from kit.school.game import fame
+from kit.school.game.drives import note
+from kit.school.game.ghosts import ghosts, reference_ghost
+from kit.school.game.levels import Level, UnknownLevel, all_levels, find_level
+from kit.school.game.race import Driver, Finish, judged, race, reference
+from kit.school.game.standing import standings
+from kit.school.progress import Event, Kind, Progress
+from kit.workspace import open_workspace
+from kit.world.problems import WorldError
+
+LEVELS = all_levels()
+FIRST = LEVELS[0]
+
+FORWARD = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class Forward(Node):
+    def __init__(self):
+        super().__init__("forward")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 1)
+        self.create_timer(0.1, self.go)
+
+    def go(self):
+        command = Twist()
+        command.linear.x = {speed}
+        self.drive.publish(command)
+
+
+rclpy.init()
+rclpy.spin(Forward())
+"""
+
+JUMP = """
+import rclpy
+from flatland_msgs.srv import MoveModel
+from geometry_msgs.msg import Pose2D
+from rclpy.node import Node
+
+
+class Jump(Node):
+    def __init__(self):
+        super().__init__("jump")
+        self.client = self.create_client(MoveModel, "/move_model")
+        self.create_timer(0.5, self.go)
+
+    def go(self):
+        request = MoveModel.Request()
+        request.name = "serp"
+        request.pose = Pose2D(x=0.625, y=2.4, theta=1.57)
+        self.client.call_async(request)
+
+
+rclpy.init()
+rclpy.spin(Jump())
+"""
+
+
+@pytest.mark.parametrize("level", LEVELS, ids=[level.id for level in LEVELS])
+def test_the_reference_earns_every_star(level: Level) -> None:
+    finish, recording = reference(level)
+    assert finish.stars(level.par) == (True, True, True)
+    assert level.par < 2.5 * finish.seconds  # a par that anybody makes is none
+    assert judged(level, recording) == replace(finish, failure=None)
+
+
+def test_every_level_can_be_opened_one_after_the_other() -> None:
+    opened: set[str] = set()
+    for level in LEVELS:
+        assert not level.after or set(level.after) & opened, level.id
+        opened.add(level.id)
+
+
+@pytest.mark.parametrize(("speed", "reached"), [(0.4, True), (0.0, False)], ids=["drives", "stands"])
+def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(FORWARD.format(speed=speed))
+    finish, recording = race(replace(FIRST, par=2.0), find(str(file)))
+    assert finish.reached is reached
+    assert finish.failure is None
+    assert recording.ticks > 0
+
+
+@pytest.mark.parametrize("source", [FORWARD.format(speed=30.0), JUMP], ids=["too fast", "moves the world"])
+def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(source)
+    finish, _ = race(replace(FIRST, par=1.0), find(str(file)))
+    assert finish.foul
+    assert finish.stars(10.0) == (False, False, False)
+
+
+def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("1/0\n")
+    finish, _ = race(FIRST, find(str(file)))
+    assert finish.failure is not None
+    assert not finish.reached
+
+
+def drive(level: str, driver: str, seconds: float, *, reached: bool = True, bumps: int = 0) -> Event:
+    content = {"driver": driver, "reached": reached, "seconds": seconds, "bumps": bumps, "recording": None}
+    return Event(
+        f"{level}{driver}{seconds}{bumps}", datetime.now(UTC).isoformat(), Kind.FINISH, level, content
+    )
+
+
+def test_stars_add_up_over_drives_and_open_levels() -> None:
+    events = [
+        drive(FIRST.id, "keys", FIRST.par + 3.0),
+        drive(FIRST.id, "agent", FIRST.par - 1.0, bumps=2),
+        drive("the-door", "keys", 3.0, reached=False),
+        Event("x", datetime.now(UTC).isoformat(), Kind.FINISH, FIRST.id, {"driver": "horse"}),
+    ]
+    found = {each.level.id: each for each in standings(LEVELS, events)}
+    assert found[FIRST.id].stars == (True, True, True)
+    assert found[FIRST.id].best == {Driver.KEYS: FIRST.par + 3.0, Driver.AGENT: FIRST.par - 1.0}
+    assert found["left-turn"].is_open
+    assert not found["two-doors"].is_open
+    assert found["the-door"].count == 0
+
+
+def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(fame.VARIABLE, str(tmp_path / "hall"))
+    workspace = open_workspace(tmp_path / "desk")
+    finish, recording = reference(FIRST)
+    with Progress(workspace.folder) as progress:
+        first = note(progress, workspace, FIRST, Driver.KEYS, finish, recording)
+        slower = note(progress, workspace, FIRST, Driver.KEYS, replace(finish, seconds=99.0), recording)
+    assert (first.is_best, slower.is_best) == (True, False)
+    assert first.kept is not None
+    (own,) = ghosts(workspace, FIRST)
+    known = reference_ghost(workspace, FIRST)
+    assert known is not None
+    assert own.seconds == pytest.approx(known.seconds)
+    assert own.poses(0.0)[0] == pytest.approx(tuple(FIRST.find().starts[0]), abs=0.02)
+    assert own.poses(1e9) == own.poses(own.seconds)
+    first.kept.write_bytes(b"damaged")
+    assert ghosts(workspace, FIRST) == ()
+
+
+def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
+    hall = tmp_path / "hall"
+    found = standings(LEVELS, [drive(FIRST.id, "keys", 5.0)])
+    assert not fame.has_joined(hall)
+    fame.publish(hall, "Ada\x1b[31m", found)
+    (entry,) = fame.entries(hall)
+    assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
+    own = hall / f"{os.getuid()}.json"
+    (hall / "123456.json").write_text(own.read_text())  # written for somebody else
+    (hall / "999.json").symlink_to(own)
+    (hall / "0.txt").write_text("x")
+    assert len(fame.entries(hall)) == 1
+    fame.leave(hall)
+    fame.leave(hall)
+    assert fame.entries(hall) == []
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "[]", "{}", json.dumps({"name": "x", "levels": {"a": {"stars": 1, "best": {"keys": "inf"}}}})],
+)
+def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
+    (tmp_path / f"{os.getuid()}.json").write_text(content)
+    assert fame.entries(tmp_path) == []
+
+
+def test_a_hall_in_which_files_can_be_exchanged_is_refused(tmp_path: Path) -> None:
+    hall = tmp_path / "hall"
+    hall.mkdir()
+    hall.chmod(0o777)
+    with pytest.raises(fame.FameError, match="chmod"):
+        fame.publish(hall, "Ada", standings(LEVELS, []))
+
+
+def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
+    assert find_level("1") is not None
+    assert find_level(FIRST.id).id == FIRST.id
+    with pytest.raises(UnknownLevel, match="first-drive"):
+        find_level("first-drve")
+    (tmp_path / "levels.yaml").write_text(
+        "levels: [{id: a, title: A, place: nowhere, case: x, par: 0, hint: h, after: [b]}]\n"
+    )
+    with pytest.raises(WorldError) as raised:
+        all_levels(tmp_path)
+    assert all(word in str(raised.value) for word in ("nowhere", "par", '"b"'))
+
+
+def test_a_finish_that_is_no_finish_is_not_one() -> None:
+    assert Finish(False, 3.0, 0).stars(10.0) == (False, False, False)
