@@ -64,7 +64,7 @@ def analyse(quiz: Quiz, item: Item) -> ItemAnalysis:
     """The item among the others of the quiz."""
     replies = [each for each in quiz.replies[item.id] if each is not None]
     right = quiz.right(item)
-    rest = [other for other in quiz.items if other is not item]
+    rest = [other for other in quiz.items if other != item]
     hits = sum(each.outcome is Outcome.RIGHT for each in replies)
     return ItemAnalysis(
         item,

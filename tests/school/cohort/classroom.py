@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,10 @@ from kit.school.survey.reading import read_form
 
 START = datetime(2026, 9, 14, 9, 0, tzinfo=UTC)
 LESSONS = (("01-drive", "flag"), ("02-nodes-and-topics", "echo"))
+
+
+the_form = cache(read_form)
+the_bank = cache(read_bank)
 
 
 class Diary:
@@ -70,7 +75,7 @@ def export_of(events: Sequence[Event]) -> str:
 
 def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
     """``skill``: 0 to 1. Fills in everything, more or less well."""
-    form = read_form()
+    form = the_form()
     diary = Diary(name)
     diary.note(Kind.ABOUT, "name", {"value": name})
     _fill_in(diary, form, Phase.BEFORE, skill, rng)
@@ -81,7 +86,7 @@ def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
             diary.attempt(f"{lesson}/{exercise}", 2.0, "fail", ["reached"])
             diary.note(Kind.HINT, f"{lesson}/{exercise}/reached", {"step": 1})
         diary.attempt(f"{lesson}/{exercise}", 5.0, "pass")
-    bank = read_bank()
+    bank = the_bank()
     for item in bank.twelve:
         diary.answer(item, _choice(item, skill, rng))
     for item in bank.twelve[:3]:
@@ -101,12 +106,12 @@ def _choice(item: Item, skill: float, rng: np.random.Generator) -> Choice:
 
 
 def _fill_in(diary: Diary, form: Form, phase: Phase, level: float, rng: np.random.Generator) -> None:
-    done: set[str] = set()
-    while ahead := [
-        each for each in asked(form, Answers.of(form, diary.events), phase) if each.id not in done
-    ]:
-        done.add(ahead[0].id)
-        diary.rate(ahead[0].id, _value(ahead[0], level, rng), phase)
+    answers, done = Answers(), set[str]()
+    while ahead := [each for each in asked(form, answers, phase) if each.id not in done]:
+        for question in ahead:
+            diary.rate(question.id, _value(question, level, rng), phase)
+        done.update(question.id for question in ahead)
+        answers = Answers.of(form, diary.events)
 
 
 def _value(question: Question, level: float, rng: np.random.Generator) -> Value:
