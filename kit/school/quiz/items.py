@@ -126,5 +126,10 @@ def lesson_title(lesson: str) -> str:
     return f"{words}, step {step}" if step else words
 
 
+def lesson_command(lesson: str) -> str:
+    """What opens it."""
+    return f"kit lesson {lesson.partition('-')[0].lstrip('0')}"
+
+
 def bank_of(items: Iterable[Item]) -> Bank:
     return Bank(tuple(sorted(items, key=lambda item: item.lesson)))

@@ -8,7 +8,7 @@ from datetime import date
 from typing import Final
 
 from kit.school.quiz.answers import SURENESS, Answer, Choice, Outcome
-from kit.school.quiz.items import Bank, Item, Topic, lesson_title
+from kit.school.quiz.items import Bank, Item, Topic, lesson_command, lesson_title
 from kit.school.quiz.rounds import Rounds
 from kit.school.quiz.schedule import Schedule
 from kit.school.quiz.scores import (
@@ -49,8 +49,9 @@ def feedback(item: Item, choice: Choice) -> str:
 
 def ways_on(item: Item, width: int) -> list[str]:
     """Where to go from here, the lesson and what to type: in one line where both fit."""
-    parts = [f"See {lesson_title(item.see)}.", *([f"Try: {item.attempt}"] if item.attempt else [])]
-    line = "  ".join(parts)
+    parts = [f"See {lesson_title(item.see)}: {lesson_command(item.see)}"]
+    parts += [f"Try: {item.attempt}"] if item.attempt else []
+    line = "   ".join(parts)
     return [line] if len(line) <= width else parts
 
 

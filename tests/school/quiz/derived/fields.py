@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from kit.fields import adjacency
-from kit.fields.charges import LineCharge, PointCharge, TensionPoint
+from kit.fields.charges import Field, LineCharge, PointCharge, TensionPoint
 from kit.school.quiz.items import Item
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -58,6 +58,26 @@ def wall_or_target(item: Item, folder: Path) -> Finding:
     )
 
 
+def stuck_before_a_wall(item: Item, folder: Path) -> Finding:
+    """Where the sum on the way to the target changes its sign, and what the target's pull is there: some, and the
+    same with the wall as without it."""
+    target, wall = PointCharge(4, 0, 15.0), LineCharge(2, -1, 2, 1, -1.0)
+    way = np.stack((np.linspace(0.0, 1.99, 2000), np.zeros(2000)), axis=1)
+    both = Field.of([target, wall]).forces(way)[:, 0]
+    (stop,) = np.flatnonzero((both[:-1] > 0) & (both[1:] <= 0))
+    pull = float(target.force(way[stop])[0])
+    hidden = not np.isclose(both[stop] - wall.force(way[stop])[0], pull)
+    found = "hidden" if hidden else "too weak" if pull < 0.1 else "cancel"
+    return Finding(
+        found,
+        {
+            "The target is too far away to pull": "too weak",
+            "The forces cancel at this place": "cancel",
+            "The wall hides the target's charge": "hidden",
+        },
+    )
+
+
 def arctangent(item: Item, folder: Path) -> Finding:
     dx, dy = -1.0, -1.0
     assert math.degrees(math.atan2(dy, dx)) == -135.0
@@ -99,6 +119,7 @@ FIELDS: dict[str, Derivation] = {
     "hooke-ratio": hooke_ratio,
     "line-strip": line_strip,
     "wall-or-target": wall_or_target,
+    "stuck-before-a-wall": stuck_before_a_wall,
     "arctangent": arctangent,
     "wrapped-difference": wrapped_difference,
     "side-by-side": side_by_side,
