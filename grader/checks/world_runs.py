@@ -49,12 +49,12 @@ def wrong_noise(run: Run, params: Noise) -> Iterator[str]:
     if spread is None:
         yield f"nothing came on {params.topic}"
     elif abs(spread - params.deviation) > params.within * params.deviation:
-        yield f"on {params.topic} one ray's readings spread by {spread:.4g} m, not {params.deviation:g} m"
+        yield f"on {params.topic} what stands still spreads by {spread:.4g} m, not {params.deviation:g} m"
 
 
 @check(none=1, full=0, words=AS_ASKED, params=Noise)
 def noise(look: Look, params: Noise) -> float:
-    """The laser's noise, measured while the world stood still, is not what was asked ({where}):"""
+    """The noise, measured while the world stood still, is not what was asked ({where}):"""
     return run_count(look, wrong_noise, params)
 
 

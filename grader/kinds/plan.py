@@ -8,7 +8,8 @@ What is handed in::
     lasers: {lidar: [A]}
     proof: [robot - hall, drone - hall, lidar sees hall]
 
-The sheet's ``case`` names a requirements file beside it (see ``kit.layers.reading``), or one of the kit's examples.
+The sheet's ``case`` names a requirements file beside it (see ``kit.layers.reading``), or one of the kit's examples; it may stand in
+``secret.yaml`` instead.
 """
 
 from __future__ import annotations
@@ -91,14 +92,16 @@ CHECKS: Final = (complete, nothing_more, few_layers, proof)
 
 def read(sheet: Sheet) -> Task:
     """The case."""
-    name = sheet.public.name("case")
+    in_secret = not sheet.public.has("case") and sheet.secret is not None
+    holder = sheet.secret if in_secret and sheet.secret is not None else sheet.public
+    name = holder.name("case")
     file = sheet.folder / name
     if name in EXAMPLES:
         return Task(content=EXAMPLES[name])
     try:
         return Task(content=read_requirements(file).case)
     except WorldError as error:
-        sheet.public.error(f"no case: {error}", "case")
+        holder.error(f"no case: {error}", "case")
         return Task()
 
 

@@ -173,7 +173,8 @@ class Heard(Told):
     topic: str
     count: int
     spread: float
-    """Of a laser: the standard deviation of one ray's readings, over all rays that always hit; else 0."""
+    """Of a laser: the standard deviation of one ray's readings, over all rays that always hit. Of an odometry: of x and
+    of y. Else 0."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from grader.worlds.way import flood
 from kit.host.failure import GuestError
 from kit.host.guest import Guest
 from kit.msg.message import Message
+from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
 from kit.picture.scene import Disc, FloatArray
 from kit.ros.graph import Graph
@@ -37,7 +38,7 @@ WORLD_NODE: Final = "/flatland_server"
 
 
 class Ear:
-    """Counts what the world says on each topic, and how much the readings of a laser spread."""
+    """Counts what the world says on each topic, and how much the readings of a laser or an odometry spread."""
 
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[str, int] = {}
@@ -48,12 +49,11 @@ class Ear:
         if node.handle.full_name != WORLD_NODE:
             return
         count = self._counts[name] = self._counts.get(name, 0) + 1
-        if isinstance(message, LaserScan):
+        if (read := _readings(message)) is not None:
             # Welford's running mean and sum of squares; nan, for nothing hit, stays nan.
-            ranges = np.array(message.ranges, dtype=np.float64)
-            mean, squares = self._scans.get(name, (np.zeros_like(ranges), np.zeros_like(ranges)))
-            ahead = mean + (ranges - mean) / count
-            self._scans[name] = ahead, squares + (ranges - mean) * (ranges - ahead)
+            mean, squares = self._scans.get(name, (np.zeros_like(read), np.zeros_like(read)))
+            ahead = mean + (read - mean) / count
+            self._scans[name] = ahead, squares + (read - mean) * (read - ahead)
 
     def heard(self) -> tuple[Heard, ...]:
         return tuple(Heard(topic, count, self._spread(topic, count)) for topic, count in self._counts.items())
@@ -64,6 +64,16 @@ class Ear:
         variances = self._scans[topic][1] / (count - 1)
         variances = variances[np.isfinite(variances)]
         return float(math.sqrt(variances.mean())) if len(variances) else 0.0
+
+
+def _readings(message: Message) -> FloatArray | None:
+    """The numbers of a message that noise falls on: a scan's ranges, an odometry's place."""
+    if isinstance(message, LaserScan):
+        return np.array(message.ranges, dtype=np.float64)
+    if isinstance(message, Odometry):
+        at = message.pose.pose.position
+        return np.array([at.x, at.y])
+    return None
 
 
 class Eye:
