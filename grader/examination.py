@@ -10,7 +10,7 @@ from typing import Any, Final, Self
 
 import numpy as np
 
-from grader import behaviours, planning
+from grader import behaviours, exploit, planning
 from grader.assignment import Assignment, Criterion
 from grader.model import Floats, Model, build
 from grader.symmetry import Turned, mirrored, rotated
@@ -135,6 +135,13 @@ class Exam:
             return ""
         way = planning.follow(self.plan, self.judged.exploit, self.model.task.max_steps)
         return planning.picture(self.model, way)
+
+    def film(self, file: Path) -> None:
+        """Keeps what ``picture`` shows as a recording. Raises OSError."""
+        assert self.judged.exploit is not None, "there is no picture"
+        exploit.keep(
+            self.model, planning.follow(self.plan, self.judged.exploit, self.model.task.max_steps), file
+        )
 
     def _asked(self, steps: Steps) -> Floats:
         with self._open() as functions:

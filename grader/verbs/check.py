@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import click
 from grader.verbs import options
 
 if TYPE_CHECKING:
-    from grader.grading import Grading
+    from grader.grading import Evidence, Grading
     from grader.result import Result
 
 EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
@@ -104,23 +105,44 @@ def _report(result: Result, form: str, hints: int, picture: str) -> str:
 
 def _worst(grading: Grading, replay: Path | None) -> str:
     """The worst episode in characters; and kept in a file, if asked for."""
+    worst = grading.worst()
+    shown = "" if worst is None else worst.picture()
+    if worst is None or not shown:
+        return "" if replay is None else "\nNo episode went wrong that could be kept as a replay.\n"
+    title, moves = _titled(worst)
+    if not moves:
+        return f"\n{title}:\n{shown}\n"
+    watch = "To watch it move: add --replay worst.npz" if replay is None else _kept(worst, replay, grading)
+    return f"\n{title}:\n{shown}\n{watch}\n"
+
+
+def _titled(worst: Evidence) -> tuple[str, bool]:
+    """What the picture shows; and whether it can be watched moving."""
     from grader.drive import Drive
     from grader.kinds.contract import Look
-    from kit.recording import save
 
-    worst = grading.worst()
-    if worst is None:
-        return ""
-    shown = worst.picture()
-    if not shown:
-        return ""
-    ways = ""
-    if replay is not None and isinstance(worst, Drive):
-        save(worst.recording, replay.absolute())
-        ways = f"Watch it move: kit replay {replay}\n"
-    title = f"The worst episode, {worst.label} ({worst.outcome})"
+    if isinstance(worst, Drive):
+        return f"The worst episode, {worst.label} ({worst.outcome})", True
     if isinstance(worst, Look):
-        title = f"A look at {worst.label} ({worst.outcome})"
-    elif not isinstance(worst, Drive):
-        title = "What a robot does that has learnt this reward perfectly"
-    return f"\n{title}:\n{shown}\n{ways}"
+        return f"A look at {worst.label} ({worst.outcome})", False
+    return "What a robot does that has learnt this reward perfectly", True
+
+
+def _kept(worst: Evidence, replay: Path, grading: Grading) -> str:
+    """Keeps an episode; how to watch it."""
+    from grader.drive import Drive
+    from grader.examination import Exam
+    from kit.recording import save
+    from kit.world.catalogue import map_names
+
+    root = ""
+    try:
+        if isinstance(worst, Drive):
+            save(worst.recording, replay.absolute())
+            if worst.recording.place not in map_names():
+                root = f" --root {shlex.quote(str(grading.assignment.folder))}"
+        elif isinstance(worst, Exam):
+            worst.film(replay.absolute())
+    except OSError as error:
+        options.fail(f"{replay} cannot be written: {error.strerror or error}.")
+    return f"Watch it move: kit replay {shlex.quote(str(replay))}{root}"

@@ -107,6 +107,13 @@ def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     assert measure("short_way", seen) > 1.0
 
 
+@pytest.mark.parametrize("speed", [5.0, 20.0, 500.0])
+def test_no_speed_is_too_high_to_be_measured(tmp_path: Path, speed: float) -> None:
+    seen = drive(tmp_path, FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}"))
+    assert measure("top_speed", seen) > 4.9
+    assert CHECKS["top_speed"].anchors.share(measure("top_speed", seen)) == 0.0
+
+
 CALLS_HOME = (
     FORWARD
     + """
@@ -132,6 +139,7 @@ def test_a_robot_may_be_sent_home_and_nowhere_else(tmp_path: Path) -> None:
     assert home.refused == ()
     jump = np.abs(np.diff(home.track[:, 1])).max()
     assert jump > 0.3
+    assert measure("top_speed", home) == pytest.approx(0.3, abs=0.05), "sent home, not driven"
     away = drive(tmp_path, CALLS_HOME + "DX = 0.001\n")
     assert away.refused == ("move_model",)
     assert np.abs(np.diff(away.track[:, 1])).max() < 0.1
