@@ -1,0 +1,75 @@
+"""The worst episode kept in a file: a recording that moves, and runs again to the bit."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from grader.__main__ import main
+from grader.exploit import TICKS
+from kit.places import find_place
+from kit.recording import load, rerun
+from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
+
+KIT_MAPS = Path(str(find_place("turn").world.file)).parents[1]
+
+
+def checked(*arguments: str) -> tuple[int, str]:
+    done = CliRunner().invoke(main, ["check", *arguments])
+    assert not done.exception or isinstance(done.exception, SystemExit), done.exc_info
+    return done.exit_code, done.output
+
+
+def test_a_drive_on_a_map_of_the_kit(tmp_path: Path) -> None:
+    folder, file, out = write_assignment(tmp_path / "q"), tmp_path / "ada.py", tmp_path / "worst.npz"
+    file.write_text(FORWARD)
+    code, text = checked(str(file), "--assignment", str(folder))
+    assert (code, "add --replay" in text) == (1, True)
+    code, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
+    assert f"Watch it move: kit replay {out}\n" in text
+    kept = load(out)
+    assert np.array_equal(rerun(kept, find_place(kept.place, kept.case).world).poses, kept.poses)
+
+
+def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
+    folder = tmp_path / "q"
+    shutil.copytree(KIT_MAPS / "turn", folder / "turn-too")
+    shutil.copytree(KIT_MAPS / "robots", folder / "robots")
+    write_assignment(folder, QUICK.replace("place: turn", "place: turn-too/world.yaml, target: [2, 3]"))
+    file, out = tmp_path / "ada.py", tmp_path / "worst.npz"
+    file.write_text(FORWARD)
+    _, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
+    assert f"kit replay {out} --root {folder}" in text
+    kept = load(out)
+    place = find_place(kept.place, kept.case, folder)
+    assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
+
+
+@pytest.mark.parametrize("wrong", sorted((TEMPLATES / "reward" / "wrong").glob("*planned*.py"), key=str))
+def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
+    """It moves through the map, is never far from where it was, and never comes to the target."""
+    out = tmp_path / "exploit.npz"
+    _, text = checked(str(wrong), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
+    assert "Watch it move" in text
+    kept = load(out)
+    place = find_place(kept.place)
+    assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
+    assert kept.ticks >= 10 * TICKS
+    way, (target,) = kept.track("robot"), np.unique(kept.track("target"), axis=0)
+    assert np.hypot(*np.diff(way[:, :2], axis=0).T).max() < 0.02
+    assert np.hypot(*(way[:, :2] - target[:2]).T).min() > 0.1
+    walls = np.concatenate([layer.walls.segments for layer in place.world.layers if layer.walls is not None])
+    assert (way[:, :2] > walls[:, :2].min(axis=0)).all()
+    assert (way[:, :2] < walls[:, 2:].max(axis=0)).all()
+
+
+def test_what_went_well_leaves_no_replay(tmp_path: Path) -> None:
+    out = tmp_path / "worst.npz"
+    solution = TEMPLATES / "reward" / "solution.py"
+    code, text = checked(str(solution), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
+    assert (code, out.exists()) == (0, False)
+    assert "No episode went wrong" in text
