@@ -55,6 +55,13 @@ class FrameView(Widget):
             self.refresh(*(Region(start, row, stop - start, 1) for row, start, stop in spans))
         return bool(spans)
 
+    def show_nothing(self) -> None:
+        """No frame any more."""
+        if self._frame is not None:
+            self._frame = None
+            self._strips.clear()
+            self.refresh()
+
     def get_line_filters(self) -> Sequence[LineFilter]:
         """None: the palette is already what the terminal takes."""
         return ()

@@ -57,11 +57,18 @@ def title(step: Step, caption: str, width: int) -> Row:
 
 
 def words(text: str, width: int) -> list[Row]:
-    """A lesson's text."""
-    return [
-        row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
-        for each in rows(parsed(text), min(width - 2 * MARGIN, WIDTH))
-    ]
+    """A lesson's text. Code that is too long for a row goes on in the next."""
+    room = min(width - 2 * MARGIN, WIDTH)
+    made: list[Row] = []
+    for each in rows(parsed(text), room):
+        if len(each) == 1 and len(line := each[0].text) > room:
+            style = _STYLES[each[0].style]
+            made += [row(" " * MARGIN, (line[at : at + room], style)) for at in range(0, len(line), room)]
+        else:
+            made.append(
+                row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
+            )
+    return made
 
 
 def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:

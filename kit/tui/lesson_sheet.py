@@ -32,6 +32,8 @@ class Content:
     """Whether the scene is seen."""
     first_words: int = 0
     """So many of the words are there from the beginning: the picture's size is made for them."""
+    scrolls_with: str = "down"
+    """The key that shows more words."""
 
 
 class LessonSheet(Container):
@@ -97,8 +99,7 @@ class LessonSheet(Container):
         shown = list(words[self._top : self._top + self._room])
         below = len(words) - self._top - len(shown)
         if below > 0 and shown:
-            key = "PgDn" if self._scene.by_hand else "down"
-            shown[-1] = row((f"  ... {below + 1} more lines: {key}", "dim"))
+            shown[-1] = row((f"  ... {below + 1} more lines: {self._content.scrolls_with}", "dim"))
         self._rows("words").show(shown)
 
     def _rows(self, name: str) -> TextRows:

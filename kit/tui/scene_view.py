@@ -67,6 +67,8 @@ class SceneView(WorldView):
 
     def open(self, scene: Scene, *, still: bool) -> None:
         """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
+        if self.scene is None or (scene.place, scene.case) != (self.scene.place, self.scene.case):
+            self.clear()  # not the place of the step before
         self.scene, self.view, self._opening = scene, None, True
         folder, by_hand = self._folder, self.by_hand
 

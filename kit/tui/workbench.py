@@ -55,7 +55,7 @@ class Workbench:
         Raises ProgressError where the disk refuses to note it: the report is there all the same.
         """
         if self._check is None:
-            if not self.by_hand and self._watch.has_changed():
+            if self._watch.has_changed():
                 self.start()
             return False
         report = self._check.poll()

@@ -66,6 +66,12 @@ class WorldView(FrameView):
         self._scene = scene
         return self._redraw()
 
+    def clear(self) -> None:
+        """Shows nothing until the next scene, which is fitted anew."""
+        self._scene = self._camera = self._fitted = self._offered = None
+        self._free, self._followed = False, None
+        self.show_nothing()
+
     def offer(self, make_scene: Callable[[], Scene]) -> None:
         """Draws what ``make_scene`` gives as soon as the link has room. Of several offers made meanwhile only
         the last is asked for its scene."""

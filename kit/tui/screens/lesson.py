@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from textual import events, work
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.inspection.sockets import sockets_folder
-from kit.school.lessons.records import Command, How, Option, Step
+from kit.school.lessons.records import Option, Step
 from kit.school.lessons.visit import Visit
 from kit.school.lessons.works import WorkError
 from kit.school.progress import ProgressError
 from kit.tui import lesson_rows as say
-from kit.tui.aside import run_aside
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, named
 from kit.tui.input.screen import DriveScreen
@@ -23,9 +22,9 @@ from kit.tui.look import Look
 from kit.tui.painting import StillScreen
 from kit.tui.scene_view import SceneView
 from kit.tui.screens.lesson_bench import BenchKeys
-from kit.tui.screens.lesson_keys import LESSON_HELP, Possible, keys
+from kit.tui.screens.lesson_keys import Possible, keys
+from kit.tui.screens.lesson_ways import WayKeys
 from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
 from kit.tui.text_rows import Row, TextRows, row
 from kit.tui.workbench import Workbench
 from kit.workspace import Workspace
@@ -36,24 +35,19 @@ LOOK_S = 0.2
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
+class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
     """Goes through one lesson. Draws nothing but what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("n,enter", "next", show=False),
         Binding("b", "previous", show=False),
-        Binding("l", "steps", show=False),
         *(Binding(str(number), f"foresee({number})", show=False) for number in range(1, 5)),
         Binding("a", "again", show=False),
-        Binding("o", "open", show=False),
-        Binding("k", "questions", show=False),
         Binding("down,j", "scroll(1)", show=False),
         Binding("up", "scroll(-1)", show=False),
         Binding("pagedown,space", "scroll(8)", show=False),
         Binding("pageup", "scroll(-8)", show=False),
-        Binding("question_mark", "help", show=False),
-        Binding("escape,q", "leave", show=False),
         Binding("ctrl+c,ctrl+q", "app.quit", show=False, priority=True),
     ]
     DEFAULT_CSS = """
@@ -73,7 +67,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         self._scene = SceneView(look, desk.controllers, sockets_folder(desk.folder))
         self._told = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
-        self._is_over = False
+        self.is_over = False
         self._sheet = LessonSheet(self._scene)
         self._until_answer = 0
         self._strength = 1.0
@@ -88,7 +82,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
 
     def on_mount(self) -> None:
         self.set_interval(LOOK_S, self.look_at_bench)
-        self._enter(self.step)
+        self.enter(self.step)
 
     def on_unmount(self) -> None:
         self._leave_bench()
@@ -97,12 +91,16 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         self.call_after_refresh(self.show)
 
     def on_screen_resume(self) -> None:
-        self._scene.hold(self._waits)
+        self.hold(False)
         self._scene.draw()
         self.show()
 
     def on_screen_suspend(self) -> None:
-        self._scene.hold(True)
+        self.hold(True)
+
+    def hold(self, held: bool) -> None:
+        """Has the scene stand still while something else is looked at, or go on if it was going."""
+        self._scene.hold(held or self._is_still)
 
     # Steps
 
@@ -116,21 +114,31 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         """Whether the step waits for a prediction."""
         return bool(self.step.options) and self.chosen is None
 
-    def _enter(self, step: Step) -> None:
+    @property
+    def _is_still(self) -> bool:
+        """Whether the scene is to stand at its first instant: until a prediction, or until it is opened to be driven."""
+        return self._waits or (self.bench is not None and self.bench.by_hand)
+
+    @property
+    def _drives(self) -> bool:
+        """Whether the arrow keys drive in the scene."""
+        return self._scene.by_hand and not self._is_still
+
+    def enter(self, step: Step) -> None:
         """Shows a step from its beginning."""
         self._leave_bench()
-        self.step, self._is_over = step, False
+        self.step, self.is_over = step, False
         self._sheet.scroll_words_to(0)
         self._told = not self._waits
-        if step.scene is not None:
-            self._scene.open(step.scene, still=self._waits)
-        else:
-            self._scene.shut()
         if step.exercise is not None:
             try:
                 self.bench = Workbench(self.visit, step.exercise)
             except WorkError as error:
                 self.tell("The exercise cannot be laid out", str(error))
+        if step.scene is not None:
+            self._scene.open(step.scene, still=self._is_still)
+        else:
+            self._scene.shut()
         self.show()
 
     def _leave_bench(self) -> None:
@@ -149,7 +157,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         width = self.size.width
         if not width or not self.is_mounted:
             return
-        over, step = self._is_over, self.step
+        over, step = self.is_over, self.step
         file = say.file_rows(str(self.bench.file), self.bench.by_hand, width) if self.bench else []
         said = [self.bench_status()] if self.bench is not None else []
         self._rows("heading").show([say.heading(self.visit.standing, step, width)])
@@ -163,6 +171,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
             () if over else tuple(step.picture.splitlines()),
             moves=step.scene is not None and not over,
             first_words=self._words_needed(),
+            scrolls_with="PgDn" if self._drives else "down",
         )
         self._sheet.show(
             content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide")
@@ -170,15 +179,16 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
 
     def _show_title(self) -> None:
         self._rows("title").show(
-            [row() if self._is_over else say.title(self.step, self._caption(), self.size.width)]
+            [row() if self.is_over else say.title(self.step, self._caption(), self.size.width)]
         )
 
     def _written(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
-        if self._is_over:
+        if self.is_over:
             return say.ending(self.visit.standing, self._width)
-        filled = [(each, self._filled(each.line)) for each in self.step.commands]
-        made = [row(), *say.words(self._filled(self.step.text), self._width)]
+        text = self.filled(self.step.text)
+        filled = [(each, line) for each in self.step.commands if (line := self.filled(each.line)) not in text]
+        made = [row(), *say.words(text, self._width)]
         made += say.commands(filled, self._width)
         self._until_answer = len(made)
         if self.chosen is not None and self._told:
@@ -207,17 +217,17 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         if self._waits:
             return "stands still until you choose"
         if self._scene.by_hand:
-            return "yours to drive"
+            return "yours to drive" if self._drives else "d opens it to be driven"
         return "at rest" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
 
     def _possible(self) -> Possible:
-        if self._is_over:
+        if self.is_over:
             return Possible(questions=True, next=False)
         return Possible(
             choose=len(self.step.options) if self._waits else 0,
-            drive_scene=self._scene.by_hand,
-            again=self.step.scene is not None and not self._waits,
-            open=bool(self._openable()),
+            drive_scene=self._drives,
+            again=self.step.scene is not None and not self._is_still,
+            open=bool(self.openable()),
             back=self.step.number > 1,
             next=not self._waits,
             **self.bench_possible(),
@@ -228,7 +238,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         """Of the words."""
         return min(self.size.width, BESIDE) if self.has_class("-wide") else self.size.width
 
-    def _filled(self, text: str) -> str:
+    def filled(self, text: str) -> str:
         """With the student's own paths."""
         if self.bench is None:
             return text
@@ -250,7 +260,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         if not self._told and not self._waits and self._scene.is_resting:
             self._tell_answer()
         self._rows("title").show(
-            [row() if self._is_over else say.title(self.step, self._caption(), self.size.width)]
+            [row() if self.is_over else say.title(self.step, self._caption(), self.size.width)]
         )
 
     def on_scene_view_trouble(self, event: SceneView.Trouble) -> None:
@@ -259,11 +269,11 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
             self._tell_answer()
 
     def takes(self, key: str) -> bool:
-        return self._scene.by_hand and base_key(key) in ARROWS
+        return self._drives and base_key(key) in ARROWS
 
     def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
-        if (messages or strength != self._strength) and self._scene.by_hand:
+        if (messages or strength != self._strength) and self._drives:
             self._scene.press(messages, strength)
         self._strength = strength
 
@@ -295,7 +305,7 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         self.show_answer()
 
     def action_next(self) -> None:
-        if self._is_over:
+        if self.is_over:
             return
         if self._waits:
             return
@@ -311,87 +321,21 @@ class LessonScreen(StillScreen[None], BenchKeys, DriveScreen):
         if self.step.number == len(self.visit.lesson.steps):
             self._leave_bench()
             self._scene.shut()
-            self._is_over = True
+            self.is_over = True
             self.show()
             self._sheet.scroll_words_to(0)
         else:
-            self._enter(self.visit.step(self.step.number + 1))
+            self.enter(self.visit.step(self.step.number + 1))
 
     def action_previous(self) -> None:
-        if self._is_over:
-            self._enter(self.step)
+        if self.is_over:
+            self.enter(self.step)
         elif self.step.number > 1:
-            self._enter(self.visit.step(self.step.number - 1))
-
-    @work
-    async def action_steps(self) -> None:
-        standing = self.visit.standing
-        choices = [
-            Choice(
-                str(step.number),
-                f"{'[x]' if standing.is_step_done(step) else '[ ]'} {step.number}",
-                step.title,
-            )
-            for step in self.visit.lesson.steps
-        ]
-        chosen = await self.app.push_screen_wait(
-            Picker(self.visit.lesson.title, choices, str(self.step.number))
-        )
-        if chosen is not None:
-            self._enter(self.visit.step(int(chosen)))
+            self.enter(self.visit.step(self.step.number - 1))
 
     def action_again(self) -> None:
-        if self.step.scene is not None and not self._waits and not self._is_over:
+        if self.step.scene is not None and not self._is_still and not self.is_over:
             self._scene.again()
 
     def action_scroll(self, lines: int) -> None:
         self._sheet.scroll_words(lines)
-
-    def action_help(self) -> None:
-        self.app.push_screen(Page("This lesson", LESSON_HELP))
-
-    def action_leave(self) -> None:
-        if len(self.app.screen_stack) > 2:
-            self.dismiss()
-        else:
-            self.app.exit()
-
-    def _openable(self) -> list[Command]:
-        """The commands that can be run here; for those that look into a world, what opens that world."""
-        made = [each for each in self.step.commands if each.how is not How.BESIDE]
-        places = dict.fromkeys(each.place for each in self.step.commands if each.how is How.BESIDE)
-        return made + [Command(f"kit play {place}", How.SCREEN, place) for place in places]
-
-    @work
-    async def action_open(self) -> None:
-        commands = self._openable() if not self._is_over else []
-        if not commands:
-            return
-        chosen: str | None = "0"
-        if len(commands) > 1:
-            choices = [Choice(str(at), self._filled(each.line)) for at, each in enumerate(commands)]
-            chosen = await self.app.push_screen_wait(Picker("Open", choices))
-        if chosen is None:
-            return
-        command = commands[int(chosen)]
-        self._scene.hold(True)
-        done = run_aside(
-            self.app,
-            self._filled(command.line),
-            self.look.terminal,
-            workspace=self.desk.folder,
-            folder=self.bench.file.parent if self.bench is not None else None,
-            waits=command.how is How.ALONE,
-        )
-        self._scene.hold(self._waits)
-        if not done:
-            self.tell(
-                "That cannot be opened here", f"Type it in a second terminal: {self._filled(command.line)}"
-            )
-
-    @work
-    async def action_questions(self) -> None:
-        if self._is_over:
-            from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
-
-            await ask_of_lesson(self, self.visit.progress, self.visit.lesson.name)

@@ -101,9 +101,9 @@ class BenchKeys(Screen[None]):
     def look_at_bench(self) -> None:
         """A few times a second: was the file saved, has the check ended?"""
         bench = self.bench
-        if bench is None:
-            return
         was_checking = self._is_checking
+        if bench is None or not (self.is_active or was_checking):
+            return
         try:
             ended = bench.look()
         except ProgressError as error:

@@ -38,11 +38,10 @@ class HandDrive(WatchScreen):
     keys = key_line(
         ("←↑↓→", "drive"),
         ("space", "stop"),
-        ("r", "from the start"),
+        ("r", "anew"),
         ("p", "pause"),
-        ("+ -", "zoom"),
         ("?", "help"),
-        ("Esc", "keep it and have it checked"),
+        ("Esc", "done: keep it and check it"),
     )
     help = key_page(
         (

@@ -1,0 +1,124 @@
+"""The ways out of a lesson's step: to another one, to what a command opens, to its questions, and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from textual import work
+from textual.binding import Binding, BindingType
+from textual.screen import Screen
+
+from kit.school.lessons.records import Command, How
+from kit.tui.aside import run_aside
+from kit.tui.screens.lesson_keys import LESSON_HELP
+from kit.tui.screens.page import Page
+from kit.tui.screens.picker import Choice, Picker
+
+if TYPE_CHECKING:
+    from kit.school.lessons.records import Step
+    from kit.school.lessons.visit import Visit
+    from kit.tui.look import Look
+    from kit.tui.workbench import Workbench
+    from kit.workspace import Workspace
+
+
+class WayKeys(Screen[None]):
+    """What a lesson's screen opens and where it goes."""
+
+    look: Look
+    visit: Visit
+    desk: Workspace
+    step: Step
+    bench: Workbench | None
+    is_over: bool
+    """Whether the last step lies behind."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("l", "steps", show=False),
+        Binding("o", "open", show=False),
+        Binding("k", "questions", show=False),
+        Binding("question_mark", "help", show=False),
+        Binding("escape,q", "leave", show=False),
+    ]
+
+    def enter(self, step: Step) -> None:
+        """Shows a step from its beginning."""
+        raise NotImplementedError
+
+    def filled(self, text: str) -> str:
+        """With the student's own paths."""
+        raise NotImplementedError
+
+    def hold(self, held: bool) -> None:
+        """Has the scene stand still while something else is looked at, or go on if it was going."""
+        raise NotImplementedError
+
+    def tell(self, title: str, text: str) -> None:
+        """What went wrong, as a page over the step."""
+        raise NotImplementedError
+
+    @work
+    async def action_steps(self) -> None:
+        standing = self.visit.standing
+        choices = [
+            Choice(
+                str(step.number),
+                f"{'[x]' if standing.is_step_done(step) else '[ ]'} {step.number}",
+                step.title,
+            )
+            for step in self.visit.lesson.steps
+        ]
+        chosen = await self.app.push_screen_wait(
+            Picker(self.visit.lesson.title, choices, str(self.step.number))
+        )
+        if chosen is not None:
+            self.enter(self.visit.step(int(chosen)))
+
+    def action_help(self) -> None:
+        self.app.push_screen(Page("This lesson", LESSON_HELP))
+
+    def action_leave(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()
+
+    def openable(self) -> list[Command]:
+        """The commands that can be run here; for those that look into a world, what opens that world."""
+        made = [each for each in self.step.commands if each.how is not How.BESIDE]
+        places = dict.fromkeys(each.place for each in self.step.commands if each.how is How.BESIDE)
+        return made + [Command(f"kit play {place}", How.SCREEN, place) for place in places]
+
+    @work
+    async def action_open(self) -> None:
+        commands = self.openable() if not self.is_over else []
+        if not commands:
+            return
+        chosen: str | None = "0"
+        if len(commands) > 1:
+            choices = [Choice(str(at), self.filled(each.line)) for at, each in enumerate(commands)]
+            chosen = await self.app.push_screen_wait(Picker("Open", choices))
+        if chosen is None:
+            return
+        command = commands[int(chosen)]
+        self.hold(True)
+        done = run_aside(
+            self.app,
+            self.filled(command.line),
+            self.look.terminal,
+            workspace=self.desk.folder,
+            folder=self.bench.file.parent if self.bench is not None else None,
+            waits=command.how is How.ALONE,
+        )
+        self.hold(False)
+        if not done:
+            self.tell(
+                "That cannot be opened here", f"Type it in a second terminal: {self.filled(command.line)}"
+            )
+
+    @work
+    async def action_questions(self) -> None:
+        if self.is_over:
+            from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
+
+            await ask_of_lesson(self, self.visit.progress, self.visit.lesson.name)

@@ -1,0 +1,72 @@
+"""Pilots' stage for the screens of the school: an app without a terminal, its rows as text, and waiting in it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.tui.app import KitApp
+from kit.tui.look import Look
+from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+
+Scene = Callable[[Pilot[None]], Awaitable[None]]
+SEEN_WITHIN = 60.0
+"""Seconds; a busy machine takes long to open a world."""
+
+
+def stage(
+    make: Callable[[Look], Screen[Any]],
+    scene: Scene,
+    *,
+    size: tuple[int, int] = (80, 24),
+    ascii_only: bool = False,
+) -> None:
+    """Plays a scene on a screen."""
+    wishes = TerminalWishes(False, "ascii" if ascii_only else "braille", None)
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), wishes)
+
+    async def run() -> None:
+        app = KitApp(terminal)
+        async with app.run_test(size=size) as pilot:
+            await app.push_screen(make(app.look))
+            await pilot.pause()
+            await scene(pilot)
+
+    asyncio.run(run())
+
+
+def rows(pilot: Pilot[None]) -> list[str]:
+    """Of the screen that is on top."""
+    return [
+        "".join(segment.text for segment in strip).rstrip()
+        for strip in pilot.app.screen._compositor.render_strips()
+    ]
+
+
+def text(pilot: Pilot[None]) -> str:
+    return "\n".join(rows(pilot))
+
+
+async def until(pilot: Pilot[None], condition: Callable[[], object], what: str) -> None:
+    """Lets time pass until something is so."""
+    try:
+        async with asyncio.timeout(SEEN_WITHIN):
+            while not condition():
+                await pilot.pause(0.02)
+    except TimeoutError:
+        raise AssertionError(f"waited in vain for {what}:\n{text(pilot)}") from None
+
+
+async def seen(pilot: Pilot[None], wanted: str) -> None:
+    """Waits until these words are on the screen."""
+    await until(pilot, lambda: wanted in text(pilot), repr(wanted))
+
+
+def home(tmp_path: Path) -> Path:
+    """A student's workspace."""
+    return tmp_path / "home"

@@ -1,0 +1,290 @@
+"""A lesson's screen, without a terminal: each kind of step, and what its keys do."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.school.lessons import works
+from kit.school.lessons.reading import read
+from kit.school.lessons.visit import Visit
+from kit.school.progress import Kind, Progress
+from kit.tui.look import Look
+from kit.tui.screens.lesson import LessonScreen
+from kit.workspace import Workspace, open_workspace
+from tests.tui.lesson_folder import write_lessons, write_solutions
+from tests.tui.lesson_stage import Scene, rows, seen, stage, text
+
+COLOUR, CORNER = 4, 5
+"""Numbers of the steps with exercises."""
+
+
+class Student:
+    """A student in the lesson of the tests."""
+
+    def __init__(self, folder: Path) -> None:
+        self.desk: Workspace = open_workspace(folder / "home")
+        self.progress = Progress(self.desk.folder)
+        self._lesson = read(write_lessons(folder / "lessons") / "01-colours")
+
+    @property
+    def file(self) -> Path:
+        return self.desk.lessons / "01-colours" / "colour" / "answers.yaml"
+
+    def screen(self, look: Look) -> Screen[None]:
+        return LessonScreen(look, Visit(self._lesson, self.progress, self.desk), self.desk)
+
+    def goes_to(self, step: int) -> None:
+        """Has gone through all steps before, but for their exercises."""
+        for number in range(1, step):
+            self.progress.add(Kind.STEP, f"01-colours/{number}")
+            if number == COLOUR:
+                self.passes()
+
+    def passes(self) -> None:
+        points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
+        self.progress.add(Kind.ATTEMPT, "01-colours/colour", points)
+
+    def kinds(self) -> list[Kind]:
+        return [event.kind for event in self.progress.events()]
+
+
+@pytest.fixture
+def student(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Student]:
+    solutions = write_solutions(tmp_path / "solutions")
+    monkeypatch.setattr(works, "solutions_folder", lambda: solutions)
+    made = Student(tmp_path)
+    yield made
+    made.progress.close()
+
+
+Play = Callable[[Scene], None]
+
+
+@pytest.fixture
+def play(student: Student) -> Play:
+    def run(scene: Scene) -> None:
+        stage(student.screen, scene)
+
+    return run
+
+
+def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        assert "step 1 of 5" in rows(pilot)[0]
+        assert "Foresee a walk" in rows(pilot)[0]
+        await seen(pilot, "stands still until you choose")
+        await seen(pilot, "▲")
+        assert "Only a wall makes it turn." not in text(pilot)
+        await pilot.press("n")
+        assert "step 1 of 5" in rows(pilot)[0]
+        await pilot.press("2")
+        await seen(pilot, "at rest")
+        await seen(pilot, "Only a wall makes it turn.")
+        assert "It goes ahead while there is room." in text(pilot)
+        assert "+ 1  It drives ahead." in text(pilot)
+        assert "x 2  It turns on the spot." in text(pilot)
+        await pilot.press("1")
+        assert "x 2  It turns on the spot." in text(pilot)
+        await pilot.press("n")
+        assert "step 2 of 5" in rows(pilot)[0]
+        await pilot.press("b")
+        assert "x 2  It turns on the spot." in text(pilot)
+
+    play(scene)
+    [noted] = student.progress.events(Kind.PREDICTION)
+    assert noted.content == {"chosen": 1, "right": False}
+    assert [event.subject for event in student.progress.events(Kind.STEP)] == ["01-colours/1"]
+
+
+def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "stands still until you choose")
+        await pilot.press("1", "n")
+        assert "It goes ahead while there is room." in text(pilot)
+        assert "step 1 of 5" in rows(pilot)[0]
+        await pilot.press("n")
+        assert "step 2 of 5" in rows(pilot)[0]
+
+    play(scene)
+
+
+def test_commands_a_picture_and_words(student: Student, play: Play) -> None:
+    student.goes_to(2)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        assert "(o) red" in text(pilot)
+        assert "    kit maps" in text(pilot)
+        assert "    kit keys" in text(pilot)
+        await pilot.press("n")
+        assert "- green" in text(pilot)
+
+    play(scene)
+
+
+def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, play: Play) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Save the file")
+        await pilot.press("h")
+        await seen(pilot, "First a check")
+        await pilot.press("s")
+        await seen(pilot, "once yours passes")
+        student.file.write_text("colour: red\n")
+        await seen(pilot, "Checking...")
+        await pilot.press("r", "x", "h")  # a check has the keys for itself
+        await seen(pilot, "[no] The colour")
+        assert "That one means stop." in text(pilot)
+        assert "wanted:" in text(pilot)
+        for number, hint in enumerate(("Look up.", "It grows on trees.", "It is green."), 1):
+            await pilot.press("h")
+            await seen(pilot, f"Hint {number}")
+            assert hint in text(pilot)
+        await pilot.press("h")
+        await seen(pilot, "all the hints")
+        student.file.write_text("colour: green\n")
+        await seen(pilot, "Passed:")
+        assert "step 4 of 5" in rows(pilot)[0]
+        await pilot.press("s")
+        await seen(pilot, "# go")
+        await pilot.press("escape")
+        await seen(pilot, "Passed:")
+        await pilot.press("n")
+        assert "step 5 of 5" in rows(pilot)[0]
+
+    play(scene)
+    told = [
+        (each.kind, dict(each.content)) for each in student.progress.events() if "/colour" in each.subject
+    ]
+    assert [kind for kind, _ in told] == [Kind.ATTEMPT, *[Kind.HINT] * 3, Kind.ATTEMPT, Kind.SOLUTION]
+    assert told[0][1]["lost"] == ["colour"]
+    assert told[4][1]["verdict"] == "pass"
+
+
+def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student, play: Play) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Save the file")
+        student.file.write_text("colour: mine\n")
+        await seen(pilot, "[no]")
+        await pilot.press("x")
+        await seen(pilot, "Begin this exercise anew?")
+        await pilot.press("n")  # no, and not: on
+        assert "step 4 of 5" in rows(pilot)[0]
+        assert "mine" in student.file.read_text()
+        await pilot.press("x", "y")
+        await seen(pilot, "As at first.")
+
+    play(scene)
+    assert student.file.read_text() == "colour:\n"
+    [kept] = [each for each in student.file.parent.parent.iterdir() if each.name.startswith("colour.")]
+    assert (kept / "answers.yaml").read_text() == "colour: mine\n"
+
+
+def test_what_went_wrong_moves_again_and_what_was_printed_is_shown(student: Student, play: Play) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "controller.py")
+        await pilot.press("r")
+        await seen(pilot, "[no] It reaches the target")
+        await pilot.press("p")
+        await seen(pilot, "here I stand")
+        await pilot.press("escape")
+        await pilot.press("w")
+        await seen(pilot, "to target")
+        await pilot.press("escape")
+        await seen(pilot, "[no] It reaches the target")
+
+    play(scene)
+
+
+def test_a_check_that_is_left_counts_for_nothing(student: Student, play: Play) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "controller.py")
+        await pilot.press("r")
+        await seen(pilot, "Checking...")
+        await pilot.press("b")
+        assert "step 4 of 5" in rows(pilot)[0]
+        await pilot.press("n")
+        await seen(pilot, "Save the file")
+
+    play(scene)
+    assert not any(event.subject.endswith("/corner") for event in student.progress.events())
+
+
+def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student, play: Play) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("n")
+        await seen(pilot, "Still open:")
+        assert "5  Round the corner" in text(pilot)
+        await pilot.press("l")
+        await seen(pilot, "[x] 3")
+        await pilot.press("down", "up", "up", "enter")
+        await seen(pilot, "step 4 of 5")
+
+    play(scene)
+
+
+def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
+    student: Student, play: Play, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    student.goes_to(3)
+    monkeypatch.setattr("kit.school.progress.WAIT_S", 0.0)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        with closing(sqlite3.connect(student.desk.folder / "progress.db")) as other:
+            other.execute("DROP TABLE events")
+            other.commit()
+        await pilot.press("n")
+        await seen(pilot, "could not be noted")
+        await pilot.press("space")
+        assert "step 3 of 5" in rows(pilot)[0]
+
+    play(scene)
+
+
+@pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 50)], ids=lambda size: f"{size[0]}x{size[1]}")
+@pytest.mark.parametrize("step", [1, 2, 4])
+def test_where_one_is_and_the_keys_are_always_in_sight(
+    student: Student, step: int, size: tuple[int, int]
+) -> None:
+    student.goes_to(step)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.pause(0.1)
+        shown = rows(pilot)
+        assert len(shown) == size[1]
+        assert f"step {step} of 5" in shown[0]
+        assert "help" in shown[-1]
+        assert "leave" in shown[-1]
+        if step == 1:
+            assert all(f"{number}  " in text(pilot) for number in (1, 2, 3))
+        if step == COLOUR:
+            assert str(student.file) in "".join(row.strip() for row in shown)
+
+    stage(student.screen, scene, size=size)
+
+
+def test_ascii_means_ascii_everywhere(student: Student) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "stands still")
+        await seen(pilot, "^")
+        assert text(pilot).isascii()
+        await pilot.press("2")
+        await seen(pilot, "at rest")
+        assert text(pilot).isascii()
+
+    stage(student.screen, scene, ascii_only=True)
