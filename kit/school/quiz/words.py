@@ -28,11 +28,12 @@ BAR: Final = 20
 
 VERDICTS: Final[Mapping[Outcome, str]] = {
     Outcome.RIGHT: "Right.",
-    Outcome.WRONG: "Not right: the answer is {}.",
-    Outcome.NOT_SURE: "Good to know, and not counted as wrong. The answer is {}.",
-    Outcome.BLANK: "Left blank. The answer is {}.",
+    Outcome.WRONG: "Not right: option {} is.",
+    Outcome.NOT_SURE: "Good to know, and not counted as wrong. Option {} is right.",
+    Outcome.BLANK: "Left blank. Option {} is right.",
 }
 
+CALIBRATION: Final = "How sure you were, and how often right"
 SURE_QUESTION: Final = "How sure are you?"
 SURE_CHOICES: Final = tuple(SURENESS.items())
 
@@ -129,7 +130,7 @@ def calibration_lines(found: Calibration) -> list[str]:
 def _judged(found: Calibration) -> str:
     if found.answers < ENOUGH:
         return f"After {ENOUGH} such answers this says how well you judge yourself."
-    figures = f"as sure as for {found.claimed:.0%}, right in {found.reached:.0%}"
+    figures = f"so sure means {found.claimed:.0%}, and {found.reached:.0%} were right"
     gap = found.claimed - found.reached
     if abs(gap) < WELL_JUDGED:
         return f"You judge yourself well: {figures}."
@@ -163,7 +164,7 @@ def closing_lines(sitting: Sitting) -> list[str]:
         answered = sitting.given
     if len(scores) > 1:
         lines += ["", *topic_table(scores)]
-    lines += ["", *calibration_lines(calibration(answered))]
+    lines += ["", f"{CALIBRATION}:", *calibration_lines(calibration(answered))]
     lines += ["", today_line(sitting.schedule())]
     return [line for index, line in enumerate(lines) if line or index]
 
@@ -186,7 +187,7 @@ def scores_lines(bank: Bank, answers: Sequence[Answer], schedule: Schedule) -> I
     yield "All questions, by the latest answer to each"
     yield from (f"  {line}" for line in topic_table(by_topic(bank.items, latest(answers))))
     yield ""
-    yield "How sure you were, and how often right"
+    yield CALIBRATION
     yield from (f"  {line}" for line in calibration_lines(calibration(answers)))
     yield ""
     yield "What comes back when"

@@ -39,7 +39,7 @@ QUIZ_HELP: Final = key_page(
         ("x", "your choice, where it is not right"),
     ),
     (
-        ("An answer is kept", "once you have said how sure you are. Topics come"),
-        ("", "back after 1, 3, 7 and 21 days: kit quiz --today"),
+        ("what is kept", "every answer, once you have said how sure you are"),
+        ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
     ),
 )
