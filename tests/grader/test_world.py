@@ -1,0 +1,303 @@
+"""A world that is handed in: what its checks find, and what a huge or hostile one can do."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from grader.checks.contract import NoParams
+from grader.checks.faults import Run, Seen
+from grader.checks.worlds import CHECKS, FAULTS, RUNS, remark
+from grader.kinds.contract import Look
+from grader.reading import read
+from grader.result import Status, Verdict
+from grader.session import Terms, grade
+from grader.submission import take
+from grader.worlds.facts import Order, RunFacts, WorldFacts
+from grader.worlds.looking import facts_of
+from grader.worlds.process import WorldProcess
+from grader.worlds.running import run
+from grader.worlds.way import flood
+from kit.host.confine import Level
+from kit.host.failure import FailureKind, GuestError
+from kit.world.problems import WorldError
+from tests.grader.conftest import TEMPLATES
+
+TEMPLATE = TEMPLATES / "world"
+DESK = Terms(Level.LIMITED, secret=True)
+DRIVE = Order("room", 1, 20.0, str(TEMPLATE / "driver.py"), "", (3.0, 1.5), 0.2, True)
+REST = replace(DRIVE, driver="", target=None, time_s=3.0)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """The template's solution, to be changed."""
+    return Path(shutil.copytree(TEMPLATE / "solution", tmp_path / "handed-in"))
+
+
+def change(folder: Path, name: str, old: str, new: str) -> None:
+    text = (folder / name).read_text()
+    assert old in text
+    (folder / name).write_text(text.replace(old, new))
+
+
+def seen(folder: Path, order: Order | None = None) -> Seen | Run:
+    facts, world = facts_of(folder / "world.yaml")
+    if order is None:
+        return Seen(facts)
+    assert world is not None, facts.problems
+    return Run(facts, run(world, order), order.target is not None)
+
+
+def judged(found: Seen | Run, name: str, **params: Any) -> tuple[bool, str]:
+    """Whether a check is passed with these params, and what is said of it."""
+    check = CHECKS[name]
+    given = check.params(**params)
+    share = check.anchors.share(check.measure(Look(found), given))
+    return share == 1.0, remark(found, name, given)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "check", "params", "word"),
+    [
+        ("room.yaml", "scale: 0.1", "scale: 1", "walls", {"width": 4.0}, "40 m wide"),
+        ("room.yaml", "[0, 0, 0]", "[1, 0, 0]", "walls", {"left": 0.0}, "left side is 1 m"),
+        ("room.yaml", "0.1", "0.1", "walls", {"map": "hall"}, "hall"),
+        ("world.yaml", "[1.0, 1.0, 0]", "[1.0, 2.0, 0]", "stands", {"x": 1.0, "y": 1.0}, "[1, 2]"),
+        ("world.yaml", "robot.model", "robot.model", "has", {"models": ("cart",)}, '"cart"'),
+        ("robot.model.yaml", "DiffDrive", "TricycleDrive", "loads", {}, "robot.model.yaml:"),
+        ("robot.model.yaml", "layers: [seen]", "layers: [seeen]", "loads", {}, 'did you mean "seen"'),
+        ("robot.model.yaml", "radius: 0.1", "radius: 0.2", "body", {"body": "base", "width": 0.2}, "0.4 m"),
+        ("robot.model.yaml", "density: 1,", "density: 1, sensor: true,", "body", {"sensor": "no"}, "sensor"),
+        ("robot.model.yaml", "base", "base", "joint", {"a": "base", "b": "wheel"}, "no joint"),
+        ("robot.model.yaml", "0.06981317", "0.07", "laser", {"rays": 91, "last": 3.1415927}, "last ray"),
+        ("robot.model.yaml", "body: base}", "body: base, twist_sub: go}", "subscribes", {"topics": ("/cmd_vel",)}, "/go"),
+        ("robot.model.yaml", "lidar", "lidar", "publishes", {"topics": ("/cmd_vel",)}, "only subscribed"),
+        ("robot.model.yaml", "lidar", "lidar", "publishes", {"topics": ("/scan std_msgs/msg/Bool",)}, "LaserScan"),
+        ("robot.model.yaml", "layers: [solid]", "layers: []", "collisions", {"collide": ("room - robot",)}, "no layer"),
+        ("robot.model.yaml", "[solid]", "[solid]", "collisions", {}, "and should not"),
+        ("robot.model.yaml", "[solid]", "[solid]", "collisions", {"collide": ("cart - robot",)}, '"cart"'),
+        ("robot.model.yaml", "[seen]", "[]", "sights", {"sees": ("robot/lidar: room",)}, "does not see room"),
+        ("robot.model.yaml", "[seen]", "[seen]", "sights", {"sees": ("robot/lidar:",)}, "and should not"),
+        ("robot.model.yaml", "[seen]", "[seen]", "sights", {"sees": ("robot/eye: room",)}, "no laser"),
+    ],
+)  # fmt: skip
+def test_a_fault_is_found_and_told(
+    folder: Path, file: str, old: str, new: str, check: str, params: dict[str, Any], word: str
+) -> None:
+    change(folder, file, old, new)
+    passed, said = judged(seen(folder), check, **params)
+    assert not passed
+    assert word in said
+    assert str(folder) not in said
+
+
+def test_what_is_right_passes(folder: Path) -> None:
+    found = seen(folder)
+    assert judged(found, "loads") == (True, "")
+    assert judged(found, "walls", map="room", left=0.0, bottom=0.0, width=4.0, height=3.0) == (True, "")
+    assert judged(found, "collisions", collide=("robot - room",)) == (True, "")
+    assert judged(found, "sights", sees=("robot/lidar: room",)) == (True, "")
+    assert judged(found, "laser", rays=91, first=-3.14159, last=3.14159, range=5.0, body="base")[0]
+    assert judged(found, "publishes", topics=("/scan sensor_msgs/msg/LaserScan",))[0]
+    assert judged(found, "subscribes", topics=("/cmd_vel geometry_msgs/msg/Twist",))[0]
+    assert isinstance(found, Seen)
+    assert "#" in found.world.picture
+
+
+def test_a_world_that_does_not_load_earns_nothing_and_breaks_nothing(folder: Path) -> None:
+    (folder / "world.yaml").write_text("layers: [")
+    found = seen(folder)
+    for name, check in CHECKS.items():
+        given = check.params()
+        if name not in RUNS:
+            assert not check.anchors.share(check.measure(Look(found), given)) > 0
+        assert remark(found, name, given)
+
+
+def test_a_drive_is_run_and_measured(folder: Path) -> None:
+    found = seen(folder, DRIVE)
+    assert judged(found, "drives") == (True, "")
+    assert judged(found, "bumps")[0]
+    assert judged(found, "reachable")[0]
+    assert judged(found, "closed")[0]
+    assert judged(found, "rate", topic="/scan", rate=10.0)[0]
+    assert not judged(found, "rate", topic="/scan", rate=5.0)[0]
+    assert not judged(found, "rate", topic="/odd", rate=5.0)[0]
+
+
+def test_the_same_run_twice_is_the_same(folder: Path) -> None:
+    assert seen(folder, DRIVE) == seen(folder, DRIVE)
+
+
+def test_noise_is_measured(folder: Path) -> None:
+    change(folder, "robot.model.yaml", "range: 5", "range: 5\n    noise_std_dev: 0.05")
+    change(folder, "robot.model.yaml", "body: base}", "body: base, odom_pose_noise: [0.0009, 0.0009, 0]}")
+    found = seen(folder, replace(REST, time_s=10.0))
+    assert judged(found, "noise", topic="/scan", deviation=0.05)[0]
+    assert judged(found, "noise", topic="/odometry/filtered", deviation=0.03)[0]
+    assert not judged(found, "noise", topic="/scan", deviation=0.0025)[0]
+
+
+def test_a_gap_in_the_walls_is_found(folder: Path) -> None:
+    change(folder, "room.dat", "0 30 0 0\n", "0 30 0 12\n")
+    assert not judged(seen(folder, REST), "closed")[0]
+
+
+def test_nobody_to_drive_is_said_and_costs_the_run(folder: Path) -> None:
+    change(
+        folder, "robot.model.yaml", "{type: DiffDrive, name: drive, body: base}", "{type: Bumper, name: bump}"
+    )
+    passed, said = judged(seen(folder, DRIVE), "drives")
+    assert (passed, "drive" in said) == (False, True)
+
+
+def test_joints_that_come_apart_are_found(folder: Path) -> None:
+    """A weld whose ends lie 1 m apart, on two bodies that cannot move."""
+    text = (folder / "robot.model.yaml").read_text()
+    body = "  - name: {}\n    type: static\n    pose: [{}, 0, 0]\n    footprints: []\n"
+    joint = "joints:\n  - {name: bar, type: weld, bodies: [{name: one, anchor: [0, 0]}, {name: two, anchor: [0, 0]}]}\n"
+    text = text.replace("\nplugins:", f"{body.format('one', 0)}{body.format('two', 1)}{joint}\nplugins:")
+    (folder / "robot.model.yaml").write_text(text)
+    passed, said = judged(seen(folder, REST), "together")
+    assert (passed, "1000 mm" in said) == (False, True)
+
+
+@pytest.mark.parametrize(
+    ("walls", "radius", "way", "closed"),
+    [
+        ([(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)], 0.1, True, True),
+        ([(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0), (2, 0, 2, 4)], 0.1, False, True),
+        ([(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0), (2, 0, 2, 3.7)], 0.1, True, True),
+        ([(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0), (2, 0, 2, 3.7)], 0.2, False, True),
+        ([(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4)], 0.1, True, False),
+        ([], 0.1, True, False),
+    ],
+    ids=["room", "divided", "door", "narrow door", "open", "nothing"],
+)
+def test_a_way_is_found_where_there_is_one(
+    walls: list[tuple[float, ...]], radius: float, way: bool, closed: bool
+) -> None:
+    segments = np.array(walls, dtype=np.float64).reshape(-1, 4)
+    assert flood(segments, (1.0, 1.0), (3.0, 1.0), radius) == (way, closed)
+
+
+def test_facts_travel_as_json(folder: Path) -> None:
+    import json
+
+    facts, world = facts_of(folder / "world.yaml")
+    assert world is not None
+    assert WorldFacts.told(json.loads(json.dumps(asdict(facts)))) == facts
+    told = run(world, REST)
+    assert RunFacts.told(json.loads(json.dumps(asdict(told)))) == told
+
+
+# What a stranger may hand in
+
+
+def test_a_program_in_a_world_is_not_run(folder: Path) -> None:
+    change(folder, "world.yaml", "[1.0, 1.0, 0]", "$eval return os.exit(1)")
+    assert not judged(seen(folder), "loads")[0]
+
+
+def test_nothing_outside_the_folder_is_read(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(folder / "room.dat", tmp_path / "secret.dat")
+    change(folder, "room.yaml", "data: room.dat", "data: ../secret.dat")
+    passed, said = judged(seen(folder), "loads")
+    assert (passed, "outside" in said) == (False, True)
+
+
+def test_a_drawing_in_the_place_of_a_map_file_is_explained(folder: Path) -> None:
+    change(folder, "world.yaml", "map: room.yaml", "map: room.dat")
+    assert "data: room.dat" in judged(seen(folder), "loads")[1]
+
+
+def test_a_picture_too_large_is_refused(folder: Path) -> None:
+    Image.new("1", (20_000, 20_000)).save(folder / "huge.png")
+    (folder / "room.yaml").write_text(
+        "image: huge.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\n"
+    )
+    assert not judged(seen(folder), "loads")[0]
+
+
+def test_a_world_too_slow_to_read_is_ended(folder: Path) -> None:
+    began = time.monotonic()
+    process = WorldProcess(folder / "world.yaml")
+    with pytest.raises(GuestError) as caught:
+        process.world(0.01)
+    assert caught.value.failure.kind is FailureKind.TIMEOUT
+    assert time.monotonic() - began < 20
+    assert process._child.poll() is not None
+
+
+def test_a_world_that_needs_too_much_memory_is_ended(folder: Path) -> None:
+    Image.fromarray(np.random.default_rng(1).integers(0, 255, (1000, 1000), np.uint8)).save(
+        folder / "noise.png"
+    )
+    (folder / "room.yaml").write_text(
+        "image: noise.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\n"
+    )
+    with WorldProcess(folder / "world.yaml", memory=1 << 26) as process, pytest.raises(GuestError) as caught:
+        process.world()
+    assert caught.value.failure.kind is FailureKind.MEMORY
+
+
+def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_path: Path) -> None:
+    sheet = Path(shutil.copytree(TEMPLATE, tmp_path / "sheet"))
+    (sheet / "secret.yaml").unlink()
+    change(sheet, "assignment.yaml", "level: 1", "level: 0\nbudget: {total: 1}")
+    eyes = "".join(
+        f"  - {{type: Laser, name: eye{n}, body: base, range: 9, topic: eye{n}, always_publish: true,"
+        " angle: {min: 0, max: 6, increment: 0.0007}}\n"
+        for n in range(60)
+    )
+    (folder / "robot.model.yaml").write_text((folder / "robot.model.yaml").read_text() + eyes)
+    result = grade(read(sheet), take(folder, "world.yaml"), Terms(Level.LIMITED))
+    status = {test.id: test.status for test in result.tests}
+    assert status == {
+        "loads": Status.PASS,
+        "walls": Status.PASS,
+        "collisions": Status.PASS,
+        "sights": Status.PASS,
+        "drives": Status.TIMEOUT,
+    }
+    assert "too many walls, rays or bodies" in result.tests[-1].rationale
+
+
+def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
+    result = grade(
+        read(TEMPLATE), take(folder / "world.yaml", "world.yaml"), replace(DESK, level=Level.FILTERED)
+    )
+    assert result.verdict is Verdict.FAIL
+    assert "room.yaml" in result.tests[0].rationale
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "word"),
+    [
+        ("driver: driver.py", "driver: drivr.py", "drivr.py"),
+        ("driver: driver.py", "driver: random_wolk", "random_walk"),
+        ("time: 30", "time: 1000", "time"),
+        ("seeds: [1]", "seeds: [1, 1]", "once"),
+        ("map: room,", "mapp: room,", "mapp"),
+        ("check: drives", "check: dives", "drives"),
+    ],
+)
+def test_a_teachers_mistake_has_its_place(tmp_path: Path, old: str, new: str, word: str) -> None:
+    sheet = Path(shutil.copytree(TEMPLATE, tmp_path / "sheet"))
+    change(sheet, "assignment.yaml", old, new)
+    with pytest.raises(WorldError, match=word):
+        read(sheet)
+
+
+def test_every_check_says_what_is_wrong() -> None:
+    assert {*FAULTS, *RUNS, "loads"} == set(CHECKS)
+    assert all(check.feedback for check in CHECKS.values())
+    assert CHECKS["loads"].params is NoParams
