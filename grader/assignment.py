@@ -7,6 +7,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from grader.calls import Call
 from grader.result import Visibility
 from grader.scoring import Anchors
 from kit.geometry import Pose
@@ -51,6 +52,10 @@ class Trial:
     """Whether the episode ends when the target is reached."""
     services: frozenset[str]
     """Which of the world's services the program may change it with. ``move_model`` only ever sends the robot home."""
+    parameters: tuple[str, ...] = ()
+    """Each ``name:=value``, as one gives them on a command line."""
+    calls: tuple[Call, ...] = ()
+    """What the program is asked meanwhile, in services of its own."""
 
     def home(self) -> Pose:
         """Where the robot starts, before a seed shifts it."""

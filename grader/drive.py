@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -62,6 +62,10 @@ class Drive:
     printed: tuple[str, ...]
     fingerprint: str
     level: int
+    answers: Mapping[str, str] = field(default_factory=dict)
+    """By call, what the program answered; see ``grader.calls``."""
+    bumped: tuple[int, ...] = ()
+    """The ticks at which the robot began to touch something."""
 
     @property
     def steps(self) -> int:

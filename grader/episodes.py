@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
+from grader.calls import Caller
 from grader.drive import Drive, Talk
 from kit.geometry import Pose
 from kit.headless import Fingerprint
@@ -119,6 +120,33 @@ class Listener:
         }
 
 
+class Bumps:
+    """Notes, as one of the runner's observers, when the robot begins to touch something."""
+
+    def __init__(self, robot: str | None) -> None:
+        self._robot = robot
+        self._ticks: list[int] = []
+        self._count = 0
+        self._touching = False
+
+    @property
+    def ticks(self) -> tuple[int, ...]:
+        return tuple(self._ticks)
+
+    def accepted(self, topic: str, message: Message) -> None:
+        """Only what comes of it counts."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        touching = self._robot in simulation.model_names and simulation.touches(str(self._robot))
+        if touching and not self._touching:
+            self._ticks.append(self._count)
+        self._touching = touching
+        self._count += 1
+
+
 def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
     """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
     trial = order.trial
@@ -130,14 +158,17 @@ def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
     runner = JudgedRunner(simulation, graph, trial.services)
     recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
     trip, fingerprint = Trip(place.driven, place.case), Fingerprint()
-    runner.observers += [recorder, trip, fingerprint]
+    bumps = Bumps(place.robot)
+    runner.observers += [recorder, trip, fingerprint, bumps]
     home = shifted(trial, order.seed)
     if place.robot is not None:
         if home != trial.home():
             runner.prepare("move_model", place.robot, tuple(home))
         runner.admit(place.robot, home)
     listener = Listener(graph)
-    failure, printed = _drive(runner, trip, order, file, _arguments(place, home), limits, level)
+    caller = Caller(graph, trial.calls)
+    arguments = [*_arguments(place, home), *_parameters(trial)]
+    failure, printed = _drive(runner, trip, order, file, arguments, limits, level, caller)
     listener.stop()
     return Drive(
         trial=trial.name,
@@ -154,6 +185,8 @@ def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
         printed=printed,
         fingerprint=fingerprint.text,
         level=int(level),
+        answers=caller.answers(),
+        bumped=bumps.ticks,
     )
 
 
@@ -165,6 +198,7 @@ def _drive(
     arguments: list[str],
     limits: Limits,
     level: Level,
+    caller: Caller,
 ) -> tuple[Failure | None, tuple[str, ...]]:
     """Ticks until the time is over, the target reached, or the program failed."""
     try:
@@ -173,7 +207,8 @@ def _drive(
         return error.failure, ()
     with guest:
         runner.guests.append(guest)
-        for _ in range(round(order.trial.time_s / STEP)):
+        for tick in range(round(order.trial.time_s / STEP)):
+            caller.look(tick * STEP)
             runner.tick()
             if guest.failure is not None or (order.trial.until_reached and trip.score.reached_s is not None):
                 break
@@ -228,6 +263,11 @@ def _arguments(place: Place, home: Pose) -> list[str]:
         "-p",
         f"model:={place.robot}",
     ]
+
+
+def _parameters(trial: Trial) -> list[str]:
+    words = [word for parameter in trial.parameters for word in ("-p", parameter)]
+    return ["--ros-args", *words] if words else []
 
 
 PLATFORM: Final = f"{sys.platform} python {sys.version_info.major}.{sys.version_info.minor}"

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.drive import LOOK_EVERY, Drive
+from grader.drive import LOOK_EVERY, Drive, Floats
 from kit.geometry import Pose
 from kit.recording import ACCEPT
 
@@ -54,11 +54,37 @@ class Speeds:
 
 
 @dataclass(frozen=True, slots=True)
+class Span:
+    begin: float = 0.0
+    end: float = 1e9
+    """s of the episode."""
+    low: float = 0.0
+    high: float = 0.0
+    """m/s, either way."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    call: str = ""
+    """Its name in the trial."""
+    holds: str = ""
+    """What the answer, as JSON, must hold."""
+
+
+@dataclass(frozen=True, slots=True)
 class Words:
     text: str = ""
     """What a printed line should hold."""
     seconds: float = 1.0
     """One such line so often."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    radius: float = 0.5
+    """m"""
+    after: float = 1.0
+    """s: what the robot does before does not count."""
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
@@ -131,11 +157,18 @@ def moves(drive: Drive, params: NoParams) -> float:
 @check(none=2, full=1, unit="m/s")
 def top_speed(drive: Drive, params: NoParams) -> float:
     """The robot was told to drive as no robot can: it went up to {actual} ({where}); {full} is the limit."""
-    strides = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) if drive.steps > 1 else np.zeros(1)
-    # Sent home it is elsewhere at once, and has not driven there.
+    speeds = _speeds(drive)
+    return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
+
+
+def _speeds(drive: Drive) -> Floats:
+    """(ticks - 1,) m/s; NaN where the robot was sent home: it is elsewhere at once, and has not driven there."""
+    if drive.steps < 2:
+        return np.empty(0)
+    speeds = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
     sent = [told.tick - 1 for told in drive.recording.inputs if told.kind != ACCEPT]
-    strides[[tick for tick in sent if 0 <= tick < len(strides)]] = 0.0
-    return float(strides.max(initial=0.0)) / drive.recording.step_size
+    speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
+    return speeds
 
 
 @check(none=2.0, full=1.2)
@@ -214,6 +247,32 @@ def drives_at(drive: Drive, params: Speeds) -> float:
     )
 
 
+@check(none=0.5, full=0.95, unit="%", params=Span)
+def keeps_speed(drive: Drive, params: Span) -> float:
+    """The robot kept to the asked speed for {actual} of the time that counts here ({where}); {full} earns all points."""
+    step = drive.recording.step_size
+    first, after = round(params.begin / step), round(min(params.end, drive.seconds) / step)
+    speeds = _speeds(drive)[first : max(first, after - 1)]
+    speeds = speeds[~np.isnan(speeds)]
+    return float(np.mean((speeds >= params.low) & (speeds <= params.high))) if len(speeds) else math.nan
+
+
+@check(none=0, full=1, words=("not as asked", "as asked"), params=Answer)
+def answered(drive: Drive, params: Answer) -> float:
+    """The program was called while it drove, and did not answer as asked ({where})."""
+    return float(params.holds in drive.answers.get(params.call, ""))
+
+
+@check(none=0, full=1, unit="%")
+def goes_home(drive: Drive, params: NoParams) -> float:
+    """After {actual} of its bumps the robot was sent home within a second ({where}). A bump is a message on
+    collisions; going home is a request to the service /move_model."""
+    told = [each.tick for each in drive.recording.inputs if each.kind == "move_model"]
+    bumped = drive.bumped
+    soon = 1.0 / drive.recording.step_size
+    return sum(any(0 <= tick - at <= soon for tick in told) for at in bumped) / len(bumped) if bumped else 0.0
+
+
 @check(none=0.5, full=0.1, unit="%", params=Words)
 def says(drive: Drive, params: Words) -> float:
     """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
@@ -224,13 +283,27 @@ def says(drive: Drive, params: Words) -> float:
     return abs(heard * params.seconds / drive.seconds - 1.0)
 
 
+@check(none=0.5, full=0.1, unit="%", params=Ring)
+def circle(drive: Drive, params: Ring) -> float:
+    """The robot's way should be a circle of the asked radius; its points are off by {actual} of that ({where}); {full}
+    is allowed. A circle's radius is the speed divided by the rate of turning."""
+    way = drive.track[round(params.after / drive.recording.step_size) :, :2]
+    if len(way) < 10 or params.radius <= 0.0:
+        return math.inf
+    # Kasa's fit: x2 + y2 = 2 a x + 2 b y + c is linear in the middle (a, b).
+    rows = np.column_stack((2 * way, np.ones(len(way))))
+    (a, b, _), *_ = np.linalg.lstsq(rows, (way**2).sum(axis=1), rcond=None)
+    off = np.abs(np.hypot(way[:, 0] - a, way[:, 1] - b) - params.radius)
+    return float(off.max()) / params.radius
+
+
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
         for each in (
             *(runs, reached, in_time, approach, bumps, clearance),
-            *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys),
-            *(comes_by, comes_back, drives_at, says),
+            *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys, circle),
+            *(comes_by, comes_back, drives_at, says, keeps_speed, answered, goes_home),
         )
     }
 )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment, Shift, Trial
+from grader.calls import read_call
 from grader.checks.drives import CHECKS
 from grader.kinds.contract import Conditions, Sheet, Sort, Task
 from kit.geometry import Pose
@@ -68,10 +69,18 @@ def trials(sheet: Sheet) -> Iterator[Trial]:
                 each.error(
                     f"no service {quoted(service)}: {suggestion(service, tuple(SERVICES))}", "services"
                 )
+        parameters = each.texts("parameters", ())
+        if any(":=" not in one for one in parameters):
+            each.error("parameters look like name:=value", "parameters")
+        calls = tuple(read_call(one) for one in each.sections("calls", ()))
         each.finish()
         secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
         if place is not None:
-            yield Trial(name, place, time_s, seeds, secret_seeds, shift, noise, until, frozenset(services))
+            yield Trial(
+                *(name, place, time_s, seeds, secret_seeds, shift, noise, until, frozenset(services)),
+                parameters=parameters,
+                calls=calls,
+            )
     if hidden is not None:
         hidden.finish()
 
