@@ -31,7 +31,7 @@ def title_of(file: Path) -> str:
 
 def shipped() -> tuple[ControllerFile, ...]:
     """The kit's own controllers, the two that the kit opens with first, then the worked examples."""
-    own = (FOLDER / f"{name}.py" for name in ("random_walk", "teleop", "fields", "abreast"))
+    own = (FOLDER / f"{name}.py" for name in ("random_walk", "teleop", "teleop_pair", "fields", "abreast"))
     names = [*own, *sorted((FOLDER / "examples").glob("*.py"))]
     return tuple(ControllerFile(file.stem, file, title_of(file)) for file in names)
 

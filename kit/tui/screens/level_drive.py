@@ -1,0 +1,241 @@
+"""One level, driven by hand against its ghosts: the clock starts with the first key and stops at the target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import numpy as np
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.message import Message
+
+from kit.controllers import find
+from kit.inspection.sockets import sockets_folder
+from kit.picture.scene import Mark, Path, Scene
+from kit.school.game.drives import Noted, note
+from kit.school.game.ghosts import Ghost
+from kit.school.game.levels import Level
+from kit.school.game.race import LONGEST, SEED, Driver, Finish, Judge
+from kit.school.progress import Progress, ProgressError
+from kit.showing import clock
+from kit.tui import levels_rows as say
+from kit.tui.input.drive import DriveState
+from kit.tui.input.keys import base_key, drive_key, named
+from kit.tui.key_rows import key_line, key_page
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.watch import WatchScreen
+from kit.tui.text_rows import Row, row, spread
+
+if TYPE_CHECKING:
+    from kit.places import Place
+    from kit.session import Session
+    from kit.tui.look import Look
+    from kit.workspace import Workspace
+
+ONE, TWO = "teleop", "teleop_pair"
+LETTERS: Final = {"reference": "R", "keys": "K", "controller": "C", "agent": "A"}
+WAY: Final = 0.15
+"""m between two points of a ghost's way, as it is drawn."""
+
+
+class Over(Message):
+    """The drive has ended."""
+
+    def __init__(self, finish: Finish, noted: Noted | None, problem: str) -> None:
+        super().__init__()
+        self.finish = finish
+        self.noted = noted
+        self.problem = problem
+
+
+class Result(Page):
+    """What a drive earned. A driving key that is still held does not close it."""
+
+    LEAVE: ClassVar = ("enter", "escape", "r", "q", "backspace")
+
+    def on_mount(self) -> None:
+        self.query_one(Vertical).border_subtitle = "Enter: go on"
+
+    def on_key(self, event: events.Key) -> None:
+        if base_key(event.key) in self.LEAVE:
+            super().on_key(event)
+        else:
+            event.stop()
+
+
+class LevelDrive(WatchScreen):
+    """A letter shows where each ghost was at this time of its drive; its way is dotted."""
+
+    keys = key_line(
+        ("←↑↓→", "drive"), ("space", "stop"), ("r", "again"), ("p", "pause"), ("?", "help"), ("Esc", "levels")
+    )
+    help = key_page(
+        (
+            ("arrows, W A S D", "drive; the clock starts with the first one"),
+            ("Space", "stop"),
+            ("r", "from the start again"),
+            ("p", "pause and go on"),
+            ("x", "how keys drive: automatic, latch, repeat"),
+            ("o", "with ghosts and without"),
+            ("+  -  0  v", "nearer, farther, everything, follow the robot"),
+            ("Esc", "back to the levels"),
+        ),
+        (
+            ("R", "the reference"),
+            ("K  C  A", "your best so far by hand, by program, by trained agent"),
+        ),
+    )
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,q,backspace", "back", show=False),
+        Binding("o", "ghosts", show=False),
+        Binding("x", "next_drive_mode", show=False),
+    ]
+
+    def __init__(
+        self, look: Look, level: Level, ghosts: Sequence[Ghost], progress: Progress, desk: Workspace
+    ) -> None:
+        super().__init__(look, level.title, seed=SEED, doors=sockets_folder(desk.folder), records=True)
+        self._level = level
+        self._ghosts = tuple(ghosts)
+        self._ways = tuple(way for ghost in self._ghosts for way in _ways(ghost))
+        self._with_ghosts = True
+        self._progress = progress
+        self._desk = desk
+        self._judge: Judge | None = None
+        self._is_over = False
+        self._strength = 1.0
+        self._said: Row = ()
+
+    @property
+    def has_started(self) -> bool:
+        return self._judge is not None
+
+    def open_world(self) -> None:
+        self._judge, self._is_over, self.view, self._said = None, False, None, ()
+        place = self._level.find()
+        self.behind.open(lambda: place, find(TWO if len(place.partners) > 1 else ONE), paused=True)
+        self._place: Place = place
+
+    def takes(self, key: str) -> bool:
+        found = drive_key(key)
+        return found is not None and (found.moves or found.name == "space")
+
+    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+        strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
+        if self.view is None or self._is_over or (not messages and strength == self._strength):
+            return
+        self._strength = strength
+        if self._judge is None and any(message.startswith("p_") for message in messages):
+            self._judge = judge = Judge(self._place)
+            self.behind.wish(lambda session: session.runner.observers.append(judge))
+            self.behind.set_paused(False)
+        self.behind.wish(lambda session: session.keys.publish(messages, strength))
+
+    # What is shown
+
+    def _newest_scene(self) -> Scene:
+        scene = super()._newest_scene()
+        if not self._with_ghosts or self.view is None:
+            return scene
+        marks = tuple(
+            Mark(x, y, LETTERS.get(ghost.name, "G"))
+            for ghost in self._ghosts
+            for x, y, _ in ghost.poses(self.view.time_s)
+        )
+        return replace(scene, paths=self._ways, marks=marks)
+
+    def _show(self) -> None:
+        super()._show()
+        view, judge = self.view, self._judge
+        if view is None or not self.is_active:
+            return
+        left = row((self._level.title, "bold"), f"  par {self._level.par:g} s")
+        bumps = 0 if judge is None else judge.finish.bumps
+        self._rows("heading").show(
+            [spread(left, row(f"bumps {bumps}  ", (clock(view.time_s), "bold")), self.size.width)]
+        )
+        if judge is None:
+            ghosts = ", ".join(f"{LETTERS.get(each.name, 'G')} {each.seconds:.1f} s" for each in self._ghosts)
+            self._rows("said").show(
+                [
+                    row((" The clock starts with your first key.", "bold"), f" {self._level.hint}"),
+                    row((f" Ghosts: {ghosts}" if ghosts else "", "dim")),
+                ]
+            )
+        elif self._is_over:
+            self._rows("said").show([self._said])
+        elif self._has_ended(judge.finish, view.time_s):
+            self._is_over = True
+            self.stop_driving()
+            self.behind.set_paused(True)
+            self.behind.wish(self._end)
+
+    def _has_ended(self, finish: Finish, time_s: float) -> bool:
+        return finish.reached or bool(finish.foul) or time_s > LONGEST * self._level.par
+
+    def _end(self, session: Session) -> None:
+        """In the world's thread, between two ticks: nothing moves any more."""
+        recording = self.behind.recording()
+        assert self._judge is not None  # the drive had begun
+        finish, noted, problem = self._judge.finish, None, ""
+        if recording is not None:
+            try:
+                noted = note(self._progress, self._desk, self._level, Driver.KEYS, finish, recording)
+            except ProgressError as error:
+                problem = str(error)
+        self.post_message(Over(finish, noted, problem))
+
+    def on_over(self, event: Over) -> None:
+        if event.noted is None:
+            self.app.push_screen(Page("The drive could not be kept", wrapped(event.problem)))
+            return
+        reference = next((each for each in self._ghosts if each.name == "reference"), None)
+        rows = say.result(self._level.title, self._level.par, event.finish, event.noted, reference)
+        self._said = row(
+            (" ".join(say.STAR if has else say.NO_STAR for has in event.noted.stars), "warn"),
+            "  r drives again, Esc shows the levels.",
+        )
+        self.app.push_screen(Result("The end of this drive", rows))
+
+    # Keys
+
+    def action_reset(self) -> None:
+        """A new drive, recorded from its first tick."""
+        self.stop_driving()
+        self.open_world()
+
+    def action_ghosts(self) -> None:
+        self._with_ghosts = not self._with_ghosts
+        self._show()
+
+    def action_pause(self) -> None:
+        if self.has_started and not self._is_over:
+            super().action_pause()
+
+    def action_step(self) -> None:
+        """Time is not for sale in a race."""
+
+    def action_speed(self, key: str) -> None:
+        """Likewise."""
+
+    def action_back(self) -> None:
+        self.dismiss()
+
+
+def _ways(ghost: Ghost) -> list[Path]:
+    """The ways of a ghost's robots, thinned out."""
+    made = []
+    for track in ghost.tracks:
+        points = track[:, :2]
+        if len(points) < 2:
+            continue
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        steps = np.arange(0.0, float(along[-1]) + WAY, WAY)
+        at = np.searchsorted(along, steps).clip(0, len(points) - 1)
+        if math.isfinite(float(along[-1])):
+            made.append(Path(points[np.unique(at)], "dotted"))
+    return made

@@ -1,0 +1,336 @@
+"""The map of levels: stars, what is open, who was quickest; Enter drives one."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+
+from kit.controllers import in_folder, shipped
+from kit.school.game import fame
+from kit.school.game.drives import Noted, note
+from kit.school.game.ghosts import Ghost, folder, ghosts, reference_ghost
+from kit.school.game.levels import Level, all_levels
+from kit.school.game.race import Driver, Finish, race, race_agent
+from kit.school.game.standing import LevelStanding, standings
+from kit.school.progress import Kind, Progress, ProgressError
+from kit.tui import levels_rows as say
+from kit.tui.key_rows import key_line
+from kit.tui.look import Look
+from kit.tui.painting import StillScreen
+from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.picker import Choice, Picker
+from kit.tui.text_rows import Row, TextRows, row, spread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    from kit.recording import Recording
+    from kit.workspace import Workspace
+
+    _Drive: TypeAlias = Callable[[Level], tuple[Finish, Recording]]
+    _Tell: TypeAlias = Callable[[float], None]
+
+ABOUT_ROWS: Final = 4
+BEST: Final = 3
+"""Rows of the hall of fame a level."""
+KEYS: Final = key_line(
+    ("←↑↓→", "choose"),
+    ("Enter", "drive"),
+    ("c", "program"),
+    ("t", "agent"),
+    ("w", "watch"),
+    ("f", "fame"),
+    ("Esc", "back"),
+)
+
+
+class LevelsScreen(StillScreen[None]):
+    """Draws nothing but what a key has changed."""
+
+    AUTO_FOCUS = ""
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("right,l", "beside(1)", show=False),
+        Binding("left,h", "beside(-1)", show=False),
+        Binding("down,j", "below(1)", show=False),
+        Binding("up,k", "below(-1)", show=False),
+        Binding("enter", "drive", show=False),
+        Binding("c", "program", show=False),
+        Binding("t", "agent", show=False),
+        Binding("w", "watch", show=False),
+        Binding("f", "fame", show=False),
+        Binding("escape,q,backspace", "back", show=False),
+    ]
+    DEFAULT_CSS = f"""
+    LevelsScreen {{ layout: vertical; }}
+    LevelsScreen #heading {{ height: 1; }}
+    LevelsScreen #map {{ height: 1fr; }}
+    LevelsScreen #about {{ height: {ABOUT_ROWS}; }}
+    LevelsScreen #keys {{ height: 1; }}
+    """
+
+    def __init__(self, look: Look, progress: Progress, desk: Workspace, level: Level | None = None) -> None:
+        """``level``: opened at once."""
+        super().__init__()
+        self._look = look
+        self._progress = progress
+        self._desk = desk
+        self._levels = all_levels()
+        self._first = level
+        self._found: tuple[LevelStanding, ...] = ()
+        self._known: dict[str, tuple[tuple[Ghost, ...], Ghost | None]] = {}
+        self._doing = ""
+        self._at = 0 if level is None else [each.id for each in self._levels].index(level.id)
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="map")
+        yield TextRows(id="about")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        self._read()
+        if self._first is None:
+            self._at = next(
+                (number for number, each in enumerate(self._found) if each.is_open and each.count < 3), 0
+            )
+        self._look_closer()
+        if self._first is not None:
+            self.action_drive()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    @property
+    def chosen(self) -> LevelStanding:
+        return self._found[self._at]
+
+    def _read(self) -> None:
+        self._found = standings(self._levels, self._progress.events(Kind.FINISH))
+
+    def _show(self) -> None:
+        if not self.size.width or not self._found:
+            return
+        have = sum(each.count for each in self._found)
+        right = row((f"{have} of {3 * len(self._found)} stars ", "bold"))
+        self._rows("heading").show(
+            [
+                spread(
+                    row(("The game", "bold"), ("  * finished  * touched nothing  * under par", "dim")),
+                    right,
+                    self.size.width,
+                )
+            ]
+        )
+        self._rows("map").show([row(), *say.level_map(self._found, self._at)])
+        near, reference = self._known.get(self.chosen.level.id, ((), None))
+        about: list[Row] = say.about(self.chosen, near, reference)
+        self._rows("about").show([*about, row((self._doing, "bold"))] if self._doing else about)
+        self._rows("keys").show([KEYS])
+
+    @work(exclusive=True, group="ghosts")
+    async def _look_closer(self) -> None:
+        """The ghosts of the chosen level: the reference's takes a moment the first time."""
+        level = self.chosen.level
+        self._show()
+        if level.id not in self._known and self.chosen.is_open:
+            self._known[level.id] = await to_thread(self._ghosts_of, level)
+            self._show()
+
+    def _ghosts_of(self, level: Level) -> tuple[tuple[Ghost, ...], Ghost | None]:
+        return ghosts(self._desk, level), reference_ghost(self._desk, level)
+
+    def _rows(self, name: str) -> TextRows:
+        return self.query_one(f"#{name}", TextRows)
+
+    # Keys
+
+    def action_beside(self, steps: int) -> None:
+        self._at = max(0, min(self._at + steps, len(self._found) - 1))
+        self._look_closer()
+
+    def action_below(self, steps: int) -> None:
+        grid = say.grid(self._found)
+        at = self.chosen.level.row
+        column = grid[at].index(self._at)
+        to = max(0, min(at + steps, len(grid) - 1))
+        self._at = grid[to][min(column, len(grid[to]) - 1)]
+        self._look_closer()
+
+    @work(exclusive=True, group="drive")
+    async def action_drive(self) -> None:
+        if not self._may_drive():
+            return
+        from kit.tui.screens.level_drive import LevelDrive
+
+        level = self.chosen.level
+        if level.id not in self._known:
+            self._known[level.id] = await to_thread(self._ghosts_of, level)
+        near, reference = self._known[level.id]
+        shown = [*near, *([] if reference is None else [reference])]
+        await self.app.push_screen_wait(LevelDrive(self._look, level, shown, self._progress, self._desk))
+        self._after(level)
+
+    @work(exclusive=True, group="drive")
+    async def action_program(self) -> None:
+        if not self._may_drive():
+            return
+        files = {str(each.file): each for each in (*in_folder(self._desk.controllers), *shipped())}
+        choices = [Choice(key, each.name, each.title) for key, each in files.items()]
+        picked = await self.app.push_screen_wait(
+            Picker(f"Who drives? Yours are in {self._desk.controllers}", choices)
+        )
+        if picked is not None:
+            await self._race(
+                Driver.CONTROLLER, lambda level: race(level, files[picked], on_second=self._tell)
+            )
+
+    @work(exclusive=True, group="drive")
+    async def action_agent(self) -> None:
+        if not self._may_drive():
+            return
+        names = await to_thread(_runs, self._desk.runs)
+        if not names:
+            text = "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
+            self.app.push_screen(Page("Agents", wrapped(text)))
+            return
+        choices = [Choice(name, name, "") for name in names]
+        picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
+        if picked is not None:
+            await self._race(
+                Driver.AGENT, lambda level: _race_agent(level, self._desk.runs, picked, self._tell)
+            )
+
+    def action_watch(self) -> None:
+        level = self.chosen.level
+        near, reference = self._known.get(level.id, ((), None))
+        files = [
+            file
+            for each in (*near, *([reference] if reference else []))
+            for file in sorted(folder(self._desk).glob(f"{level.id}.{each.name}*.npz"))
+        ]
+        if not files:
+            self.app.push_screen(
+                Page(
+                    "Nothing to watch yet",
+                    wrapped("Drive this level first, then its best drive can be watched."),
+                )
+            )
+            return
+        self._choose_replay(files)
+
+    @work(exclusive=True, group="drive")
+    async def _choose_replay(self, files: list[Path]) -> None:
+        choices = [Choice(str(file), file.name.split(".")[1], "") for file in files]
+        picked = await self.app.push_screen_wait(Picker("Watch whose drive?", choices))
+        if picked is not None:
+            from kit.recording import RecordingError, load
+            from kit.tui.screens.lesson_drive import WorstRun
+
+            try:
+                recording = await to_thread(load, Path(picked))
+            except (RecordingError, OSError) as error:
+                self.app.push_screen(Page("It cannot be watched", wrapped(str(error))))
+                return
+            await self.app.push_screen_wait(
+                WorstRun(self._look, self.chosen.level.find(), recording, "a drive")
+            )
+
+    def action_fame(self) -> None:
+        found = fame.entries(fame.hall())
+        rows: list[Row] = [row()]
+        for level in self._levels:
+            best = [each for each in found if each.level == level.id][:BEST]
+            if best:
+                names = ", ".join(f"{each.name} {each.seconds:.1f} s {say.WHO[each.driver]}" for each in best)
+                rows += wrapped(f" {level.title}: {names}")
+        if not found:
+            rows += wrapped("Nobody on this machine is in the hall of fame yet.")
+        rows += [
+            row(),
+            *wrapped("`kit game join` puts your name and times there, `kit game leave` takes them out."),
+        ]
+        self.app.push_screen(Page("Hall of fame", rows))
+
+    def action_back(self) -> None:
+        if len(self.app.screen_stack) > 2:
+            self.dismiss()
+        else:
+            self.app.exit()
+
+    # Races
+
+    def _may_drive(self) -> bool:
+        if self._doing or not self.is_active:
+            return False
+        if not self.chosen.is_open:
+            self.app.push_screen(
+                Page(
+                    "Not open yet",
+                    wrapped(
+                        f"{self.chosen.level.title} opens when you have finished {' or '.join(self.chosen.level.after)}."
+                    ),
+                )
+            )
+            return False
+        return True
+
+    async def _race(self, driver: Driver, drive: _Drive) -> None:
+        """Has somebody else drive, off the screen, and shows what came of it."""
+        level = self.chosen.level
+        self._doing = "It drives ..."
+        self._show()
+        try:
+            finish, noted = await to_thread(self._raced, driver, level, drive)
+        except (LookupError, ValueError, OSError, ProgressError) as error:
+            self._doing = ""
+            self._show()
+            self.app.push_screen(Page("It could not drive", wrapped(str(error))))
+            return
+        self._doing = ""
+        reference = self._known.get(level.id, ((), None))[1]
+        self._after(level)
+        self.app.push_screen(
+            Page("The end of this drive", say.result(level.title, level.par, finish, noted, reference))
+        )
+
+    def _raced(self, driver: Driver, level: Level, drive: _Drive) -> tuple[Finish, Noted]:
+        finish, recording = drive(level)
+        return finish, note(self._progress, self._desk, level, driver, finish, recording)
+
+    def _tell(self, seconds: float) -> None:
+        """Called in the race's thread."""
+        if seconds % 5.0 < 0.1:
+            self.app.call_from_thread(self._tell_here, f"It drives: {seconds:.0f} s")
+
+    def _tell_here(self, text: str) -> None:
+        if self._doing:
+            self._doing = text
+            self._show()
+
+    def _after(self, level: Level) -> None:
+        """A drive has ended: stars and ghosts may be others now."""
+        self._known.pop(level.id, None)
+        self._read()
+        self._look_closer()
+
+
+def _runs(folder: Path) -> list[str]:
+    from kit.learning.runs import all_runs
+
+    return [run.name for run in all_runs(folder)]
+
+
+def _race_agent(level: Level, runs: Path, name: str, tell: _Tell) -> tuple[Finish, Recording]:
+    from kit.learning.policies import PolicyError
+    from kit.learning.runs import RunError, find_run
+
+    try:
+        return race_agent(level, find_run(runs, name).policy(), on_second=tell)
+    except (PolicyError, RunError) as error:
+        raise ValueError(str(error)) from None
