@@ -189,10 +189,10 @@ def _give_out(
             folder.mkdir(parents=True, exist_ok=True)
     _write(files)
     if to_terminal:
-        click.echo(as_json(made), nl=False)
+        click.echo(as_json(made).encode(), nl=False)
     else:
         chosen = ASCII if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCKS
-        click.echo("\n".join(rows_of(made, chosen)))
+        click.echo(options.sayable("\n".join(rows_of(made, chosen))))
 
 
 def _write(files: Mapping[Path, str]) -> None:

@@ -134,7 +134,7 @@ def _ask(question: Question, was: Value, number: int, of: int) -> _Reply | None:
     else:
         _lead(question, head)
     if was is not None:
-        click.echo(f"  so far: {shown(was)} (Enter keeps it, {BLANK} makes it blank)")
+        click.echo(f"  so far: {options.sayable(shown(was))} (Enter keeps it, {BLANK} makes it blank)")
     while True:
         click.echo(f"  {_HINTS[question.shape.value]}> ", nl=False)
         line = _line()
@@ -205,7 +205,11 @@ def _show(form: Form, answers: Answers, phases: list[Phase]) -> None:
             said = shown(value) if answers.has(question.id, phase) else "not asked yet"
             indent = "    " if question.lead else "  "
             text = f"{question.text}: {said}"
-            click.echo("\n".join(wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent + "  ")))
+            click.echo(
+                options.sayable(
+                    "\n".join(wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent + "  "))
+                )
+            )
 
 
 def shown(value: Value) -> str:

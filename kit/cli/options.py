@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, NoReturn
@@ -36,6 +37,12 @@ def fail(message: str) -> NoReturn:
 def reason(error: OSError) -> str:
     """What could not be done with a file, in words."""
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
+def sayable(text: str) -> str:
+    """The text with a question mark for what standard output has no character for."""
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    return text.encode(encoding, errors="replace").decode(encoding)
 
 
 def desk(folder: Path | None) -> Workspace:

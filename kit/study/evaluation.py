@@ -42,7 +42,7 @@ class Difference:
 
 def setting_of(study: Study) -> Setting:
     """The dissertation's subjects as a class, divided at the mean score."""
-    names = tuple(str(number) for number in range(1, study.subjects + 1))
+    names = tuple(f"subject {number}" for number in range(1, study.subjects + 1))
     data = ClassData(
         names,
         study.ratings,

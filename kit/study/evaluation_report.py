@@ -12,7 +12,10 @@ from kit.school.cohort.chapters.setting import Setting
 from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Report, Style, Table, Text
 from kit.school.cohort.inference import summary
 from kit.school.cohort.items import analyse
+from kit.school.cohort.normality import shapiro_wilk
 from kit.school.cohort.report import chapters
+from kit.school.quiz.answers import Outcome
+from kit.school.survey.questions import Purpose
 from kit.study.evaluation import (
     Difference,
     Grid,
@@ -188,19 +191,15 @@ def _bearing(study: Study, setting: Setting) -> Chapter:
 
 
 def _shape(study: Study) -> Text:
-    from kit.school.cohort.normality import shapiro_wilk
-
     w, p = shapiro_wilk(study.quiz.score)
     return Text(
-        f"'The scores seem to follow a standard normal distribution': Shapiro and Wilk's W = {w:.2f}, p = {p:.2f}. "
-        "A normal distribution is not ruled out with twelve subjects; that is all. (A standard one would have mean 0 "
-        "and SD 1.)"
+        f"The dissertation takes the quiz scores for normally distributed. Shapiro and Wilk's W = {w:.2f}, "
+        f"p = {p:.2f}: with {study.subjects} subjects that is not ruled out, and not shown. A standard normal "
+        "distribution, which it names, has mean 0 and SD 1."
     )
 
 
 def _blanks(study: Study) -> Text:
-    from kit.school.quiz.answers import Outcome
-
     blanks = study.quiz.count(Outcome.BLANK)
     most = int(np.argmax(blanks))
     return Text(
@@ -211,8 +210,10 @@ def _blanks(study: Study) -> Text:
 
 def _layers(study: Study) -> Text:
     question = next(each for each in study.ratings.questions if each.topic == "layers")
-    found = summary(study.ratings.values[question.phases[0], question.id])
+    phase = question.phases[0]
+    found = summary(study.ratings.values[phase, question.id])
+    hardest = max(summary(each.values).mean for each in study.ratings.measures(Purpose.DIFFICULTY, phase))
+    more = f", more than any topic that is shown ({hardest:.1f} at most)" if found.mean > hardest else ""
     return Text(
-        f"The method for the fewest layers was rated {found.mean:.1f} of 7 hard (n = {found.n}), harder than anything "
-        "else; no table shows it."
+        f"The method for the fewest layers, which no table shows, was rated {found.mean:.1f} of 7 hard{more}; n = {found.n}."
     )

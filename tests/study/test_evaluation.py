@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.cohort.chapters import relations
+from kit.school.cohort.chapters.setting import Setting
 from kit.school.cohort.inference import (
     correlation,
     correlation_test,
@@ -24,12 +26,23 @@ from kit.school.cohort.measures import Ratings
 from kit.school.cohort.normality import shapiro_wilk
 from kit.school.cohort.robustness import of_difference
 from kit.school.quiz.answers import Outcome
-from kit.study.evaluation import differences, order_of_scores, recompute, setting_of, unexplained
+from kit.study.evaluation import Grid, differences, order_of_scores, recompute, setting_of, unexplained
 from kit.study.evaluation_data import FILE, read_study
 from kit.study.evaluation_report import study_report
 from kit.world.problems import WorldError
 
 study = cache(read_study)
+
+
+@cache
+def setting() -> Setting:
+    return setting_of(study())
+
+
+@cache
+def ours() -> Mapping[str, Grid]:
+    return recompute(study())
+
 
 EXACT = ("5.4", "5.5", "5.7", "5.8", "5.9")
 CELLS = {"5.4": 48, "5.5": 18, "5.6": 24, "5.7": 18, "5.8": 36, "5.9": 24, "text": 32}
@@ -50,10 +63,10 @@ def test_every_printed_table_is_there_whole() -> None:
 @pytest.mark.parametrize("table", EXACT)
 def test_these_tables_are_exact(table: str) -> None:
     printed = next(each for each in study().printed if each.id == table)
-    ours = recompute(study())[table]
-    assert list(ours) == list(printed.rows)
+    computed = ours()[table]
+    assert list(computed) == list(printed.rows)
     for row, numbers in printed.rows.items():
-        assert [f"{value:.2f}" for value in ours[row]] == [f"{value:.2f}" for value in numbers], row
+        assert [f"{value:.2f}" for value in computed[row]] == [f"{value:.2f}" for value in numbers], row
 
 
 def test_the_others_differ_in_the_known_cells_and_nowhere_else() -> None:
@@ -82,11 +95,11 @@ def test_one_cell_explains_table_5_6(subject: int) -> None:
 
 
 def test_users_are_these_subjects() -> None:
-    assert [i + 1 for i in order_of_scores(setting_of(study()))] == [1, 10, 8, 7, 12, 2, 6, 3, 5, 11, 4, 9]
+    assert [i + 1 for i in order_of_scores(setting())] == [1, 10, 8, 7, 12, 2, 6, 3, 5, 11, 4, 9]
 
 
 def test_what_is_doubtful_about_the_divisions() -> None:
-    found = {each.id: each.cautions for each in setting_of(study()).divisions}
+    found = {each.id: each.cautions for each in setting().divisions}
     assert found["mean"] == ()
     assert ["0.05 apart" in each for each in found["half"]] == [True]
     assert ["only 2 experts" in each for each in found["scale"]] == [True]
@@ -119,9 +132,9 @@ def test_who_fell_for_what(item: str, chosen: dict[int, int], blank: int) -> Non
 
 
 def test_the_headline_rests_on_subject_9() -> None:
-    setting = setting_of(study())
-    assert setting.division is not None
-    found = of_difference(study().quiz.score, setting.division, seed=0)
+    division = setting().division
+    assert division is not None
+    found = of_difference(study().quiz.score, division, seed=0)
     assert found is not None
     assert found.value == pytest.approx(0.345, abs=0.0005)
     assert (found.chance.arrangements, found.chance.exact) == (792, True)
@@ -142,14 +155,14 @@ def test_the_headline_rests_on_subject_9() -> None:
     ],
 )
 def test_what_goes_together(a: str, b: str, r: float) -> None:
-    known = relations.quantities(setting_of(study()))
+    known = relations.quantities(setting())
     assert correlation(known[a].values, known[b].values) == pytest.approx(r, abs=0.005)
     p = correlation_test(known[a].values, known[b].values, np.random.default_rng(0)).p
     assert (p < 0.05) == (abs(r) > 0.5)
 
 
 def test_rank_correlation_and_the_parabola() -> None:
-    known = relations.quantities(setting_of(study()))
+    known = relations.quantities(setting())
     assert rank_correlation(known["score"].values, known["quiz"].values) == pytest.approx(0.70, abs=0.005)
     curve = trend(known["prior"].values, known["gained"].values, 2)
     assert curve is not None
@@ -157,9 +170,9 @@ def test_rank_correlation_and_the_parabola() -> None:
 
 
 def test_no_difference_of_outcomes_is_more_than_chance() -> None:
-    setting = setting_of(study())
-    assert setting.division is not None
-    experts, beginners = (each.members for each in setting.division.groups[::-1])
+    division = setting().division
+    assert division is not None
+    experts, beginners = (each.members for each in division.groups[::-1])
     for number in (*range(18, 22), *range(34, 37)):
         values = next(row for (_, name), row in study().ratings.values.items() if name == f"q{number}")
         assert difference_test(values[experts], values[beginners], np.random.default_rng(0)).p > 0.3

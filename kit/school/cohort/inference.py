@@ -107,9 +107,9 @@ def _beta_share(x: float, a: float, b: float) -> float:
     front = math.exp(
         math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
     )
-    # From the innermost term outwards: no term vanishes, and 200 are far more than any x here needs.
+    # From the innermost term outwards. It takes about the root of a or b many; these are more than enough.
     value = 1.0
-    for k in range(200, 0, -1):
+    for k in range(60 + 2 * int(math.sqrt(max(a, b))), 0, -1):
         m = k // 2
         if k % 2:
             term = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))

@@ -11,7 +11,14 @@ import numpy as np
 
 from kit.arrays import Flags, Floats
 from kit.school.cohort.expertise import Division
-from kit.school.cohort.inference import NO_TEST, Chance, correlation, correlation_test, difference_test
+from kit.school.cohort.inference import (
+    NO_TEST,
+    SHUFFLES,
+    Chance,
+    correlation,
+    correlation_test,
+    difference_test,
+)
 
 LEVEL: Final = 0.05
 """The p value that readers take for a line, for better or worse."""
@@ -66,9 +73,9 @@ def of_difference(values: Floats, division: Division, seed: int) -> Sensitivity 
     def gap(kept: Flags) -> float:
         return float(values[first & kept].mean() - values[second & kept].mean())
 
-    def test(kept: Flags) -> Chance:
+    def test(kept: Flags, shuffles: int) -> Chance:
         rng = np.random.default_rng(seed)
-        return difference_test(values[first & kept], values[second & kept], rng, _shuffles(kept))
+        return difference_test(values[first & kept], values[second & kept], rng, shuffles)
 
     return _leave_out(counted & (first | second), gap, test)
 
@@ -79,20 +86,17 @@ def of_correlation(x: Floats, y: Floats, seed: int) -> Sensitivity | None:
     if both.sum() < FEWEST or math.isnan(correlation(x, y)):
         return None
 
-    def test(kept: Flags) -> Chance:
-        return correlation_test(x[kept], y[kept], np.random.default_rng(seed), _shuffles(kept))
+    def test(kept: Flags, shuffles: int) -> Chance:
+        return correlation_test(x[kept], y[kept], np.random.default_rng(seed), shuffles)
 
     return _leave_out(both, lambda kept: correlation(x[kept], y[kept]), test)
 
 
-def _shuffles(kept: Flags) -> int:
-    """Fewer in a large class, where this is asked as often as it has students."""
-    return max(1000, 200_000 // int(kept.sum()))
-
-
 def _leave_out(
-    members: Flags, value: Callable[[Flags], float], test: Callable[[Flags], Chance]
+    members: Flags, value: Callable[[Flags], float], test: Callable[[Flags, int], Chance]
 ) -> Sensitivity:
+    # Fewer in a large class, where this is asked as often as it has students.
+    shuffles = max(1000, 100_000 // int(members.sum()))
     without = {}
     for student in np.flatnonzero(members):
         kept = members.copy()
@@ -105,9 +109,9 @@ def _leave_out(
     tested = set(without) if len(without) <= MOST_TESTED else {by_value[0], by_value[-1]}
     return Sensitivity(
         value(members),
-        test(members),
+        test(members, SHUFFLES),
         tuple(
-            LeftOut(student, found, test(kept) if student in tested else NO_TEST)
+            LeftOut(student, found, test(kept, shuffles) if student in tested else NO_TEST)
             for student, (found, kept) in without.items()
         ),
     )

@@ -123,7 +123,11 @@ def _scores(setting: Setting) -> Iterator[Block]:
     yield _divisions(setting)
     for each in setting.divisions:
         yield from cautions_of(each)
-    if setting.division is not None:
+    if setting.division is None:
+        yield Caution(
+            "The division asked for leaves one group empty, so the tables below do not divide the class."
+        )
+    else:
         yield Text(f"The tables below divide the class {setting.division.title}.")
 
 
