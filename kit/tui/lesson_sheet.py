@@ -8,6 +8,7 @@ from typing import Final
 
 from textual.app import ComposeResult
 from textual.containers import Container
+from textual.widget import Widget
 
 from kit.tui.scene_view import SceneView
 from kit.tui.text_rows import Row, TextRows, row
@@ -31,7 +32,9 @@ class Content:
     moves: bool = False
     """Whether the scene is seen."""
     first_words: int = 0
-    """So many of the words are there from the beginning: the picture's size is made for them."""
+    """Rows of words that the picture leaves room for, as far as it can."""
+    most_words: int = 0
+    """Rows of words there may be in this step: so many are kept free above what is asked, so that it never moves."""
     scrolls_with: str = "down"
     """The key that shows more words."""
 
@@ -46,7 +49,6 @@ class LessonSheet(Container):
     LessonSheet #ask {{ height: auto; }}
     LessonSheet #right {{ height: 1fr; layout: vertical; }}
     LessonSheet.-beside {{ layout: horizontal; }}
-    LessonSheet.-beside SceneView {{ height: 1fr !important; }}
     LessonSheet.-beside #picture {{ width: 1fr; }}
     LessonSheet.-beside #right {{ width: {BESIDE}; }}
     """
@@ -57,7 +59,7 @@ class LessonSheet(Container):
         self._content = Content(())
         self._top = 0
         self._room = 1
-        self._scene_rows = 0
+        self._heights: dict[str, int | str] = {}
 
     def compose(self) -> ComposeResult:
         yield self._scene
@@ -78,10 +80,12 @@ class LessonSheet(Container):
         asked = len(content.asked)
         least = min(LEAST_PICTURE, max(room // 2, 4))
         rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
-        if content.moves and self._scene_rows != rows:
-            self._scene.styles.height = self._scene_rows = rows
+        if content.moves:
+            self._set_height(self._scene, "1fr" if beside else rows)
         used = 0 if beside else rows if content.moves else len(content.picture)
         self._room = max(1, room - used - asked)
+        kept = max(content.most_words, len(content.words))
+        self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
         self._show_words()
 
     def scroll_words(self, lines: int) -> None:
@@ -92,6 +96,12 @@ class LessonSheet(Container):
         """So that a line and what follows is in sight, if not all is."""
         self._top = line
         self._show_words()
+
+    def _set_height(self, widget: Widget, height: int | str) -> None:
+        """In rows, or as a share of what is left. The same once more costs nothing."""
+        assert widget.id is not None
+        if self._heights.get(widget.id) != height:
+            self._heights[widget.id] = widget.styles.height = height
 
     def _show_words(self) -> None:
         words = self._content.words

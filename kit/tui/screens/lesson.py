@@ -165,12 +165,15 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         self._rows("file").show_all(file)
         self._rows("said").show_all(said)
         self._rows("keys").show([self.asked_keys() or keys(self._possible(), width)])
+        written = self._written()
+        answer = self._longest_answer()
         content = Content(
-            self._written(),
+            written,
             [] if over or not step.options else self._asked(),
             () if over else tuple(step.picture.splitlines()),
             moves=step.scene is not None and not over,
-            first_words=self._words_needed(),
+            first_words=max(self._until_answer, answer),  # not both at once, where there is little room
+            most_words=self._until_answer + answer,
             scrolls_with="PgDn" if self._drives else "down",
         )
         self._sheet.show(
@@ -198,10 +201,10 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
             made += say.verdict(report, self.visit.hints(self.bench.exercise), self._width)
         return made
 
-    def _words_needed(self) -> int:
-        """Rows for the words, or for the longest thing that may be said to a prediction: not both at once."""
+    def _longest_answer(self) -> int:
+        """Rows of the longest thing that may be said to a prediction."""
         answers = (len(say.feedback(self.step, option, self._width)) for option in self.step.options)
-        return max(self._until_answer, *answers, 0)
+        return max(answers, default=0)
 
     def _asked(self) -> list[Row]:
         return [row(), *say.question(self.step, self.chosen, self._told, self._width)]

@@ -39,12 +39,11 @@ class LessonsScreen(StillScreen[None]):
         Binding("enter,right", "open", show=False),
         Binding("escape,q,backspace,left", "back", show=False),
     ]
-    DEFAULT_CSS = f"""
-    LessonsScreen {{ layout: vertical; }}
-    LessonsScreen #heading {{ height: 2; }}
-    LessonsScreen #list {{ height: 1fr; }}
-    LessonsScreen #about {{ height: {SUMMARY_ROWS}; }}
-    LessonsScreen #keys {{ height: 1; }}
+    DEFAULT_CSS = """
+    LessonsScreen { layout: vertical; }
+    LessonsScreen #heading { height: 2; }
+    LessonsScreen #about { height: 1fr; }
+    LessonsScreen #keys { height: 1; }
     """
 
     def __init__(self, look: Look, school: School, overview: Overview) -> None:
@@ -78,8 +77,10 @@ class LessonsScreen(StillScreen[None]):
         self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
         room = max(1, self.size.height - 3 - SUMMARY_ROWS)
         top = max(0, min(self._at - room // 2, len(shelf) - room))
-        self._rows("list").show([say.line(each, each is chosen) for each in shelf[top : top + room]])
-        self._rows("about").show(say.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])
+        self._rows("list").show_all([say.line(each, each is chosen) for each in shelf[top : top + room]])
+        self._rows("about").show(
+            [row(), *(say.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+        )
         self._rows("keys").show([KEYS])
 
     def _rows(self, name: str) -> TextRows:

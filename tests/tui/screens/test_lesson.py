@@ -31,14 +31,14 @@ class Student:
     def __init__(self, folder: Path) -> None:
         self.desk: Workspace = open_workspace(folder / "home")
         self.progress = Progress(self.desk.folder)
-        self._lesson = read(write_lessons(folder / "lessons") / "01-colours")
+        self.lesson = write_lessons(folder / "lessons") / "01-colours"
 
     @property
     def file(self) -> Path:
         return self.desk.lessons / "01-colours" / "colour" / "answers.yaml"
 
     def screen(self, look: Look) -> Screen[None]:
-        return LessonScreen(look, Visit(self._lesson, self.progress, self.desk), self.desk)
+        return LessonScreen(look, Visit(read(self.lesson), self.progress, self.desk), self.desk)
 
     def goes_to(self, step: int) -> None:
         """Has gone through all steps before, but for their exercises."""
@@ -104,6 +104,9 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
 
 
 def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play) -> None:
+    sheet = student.lesson / "lesson.yaml"
+    sheet.write_text(sheet.read_text().replace("seconds: 1}", "seconds: 600}"))
+
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "stands still until you choose")
         await pilot.press("1", "n")
@@ -232,7 +235,7 @@ def test_the_end_says_what_is_open_and_any_step_can_be_gone_to(student: Student,
         assert "5  Round the corner" in text(pilot)
         await pilot.press("l")
         await seen(pilot, "[x] 3")
-        await pilot.press("down", "up", "up", "enter")
+        await pilot.press("up", "enter")
         await seen(pilot, "step 4 of 5")
 
     play(scene)

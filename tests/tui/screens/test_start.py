@@ -1,0 +1,194 @@
+"""The start screen, the list of lessons and the progress page, without a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.desk import open_desk
+from kit.school.progress import FILE, Kind, Progress
+from kit.tui.look import Look
+from kit.tui.overview import School
+from kit.tui.screens.start import StartScreen
+from kit.tui.screens.start_keys import MENU
+from tests.tui.lesson_folder import write_lessons
+from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
+
+ROBOT = "►◥▲◤◄◣▼◢"
+
+
+class House:
+    """A student's home, and three lessons to go through."""
+
+    def __init__(self, folder: Path) -> None:
+        self.lessons = write_lessons(folder / "lessons", more=2)
+        self.desk = open_desk(folder / "home")
+
+    def note(self, *events: tuple[Kind, str]) -> None:
+        with Progress(self.desk.folder) as progress:
+            for kind, subject in events:
+                progress.add(kind, subject)
+
+    def open(self, look: Look) -> Screen[None]:
+        return StartScreen(look, School(self.desk, self.lessons))
+
+    def play(self, scene: Scene, size: tuple[int, int] = (80, 24)) -> None:
+        stage(self.open, scene, size=size)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> House:
+    return House(tmp_path)
+
+
+def test_a_new_student_is_in_the_first_lesson_with_one_key(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        assert "Continue" in text(pilot)
+        await pilot.press("enter")
+        await seen(pilot, "step 1 of 5")
+        await seen(pilot, "stands still until you choose")
+        await pilot.press("escape")
+        await seen(pilot, "Begin")
+        assert "Lesson 1, Colours" in text(pilot)
+
+    house.play(scene)
+
+
+def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: set(ROBOT) & set(text(pilot)), "the robot")
+        assert "it finds its own way" in rows(pilot)[0]
+        await pilot.press("up")
+        await seen(pilot, "you drive")
+        assert all(item.title in text(pilot) for item in MENU[1:])
+        await pilot.press("g")
+        await seen(pilot, "it finds its own way")
+
+    house.play(scene)
+
+
+def test_it_goes_on_where_the_student_left_off(house: House) -> None:
+    house.note((Kind.STEP, "02-colours2/1"), (Kind.STEP, "02-colours2/2"))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 2, Colours, step")
+        assert "Continue" in text(pilot)
+        await pilot.press("enter")
+        await seen(pilot, "step 3 of 5")
+        await pilot.press("n", "escape")
+        await seen(pilot, "step 4 of 5")
+        assert "0 of 3 done" in text(pilot)
+
+    house.play(scene)
+
+
+def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) -> None:
+    house.note((Kind.STEP, "02-colours2/1"))
+    (house.lessons / "03-colours3" / "lesson.yaml").write_text("title: broken\n")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("2")
+        await seen(pilot, "0 of 3 done")
+        await seen(pilot, "[~] Colours")
+        assert "[!] 03-colours3" in text(pilot)
+        assert "What a traffic light says." in text(pilot)
+        assert "- Say what it says" in text(pilot)
+        await pilot.press("down")
+        assert "lesson.yaml" in text(pilot)
+        await pilot.press("enter")
+        await seen(pilot, "This lesson cannot be read")
+        await pilot.press("space", "up", "enter")
+        await seen(pilot, "step 2 of 5")
+        await pilot.press("n", "escape")
+        await seen(pilot, "██")
+        await pilot.press("escape")
+        await seen(pilot, "Lesson 2")
+
+    house.play(scene)
+
+
+@pytest.mark.parametrize(
+    ("key", "wanted", "back"),
+    [("3", "random_walk", "backspace"), ("4", "new: turn", "escape"), ("5", "What is asked", "escape"),
+     ("6", "The twelve ideas", "escape"), ("7", "Take it along", "escape")],
+    ids=[item.name for item in MENU[2:]],
+)  # fmt: skip
+def test_every_line_of_the_menu_opens_and_comes_back(house: House, key: str, wanted: str, back: str) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 1")
+        await pilot.press(key)
+        await seen(pilot, wanted)
+        await pilot.press(back)
+        await seen(pilot, "Progress")
+        await seen(pilot, "Lesson 1, Colours")
+
+    house.play(scene)
+
+
+def test_lines_are_chosen_with_tab_too(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("tab")
+        assert ">  2  Lessons" in text(pilot)
+        await pilot.press("shift+tab", "shift+tab", "enter")
+        await seen(pilot, "Take it along")
+
+    house.play(scene)
+
+
+def test_progress_says_what_was_passed(house: House) -> None:
+    with Progress(house.desk.folder) as progress:
+        points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
+        progress.add(Kind.ATTEMPT, "01-colours/colour", points)
+        progress.add(Kind.ATTEMPT, "01-colours/corner", {**points, "points": 1.0, "verdict": "fail"})
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 1")
+        await pilot.press("7")
+        await seen(pilot, "colour ***, corner **.")
+        assert "1 of 6 exercises passed" in text(pilot)
+        assert "kit progress export FILE" in text(pilot)
+
+    house.play(scene, (80, 40))
+
+
+def test_a_damaged_journal_is_told_once(house: House) -> None:
+    (house.desk.folder / FILE).write_bytes(b"no database at all" * 100)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "was damaged")
+        await pilot.press("space")
+        await pilot.press("7")
+        await seen(pilot, "Take it along")
+        await pilot.press("escape")
+        await seen(pilot, "Lesson 1, Colours")
+        assert "was damaged" not in text(pilot)
+
+    house.play(scene)
+
+
+def test_a_journal_that_cannot_be_opened_leaves_the_robot_to_drive(house: House) -> None:
+    (house.desk.folder / FILE).mkdir()
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Progress cannot be read.")
+        await pilot.press("enter")
+        await seen(pilot, "any key leaves")
+        assert "progress cannot be kept there" in text(pilot)
+        await pilot.press("space")
+        await pilot.press("up")
+        await seen(pilot, "you drive")
+
+    house.play(scene)
+
+
+@pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 50)], ids=lambda size: f"{size[0]}x{size[1]}")
+def test_the_whole_menu_is_in_sight(house: House, size: tuple[int, int]) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 1")
+        assert all(item.title in text(pilot) for item in MENU[1:])
+        assert "leave" in rows(pilot)[-1]
+
+    house.play(scene, size)
