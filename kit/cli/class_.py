@@ -81,7 +81,11 @@ def _outputs(function: Callable[..., Any]) -> Callable[..., Any]:
     help="Beginners and experts: at the mean score, into halves, or at 3.5, half of the scale.",
 )
 @click.option("--names", is_flag=True, help="Call students by their names instead of S1, S2, ...")
-@click.option("--only", metavar="CHAPTERS", help="Only these, with commas between: quiz,items.")
+@click.option(
+    "--only",
+    metavar="CHAPTERS",
+    help="Only these, with commas between: class, experience, knowledge, outcomes, difficulty, explanation, quiz, items, relations, robustness, lessons, words.",
+)
 @_outputs
 def report(
     files: tuple[Path, ...],

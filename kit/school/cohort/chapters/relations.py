@@ -202,7 +202,8 @@ def _caution(title: str, each: Sensitivity, names: Sequence[str]) -> Caution:
     """A result that is on the other side of the line without this student or that."""
     most = sorted(each.turning, key=lambda one: -abs(one.chance.p - each.chance.p))
     shown = "; ".join(
-        f"without {names[one.student]} {one.value:.2f}, {chance_text(one.chance.p)}" for one in most[:3]
+        f"without {names[one.student]} it is {one.value:.2f} ({chance_text(one.chance.p)})"
+        for one in most[:3]
     )
     more = f"; and so without {len(most) - 3} more" if len(most) > 3 else ""
     return Caution(
