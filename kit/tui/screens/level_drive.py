@@ -61,10 +61,9 @@ class Result(Page):
         self.query_one(Vertical).border_subtitle = "Enter: go on"
 
     def on_key(self, event: events.Key) -> None:
-        if base_key(event.key) in self.LEAVE:
-            super().on_key(event)
-        else:
+        if base_key(event.key) not in self.LEAVE:
             event.stop()
+            event.prevent_default()  # or the page below would be asked too
 
 
 class LevelDrive(WatchScreen):

@@ -1,0 +1,126 @@
+"""The map of levels and a drive on one: what is open, what a drive earns, which ghosts drive along."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
+
+import pytest
+from textual.app import App
+from textual.pilot import Pilot
+
+from kit.desk import open_desk
+from kit.school.game import fame
+from kit.school.game.levels import all_levels
+from kit.school.progress import Kind, Progress
+from kit.tui import levels_rows as say
+from kit.tui.app import KitApp
+from kit.tui.screens.level_drive import LevelDrive, Result
+from kit.tui.screens.levels import LevelsScreen
+from kit.tui.screens.page import Page
+from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+
+Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
+LEVELS = all_levels()
+
+
+@pytest.fixture
+def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progress]:
+    monkeypatch.setenv(fame.VARIABLE, str(tmp_path / "hall"))
+    with Progress(tmp_path) as opened:
+        yield opened
+
+
+def play(scene: Scene, progress: Progress, folder: Path) -> None:
+    async def run() -> None:
+        terminal = decide(
+            {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalWishes()
+        )
+        app: App[None] = KitApp(terminal)
+        async with app.run_test(size=(80, 24)) as pilot:
+            assert isinstance(app, KitApp)
+            screen = LevelsScreen(app.look, progress, open_desk(folder))
+            await app.push_screen(screen)
+            await pilot.pause()
+            await scene(screen, pilot)
+
+    asyncio.run(run())
+
+
+def flat(app: App[None]) -> str:
+    rows = ("".join(segment.text for segment in strip) for strip in app.screen._compositor.render_strips())
+    return " ".join(" ".join(rows).split())
+
+
+async def until(pilot: Pilot[None], ready: Callable[[], bool], seconds: float = 60.0) -> None:
+    for _ in range(int(seconds / 0.05)):
+        await pilot.pause(0.05)
+        if ready():
+            return
+    raise AssertionError(flat(pilot.app))
+
+
+def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
+    progress: Progress, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        grid = say.grid(screen._found)
+        assert sorted(number for row in grid for number in row) == list(range(len(LEVELS)))
+        assert 2 * len(grid) - 1 <= 24 - 7  # with the heading, what is told below, and the keys
+        assert max(map(len, grid)) * say.CELL[0] <= say.WIDTH
+        await pilot.press("down")
+        assert not screen.chosen.is_open
+        assert LEVELS[0].title in flat(pilot.app) or LEVELS[0].id in flat(pilot.app)
+        await pilot.press("enter")
+        await pilot.pause()
+        assert isinstance(pilot.app.screen, Page)
+
+    play(scene, progress, tmp_path / "desk")
+
+
+def test_a_drive_earns_stars_and_leaves_a_ghost(progress: Progress, tmp_path: Path) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        assert screen.chosen.level.id == "first-drive"
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        drive = pilot.app.screen
+        assert isinstance(drive, LevelDrive)
+        await until(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+        assert {each.name for each in drive._ghosts} == {"reference"}
+        view = drive.view
+        assert view is not None
+        assert view.time_s == 0.0
+
+        def drives() -> bool:
+            if drive._judge is None:
+                drive.drove(("p_up",), drive.drive.state)
+            return isinstance(pilot.app.screen, Result)
+
+        await until(pilot, drives)
+        (event,) = progress.events(Kind.FINISH)
+        assert event.content["reached"]
+        assert event.content["bumps"] == 0
+        await pilot.press("up")
+        assert isinstance(pilot.app.screen, Result)
+        await pilot.press("enter")
+        await pilot.pause()
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is screen)
+        assert screen._found[0].count >= 2
+        assert screen._found[2].is_open
+
+    play(scene, progress, tmp_path / "desk")
+
+
+def test_a_program_races(progress: Progress, tmp_path: Path) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("c")
+        await pilot.pause()
+        for key in "abreast":
+            await pilot.press(key)
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Page))
+        assert progress.events(Kind.FINISH)[0].content["driver"] == "controller"
+
+    play(scene, progress, tmp_path / "desk")
