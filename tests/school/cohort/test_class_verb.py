@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
+from kit.school.cohort.report import CHAPTERS
 from tests.school.cohort.classroom import NAMES, classroom
 
 
@@ -80,3 +81,8 @@ def test_mistakes_of_the_command_line(folder: Path, tmp_path: Path) -> None:
     file.write_text("")
     assert report(folder, "--svg", file / "under").exit_code == 2
     assert file.read_text() == ""
+
+
+def test_help_lists_every_chapter() -> None:
+    words = report("--help").output.replace(",", " ").split()
+    assert set(CHAPTERS) <= set(words) | {word.rstrip(".") for word in words}
