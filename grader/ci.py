@@ -2,11 +2,16 @@
 
 The job that runs students' code has a read-only token and no secrets; what it found is published by a second job. For
 a grade that counts, the workflow and the assignment belong into the teacher's repository, not into the student's.
+
+The kit is installed from where its source is kept, in the versions it is tested with: never by a name that a package
+index would have to resolve.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
@@ -29,7 +34,10 @@ jobs:
       - uses: actions/setup-python@v5
         with:
           python-version: "3.12"
-      - run: python -m pip install --quiet robot-learning-kit
+      - name: Install the kit
+        run: |
+          git clone --quiet --depth 1 {clone} "$RUNNER_TEMP/kit"
+          python -m pip install --quiet -c "$RUNNER_TEMP/kit/constraints.txt" "$RUNNER_TEMP/kit"
       - name: Grade
         id: classroom
         shell: bash
@@ -73,7 +81,8 @@ grade:
   variables:
     GIT_DEPTH: "1"
   script:
-    - python -m pip install --quiet robot-learning-kit
+    - git clone --quiet --depth 1 {clone} /tmp/kit
+    - python -m pip install --quiet -c /tmp/kit/constraints.txt /tmp/kit
     - >-
       python -P -m grader check "{submit}" --assignment "{assignment}" --require-level 1 --json --for-student --output result.json
       || status=$?
@@ -93,6 +102,34 @@ WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 """Where each workflow file belongs, and its text."""
 
 
-def workflow(service: str, *, submit: str, assignment: str) -> str:
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where the kit's source is kept."""
+
+    address: str
+    """For ``git clone``."""
+    version: str = ""
+    """A branch or a tag; empty: the newest."""
+
+    @classmethod
+    def read(cls, text: str) -> Source:
+        """``https://HOST/PATH`` or ``https://HOST/PATH@VERSION``. Raises ValueError: it will stand in a shell."""
+        found = _ADDRESS.fullmatch(text)
+        if found is None:
+            raise ValueError(f"{text}: say https://HOST/PATH, perhaps with @ and a branch or tag after it")
+        return cls(found["address"], found["version"] or "")
+
+    @property
+    def clone(self) -> str:
+        """As ``git clone`` wants it."""
+        return f"--branch {self.version} {self.address}" if self.version else self.address
+
+
+_ADDRESS: Final = re.compile(
+    r"(?P<address>https://[A-Za-z0-9.-]+(:[0-9]+)?(/[A-Za-z0-9_.~-]+)+)(@(?P<version>[A-Za-z0-9_][A-Za-z0-9_./-]*))?"
+)
+
+
+def workflow(service: str, *, submit: str, assignment: str, kit: Source) -> str:
     """The workflow file of a service. Names must be plain: they stand in a shell's double quotes."""
-    return WORKFLOWS[service][1].format(submit=submit, assignment=assignment)
+    return WORKFLOWS[service][1].format(submit=submit, assignment=assignment, clone=kit.clone)

@@ -165,7 +165,7 @@ def _speeds(drive: Drive) -> Floats:
     """(ticks - 1,) m/s; NaN where the robot was sent home: it is elsewhere at once, and has not driven there."""
     if drive.steps < 2:
         return np.empty(0)
-    speeds = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
+    speeds: Floats = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
     sent = [told.tick - 1 for told in drive.recording.inputs if told.kind != ACCEPT]
     speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
     return speeds

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from grader.ci import WORKFLOWS, workflow
+from grader.ci import WORKFLOWS, Source, workflow
 from grader.verbs import options
 
 PLAIN = re.compile(r"[A-Za-z0-9_./-]+")
@@ -17,14 +17,23 @@ PLAIN = re.compile(r"[A-Za-z0-9_./-]+")
 @click.argument("service", type=click.Choice(sorted(WORKFLOWS)))
 @options.assignment
 @click.option(
+    "--kit",
+    required=True,
+    metavar="ADDRESS[@VERSION]",
+    help="Where the kit is cloned from: https://..., perhaps with a branch or tag.",
+)
+@click.option(
     "--write",
     is_flag=True,
     help="Put the file where it belongs, below the present folder, instead of printing it.",
 )
-def command(service: str, folder: Path, write: bool) -> None:
+def command(service: str, folder: Path, kit: str, write: bool) -> None:
     """Print a workflow that grades every push: for GitHub Actions (and GitHub Classroom) or GitLab CI.
 
-    Say the assignment's folder as it is called in the repository.
+    Say the assignment's folder as it is called in the repository, and where the kit's source is kept:
+
+    \b
+    grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
     """
     from kit.workspace import write_atomically
 
@@ -32,7 +41,10 @@ def command(service: str, folder: Path, write: bool) -> None:
     name = folder.as_posix()
     if not PLAIN.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
         options.fail(f"{name}: name the folder relative to the repository, in letters, digits, _ . - and /.")
-    text = workflow(service, submit=assignment.submit, assignment=name)
+    try:
+        text = workflow(service, submit=assignment.submit, assignment=name, kit=Source.read(kit))
+    except ValueError as error:
+        options.fail(f"{error}.")
     if not write:
         click.echo(text, nl=False)
         return

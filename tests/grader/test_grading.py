@@ -10,13 +10,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.checks import contract, drives
-from grader.ci import WORKFLOWS, workflow
 from grader.kinds import controller
 from grader.reading import read
 from grader.result import Result, Status, Verdict
@@ -305,36 +303,6 @@ def test_a_new_assignment_is_a_working_one(tmp_path: Path) -> None:
     code, text = invoke("new", str(folder))
     assert code == 2
     assert "not empty" in text
-
-
-# Workflows
-
-
-@pytest.mark.parametrize("service", WORKFLOWS)
-def test_workflows_are_yaml_and_harmless(service: str) -> None:
-    content = yaml.safe_load(workflow(service, submit="controller.py", assignment="tasks/one"))
-    text = workflow(service, submit="controller.py", assignment="tasks/one")
-    assert "{submit}" not in text
-    assert "grader check" in text
-    if service == "gitlab":
-        assert content["grade"]["artifacts"]["reports"]["junit"] == "junit.xml"
-        return
-    assert content["permissions"] == {"contents": "read"}
-    assert content["jobs"]["grade"]["outputs"]["result"] == "${{ steps.classroom.outputs.result }}"
-    assert content["jobs"]["grade"]["steps"][0]["with"]["persist-credentials"] is False
-    assert "secrets." not in text
-    assert content["jobs"]["report"]["needs"] == "grade"
-
-
-def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_assignment(tmp_path / "tasks" / "one")
-    monkeypatch.chdir(tmp_path)
-    assert invoke("ci", "github", "--assignment", "tasks/one", "--write")[0] == 0
-    assert (tmp_path / ".github/workflows/grade.yml").is_file()
-    code, text = invoke("ci", "github", "--assignment", "tasks/one", "--write")
-    assert (code, "there already" in text) == (2, True)
-    code, text = invoke("ci", "gitlab", "--assignment", str(tmp_path / "tasks" / "one"))
-    assert (code, "relative" in text) == (2, True)
 
 
 # The plugin

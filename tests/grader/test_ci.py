@@ -1,0 +1,129 @@
+"""Workflow files: they parse, they harm nobody, and what they call is there: each one's script is run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+from grader.__main__ import main
+from grader.ci import WORKFLOWS, Source, workflow
+from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
+
+ROOT = Path(__file__).parents[2]
+KIT = Source("https://example.org/somebody/kit", "v1")
+
+
+def made(service: str) -> tuple[str, Any]:
+    """The text, and what YAML makes of it."""
+    text = workflow(service, submit="controller.py", assignment="tasks/one", kit=KIT)
+    return text, yaml.safe_load(text)
+
+
+def invoke(*arguments: str) -> tuple[int, str]:
+    done = CliRunner().invoke(main, list(arguments))
+    assert not done.exception or isinstance(done.exception, SystemExit), done.exc_info
+    return done.exit_code, done.output
+
+
+@pytest.mark.parametrize("service", WORKFLOWS)
+def test_a_workflow_is_whole_and_harmless(service: str) -> None:
+    text, content = made(service)
+    assert content
+    assert not re.search(r"(?<![${]){[a-z]", text), "every name is filled in"
+    assert "git clone --quiet --depth 1 --branch v1 https://example.org/somebody/kit" in text
+    assert "--quiet robot-learning-kit" not in text, "no name that a package index resolves"
+    assert "secrets." not in text
+
+
+def test_on_github_students_code_runs_without_rights() -> None:
+    _, content = made("github")
+    assert content["permissions"] == {"contents": "read"}
+    grade, report = content["jobs"]["grade"], content["jobs"]["report"]
+    assert "permissions" not in grade
+    assert grade["outputs"]["result"] == "${{ steps.classroom.outputs.result }}"
+    assert grade["steps"][0]["with"]["persist-credentials"] is False
+    assert report["needs"] == "grade"
+    assert not any("run" in step for step in report["steps"]), (
+        "nothing of the student's in the job that may write"
+    )
+
+
+def script(service: str) -> str:
+    """What the runner's shell is given, without the installation."""
+    _, content = made(service)
+    if service == "gitlab":
+        lines = [line for line in content["grade"]["script"] if "/tmp/kit" not in line]
+        return "set -eo pipefail\n" + "\n".join(lines)
+    steps = content["jobs"]["grade"]["steps"]
+    run: str = next(step["run"] for step in steps if step.get("id") == "classroom")
+    return "set -eo pipefail\n" + run
+
+
+@LOCKS
+@pytest.mark.parametrize(("source", "status"), [(FORWARD, 1), (FORWARD.replace("0.3", "0.4"), 0)])
+@pytest.mark.parametrize("service", WORKFLOWS)
+def test_what_a_workflow_calls_is_there(tmp_path: Path, service: str, source: str, status: int) -> None:
+    """Its script in a student's repository, with this Python as ``python``."""
+    text = (
+        QUICK
+        if status
+        else QUICK.replace("check: reached, points: 3, after: runs,", "check: runs, id: again, points: 3,")
+    )
+    write_assignment(tmp_path / "tasks" / "one", text)
+    (tmp_path / "controller.py").write_text(source)
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    (programs / "python").chmod(0o755)
+    out = {"GITHUB_OUTPUT": "output", "GITHUB_STEP_SUMMARY": "summary.md", "RUNNER_TEMP": ""}
+    done = subprocess.run(
+        [shutil.which("bash") or "/bin/sh", "-c", script(service)],
+        cwd=tmp_path,
+        env=os.environ
+        | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+        | {key: str(tmp_path / name) for key, name in out.items()},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == status, done.stderr
+    assert "of 6 points" in done.stdout
+    assert ElementTree.parse(tmp_path / "junit.xml").getroot().tag == "testsuites"
+    if service == "github":
+        assert "| Test | Outcome | Points |" in (tmp_path / "summary.md").read_text()
+        name, _, encoded = (tmp_path / "output").read_text().partition("=")
+        assert name == "result"
+        assert json.loads(base64.b64decode(encoded))["max_score"] == 6
+
+
+def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_assignment(tmp_path / "tasks" / "one")
+    monkeypatch.chdir(tmp_path)
+    asked = ("--assignment", "tasks/one", "--kit", "https://example.org/somebody/kit@v1")
+    assert invoke("ci", "github", *asked, "--write")[0] == 0
+    assert (tmp_path / ".github/workflows/grade.yml").read_text() == made("github")[0]
+    code, text = invoke("ci", "github", *asked, "--write")
+    assert (code, "there already" in text) == (2, True)
+    code, text = invoke("ci", "gitlab", "--assignment", str(tmp_path / "tasks" / "one"), *asked[2:])
+    assert (code, "relative" in text) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["robot-learning-kit", "https://x/y; rm -r /", "https://x/y@$(id)", "git@x:y", "https://x/y@-o"],
+)
+def test_an_address_that_a_shell_would_read_is_refused(address: str) -> None:
+    with pytest.raises(ValueError, match="https://HOST/PATH"):
+        Source.read(address)
