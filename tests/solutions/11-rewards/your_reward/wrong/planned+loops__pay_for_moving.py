@@ -1,0 +1,5 @@
+"""A reward."""
+
+
+def reward(move, reached, collided):
+    return (0.5 if move == 1 else 0.0) + 5.0 * reached - 5.0 * collided
