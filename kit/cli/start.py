@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 WAYS: Final = (
     ("kit lesson", "the lessons: predict, run, explain, change, make"),
     ("kit play", "drive: any map, any controller"),
+    ("kit game", "levels, stars, ghosts, races"),
     ("kit train turn", "have an agent learn to drive"),
     ("kit layers", "plan a world's collision layers"),
     ("kit quiz", "find out what you know; kit quiz --today: what is due"),

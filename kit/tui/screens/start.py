@@ -88,6 +88,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "it finds its own way"
+        if view.failure is not None:
+            driver = "nobody drives"
         return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
 
     def _show_menu(self) -> None:
@@ -184,6 +186,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
                 doors=sockets_folder(desk.folder),
             )
         )
+
+    async def _open_levels(self) -> None:
+        from kit.school.progress import ProgressError
+        from kit.tui.screens.levels import LevelsScreen
+
+        try:
+            progress = await to_thread(self._school.progress)
+            screen = LevelsScreen(self._look, progress, self._school.desk)
+        except (ProgressError, FileNotFoundError) as error:
+            self.app.push_screen(Page("The levels cannot be opened", wrapped(str(error))))
+            return
+        await self._visit(screen)
 
     async def _open_train(self) -> None:
         from kit.tui.screens.trainings import choose_training

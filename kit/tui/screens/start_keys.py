@@ -28,6 +28,7 @@ MENU: Final = (
     Item("continue", "Continue", ""),
     Item("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
     Item("drive", "Drive", "Any map and any controller, your own too."),
+    Item("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
     Item("train", "Train", "Have an agent learn to drive, and watch it learn."),
     Item("layers", "Layers", "Who collides, who sees whom: the fewest layers that do it."),
     Item("quiz", "Quiz", "What do you know, and how sure are you?"),
@@ -35,17 +36,16 @@ MENU: Final = (
 )
 
 START_KEYS: Final = key_line(
-    ("Enter", "opens"),
-    ("1-7", "or"),
+    ("Enter 1-8", "open"),
     ("Tab", "choose"),
-    ("←↑↓→", "drive the robot"),
+    ("←↑↓→", "drive"),
     ("?", "help"),
     ("^C", "leave"),
 )
 START_HELP: Final = key_page(
     (
         ("Enter", "opens what is chosen: at first, where you go on"),
-        ("1 to 7", "opens that line of the menu"),
+        ("1 to 8", "opens that line of the menu"),
         ("Tab  Shift-Tab", "chooses the next line, the one before"),
     ),
     (

@@ -1,0 +1,149 @@
+"""A student in a real terminal of 80x24: from the start screen into a lesson, through it, away and back again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from kit.school.progress import Kind, Progress
+from tests.tui.lesson_folder import write_lessons, write_solutions
+from tests.tui.test_play_pty import KIT, ROBOT, User
+from tests.tui.test_world_view_pty import cpu_seconds, run_on
+
+PROGRAM = str(Path(__file__).parent / "programs" / "lesson_app.py")
+PATIENCE = 60.0
+
+Open = Callable[..., User]
+
+
+@pytest.fixture
+def opened() -> Iterator[Open]:
+    made: list[User] = []
+
+    def run(*arguments: str) -> User:
+        user = User(*arguments)
+        made.append(user)
+        return user
+
+    yield run
+    for user in made:
+        user.close()
+
+
+@pytest.fixture
+def lesson(opened: Open, tmp_path: Path) -> Callable[[], User]:
+    """Opens the lesson of the tests, always with the same workspace."""
+    folders = write_lessons(tmp_path / "lessons"), write_solutions(tmp_path / "solutions"), tmp_path / "home"
+    return lambda: opened(PROGRAM, *map(str, folders))
+
+
+def sees(user: User, wanted: str) -> None:
+    user.until(lambda: wanted in user.text, wanted, PATIENCE)
+
+
+def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
+    lesson: Callable[[], User], tmp_path: Path
+) -> None:
+    user = lesson()
+    sees(user, "stands still until you choose")
+    user.until(lambda: ROBOT.search(user.text), "the robot", PATIENCE)
+    user.send(b"2")
+    sees(user, "Only a wall makes it turn.")
+    user.send(b"n")
+    sees(user, "step 2 of 5")
+    user.send(b"o")
+    sees(user, "arrows, Enter chooses")
+    user.send(b"\r")
+    sees(user, "Enter goes back.")
+    assert "roundabout" in user.text
+    user.send(b"\r")
+    sees(user, "step 2 of 5")
+    user.send(b"n")
+    sees(user, "It goes round.")
+    user.send(b"n")
+    file = tmp_path / "home" / "lessons" / "01-colours" / "colour" / "answers.yaml"
+    sees(user, "Save the file")
+    assert str(file) in "".join(line.strip() for line in user.text.splitlines())
+    file.write_text("colour: red\n")
+    sees(user, "That one means stop.")
+    user.send(b"h")
+    sees(user, "Hint 1 (2 more): Look up.")
+    file.write_text("colour: green\n")
+    sees(user, "Passed:")
+    assert "step 4 of 5" in user.text
+    user.send(b"s")
+    sees(user, "# go")
+    user.send(b"q")
+    sees(user, "Passed:")
+    user.send(b"n")
+    sees(user, "step 5 of 5")
+    user.send(b"\x03")
+    assert user.wait() == 0
+    user.assert_sane()
+    again = lesson()
+    sees(again, "step 5 of 5 ████▒")
+    again.send(b"r")
+    sees(again, "Checking...")
+    again.send(b"\x03")
+    assert again.wait() == 0
+    again.assert_sane()
+    with Progress(tmp_path / "home") as progress:
+        kinds = [event.kind for event in progress.events()]
+        attempts = [event.content["verdict"] for event in progress.events(Kind.ATTEMPT)]
+    assert kinds.count(Kind.PREDICTION) == 1
+    assert kinds.count(Kind.STEP) == 3
+    assert attempts == ["fail", "pass"]
+    assert kinds.count(Kind.HINT) == kinds.count(Kind.SOLUTION) == 1
+
+
+def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[], User]) -> None:
+    user = lesson()
+    sees(user, "stands still until you choose")
+    user.send(b"1n")
+    sees(user, "It goes ahead")
+    user.send(b"n")
+    sees(user, "step 2 of 5")
+    user.send(b"o")
+    sees(user, "arrows, Enter chooses")
+    user.send(b"\x1b[B\r")
+    sees(user, "$ kit keys")
+    user.until(lambda: "$ kit keys" not in user.text and user.modes.alternate, "the key test", PATIENCE)
+    run_on(user, 0.5)
+    user.send(b"\x03")
+    sees(user, "step 2 of 5")
+    user.send(b"\x03")
+    assert user.wait() == 0
+    user.assert_sane()
+
+
+def test_a_step_that_is_read_costs_nothing(lesson: Callable[[], User]) -> None:
+    user = lesson()
+    sees(user, "stands still until you choose")
+    user.send(b"1n")
+    sees(user, "It goes ahead")
+    user.send(b"nn")
+    sees(user, "It goes round.")
+    run_on(user, 1.0)
+    before, cpu = len(user.output), cpu_seconds(user.process.pid)
+    run_on(user, 2.0)
+    assert len(user.output) == before
+    assert cpu_seconds(user.process.pid) - cpu <= 0.15
+
+
+def test_a_new_student_drives_with_an_arrow_key_and_is_in_a_lesson_with_enter(opened: Open) -> None:
+    user = opened(KIT)
+    sees(user, "Lessons")
+    user.until(lambda: ROBOT.search(user.text), "the robot", PATIENCE)
+    user.send(b"\x1b[A")
+    sees(user, "you drive")
+    user.send(b"\r")
+    sees(user, "step 1 of")
+    user.send(b"\x1b")
+    sees(user, "Lesson 1")
+    user.send(b"8")
+    sees(user, "kit progress export FILE")
+    user.send(b"\x03")
+    assert user.wait() == 0
+    user.assert_sane()
