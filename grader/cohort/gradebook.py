@@ -7,10 +7,9 @@ import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import datetime
 from typing import Any, Final
 
-from grader.cohort.late import LatePolicy
+from grader.cohort.late import Arrival, LatePolicy
 from grader.cohort.queue import Queue
 from grader.result import Status, Verdict, amount
 from grader.writers.cleaning import cell, one_line
@@ -39,17 +38,17 @@ class Row:
 
 
 def rows(
-    queue: Queue, policy: LatePolicy | None = None, times: Mapping[str, datetime] | None = None
+    queue: Queue, policy: LatePolicy | None = None, arrivals: Mapping[str, Arrival] | None = None
 ) -> tuple[Row, ...]:
-    """In the order of names."""
-    return tuple(sorted(_rows(queue, policy, times or {}), key=lambda row: row.name))
+    """One for each submission, in the order of names."""
+    return tuple(sorted(_rows(queue, policy, arrivals or {}), key=lambda row: row.name))
 
 
-def _rows(queue: Queue, policy: LatePolicy | None, times: Mapping[str, datetime]) -> Iterator[Row]:
+def _rows(queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, Arrival]) -> Iterator[Row]:
     most = round(queue.assignment().max_points, 6)
     for entry in queue.entries():
-        at = times.get(entry.name)
-        kept = policy.kept(at) if policy is not None and at is not None else 1.0
+        came = arrivals.get(entry.name)
+        kept = policy.kept(came.at) if policy is not None and came is not None else 1.0
         if entry.key is None:
             yield Row(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
             continue

@@ -62,18 +62,32 @@ def read_policy(file: Path) -> LatePolicy:
     return policy
 
 
-def read_times(file: Path) -> Mapping[str, datetime]:
-    """When each submission came: a CSV file with the columns ``name`` and ``submitted``. Raises ValueError, OSError."""
-    times = {}
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """When a submission came, and whose it is."""
+
+    at: datetime
+    student: str
+    """By default its own name."""
+
+
+def read_arrivals(file: Path) -> Mapping[str, Arrival]:
+    """A CSV file with the columns ``name`` and ``submitted``, and ``student`` where some hand in more than once.
+
+    Raises ValueError, OSError.
+    """
+    arrivals = {}
     with file.open(newline="", encoding="utf-8-sig") as opened:
         for number, row in enumerate(csv.DictReader(opened), 2):
-            at = moment(row.get("submitted") or "")
-            if at is None or not row.get("name"):
+            name, at = row.get("name") or "", moment(row.get("submitted") or "")
+            if at is None or not name:
                 raise ValueError(
                     f"{file}:{number}: a row needs a name and a time such as 2026-11-30T23:59:00+01:00"
                 )
-            times[row["name"]] = at
-    return times
+            if name in arrivals:
+                raise ValueError(f"{file}:{number}: {name} is there twice")
+            arrivals[name] = Arrival(at, (row.get("student") or "").strip() or name)
+    return arrivals
 
 
 def moment(text: str) -> datetime | None:

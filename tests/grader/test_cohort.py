@@ -17,11 +17,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from grader.__main__ import main
 from grader.cohort import gradebook
+from grader.cohort.choice import RULES, chosen
 from grader.cohort.executors import CannotRun, by_dask, by_slurm, locally, slurm_script, work_key
 from grader.cohort.gradebook import Row, as_csv, as_json, changes, rows
-from grader.cohort.late import LatePolicy, moment, read_policy, read_times
+from grader.cohort.late import Arrival, LatePolicy, moment, read_arrivals, read_policy
 from grader.cohort.queue import Queue, QueueError, key_of, prepare
 from grader.cohort.work import Pool, work
 from grader.reading import read
@@ -165,7 +168,7 @@ def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: P
     policy_file.write_text("due: 2026-11-30T12:00:00\nper_day: 0.5\n")
     times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00\ns1,2026-11-30T11:00:00\n")
     results = {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
-    table = {row.name: row for row in rows(queue, read_policy(policy_file), read_times(times_file))}
+    table = {row.name: row for row in rows(queue, read_policy(policy_file), read_arrivals(times_file))}
     assert (table["s2"].kept, table["s1"].kept) == (0.5, 1.0)
     assert table["s2"].final == table["s2"].points / 2  # type: ignore[operator]  # it has a grade
     assert results == {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
@@ -174,8 +177,56 @@ def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: P
         read_policy(policy_file)
     times_file.write_text("name,submitted\ns2,never\n")
     with pytest.raises(ValueError, match=r"times\.csv:2"):
-        read_times(times_file)
+        read_arrivals(times_file)
     assert moment("2026-11-30T12:00:00+01:00") == datetime(2026, 11, 30, 11, tzinfo=UTC)
+
+
+def handed(name: str, final: float | None, kept: float = 1.0, note: str = "") -> Row:
+    return Row(name, "fail", final, 10.0, kept, final, {}, {}, note, "")
+
+
+@pytest.mark.parametrize(("rule", "counts"), [("latest", "ada-3"), ("in-time", "ada-2"), ("best", "ada-1")])
+def test_one_of_several_submissions_counts(rule: str, counts: str) -> None:
+    table = [
+        *(handed("ada-1", 9.0), handed("ada-2", 5.0), handed("ada-3", 4.0, kept=0.5), handed("bob", 1.0)),
+        handed("eve-1", 2.0, note="bumps"),
+    ]
+    arrivals = {
+        row.name: Arrival(DUE + timedelta(hours=hour), row.name.partition("-")[0])
+        for hour, row in enumerate(table)
+        if row.name != "bob"
+    }
+    ada, bob, eve = chosen(table, arrivals, rule)
+    assert (ada.name, ada.note) == ("ada", f"{counts}, {RULES[rule][0]} of 3")
+    assert ada.final == {row.name: row.final for row in table}[counts]
+    assert (bob.name, bob.final, eve.name, eve.note) == ("bob", 1.0, "eve", "bumps")
+    assert chosen(table[::-1], arrivals, rule) == (ada, bob, eve)
+    with pytest.raises(ValueError, match="zoe"):
+        chosen(table, arrivals | {"zoe": arrivals["eve-1"]}, rule)
+
+
+def test_a_submission_without_a_grade_is_not_passed_over() -> None:
+    table = [handed("ada-1", 9.0), handed("ada-2", None)]
+    arrivals = {row.name: Arrival(DUE, "ada") for row in table}
+    assert chosen(table, arrivals, "best")[0].final is None
+
+
+def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_path: Path) -> None:
+    times, late = tmp_path / "times.csv", tmp_path / "late.yaml"
+    times.write_text(
+        "name,submitted,student\ns0,2026-11-30T11:00:00,ada\ns1,2026-11-29T11:00:00,ada\ns2,2026-11-29T11:00:00,\n"
+    )
+    late.write_text("due: 2026-11-30T12:00:00\n")
+    book = ["gradebook", str(queue.folder), "--times", str(times), "--late", str(late), "--json"]
+    done = CliRunner().invoke(main, book)
+    assert done.exit_code == 0
+    assert "3 without a time count as in time: broken, copy, link" in done.stderr
+    table = {row.name: row for row in gradebook.read_json(done.stdout)}
+    assert list(table) == ["ada", "broken", "copy", "link", "s2"]
+    assert table["ada"].note.startswith("s0, the latest of 2")
+    times.write_text("name,submitted\nnobody,2026-11-30T11:00:00\n")
+    done = CliRunner().invoke(main, book)
+    assert (done.exit_code, "nobody" in done.stderr) == (2, True)
 
 
 def test_an_array_job_works_off_its_shares(
