@@ -1,0 +1,122 @@
+"""Every command that a lesson prints and that opens a screen, or asks a world in another terminal, does so."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from kit.school.lessons.reading import lesson_names, lessons_folder, read
+from kit.school.lessons.records import Command, How, Lesson, Step
+from kit.school.lessons.works import lay_out, solution
+from kit.workspace import open_workspace
+from tests.tui.test_play_pty import KIT, User
+
+ENDLESS = ("echo", "hz", "bw")
+"""Words of verbs that listen until Ctrl-C."""
+
+
+def _found(how: How) -> dict[str, tuple[str, Step, Command]]:
+    """Each different command once, by the lesson that prints it first."""
+    return {
+        f"{command.place} {command.line}" if how is How.BESIDE else command.line: (name, step, command)
+        for name in reversed(lesson_names())
+        for step in read(lessons_folder() / name).steps
+        for command in step.commands
+        if command.how is how
+    }
+
+
+SCREENS = _found(How.SCREEN)
+BESIDE = _found(How.BESIDE)
+
+
+def _lesson(name: str) -> Lesson:
+    return read(lessons_folder() / name)
+
+
+def _filled(name: str, step: Step, line: str) -> list[str]:
+    """The command's arguments, with the student's own files laid out and solved."""
+    program, *arguments = shlex.split(_with_files(name, step, line))
+    assert program == "kit"
+    return arguments
+
+
+def _with_files(name: str, step: Step, line: str) -> str:
+    if step.exercise is None:
+        return line
+    lesson, workspace = _lesson(name), open_workspace()
+    file = lay_out(workspace, lesson, step.exercise)
+    for other, text in solution(lesson, step.exercise).items():
+        (file.parent / other).write_text(text)
+    return line.replace("{file}", str(file)).replace("{folder}", str(file.parent))
+
+
+@contextmanager
+def _screen(*arguments: str) -> Iterator[User]:
+    user = User(KIT, *arguments)
+    try:
+        user.until(
+            lambda: 1049 in user.modes.on and user.text.strip(),
+            f"the screen of kit {shlex.join(arguments)}",
+            90.0,
+        )
+        yield user
+    finally:
+        user.close()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("line", SCREENS, ids=[line.replace("{", "").replace("}", "") for line in SCREENS])
+def test_a_screen_opens_and_is_left_with_ctrl_c(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, step, command = SCREENS[line]
+    with _screen(*_filled(name, step, command.line)) as user:
+        for _ in range(40):
+            user.pump(0.05)
+        assert user.process.poll() is None, user.text
+        user.send(b"\x03")
+        assert user.wait() == 0, user.text
+        user.assert_sane()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("key", BESIDE, ids=[key.replace("{", "").replace("}", "") for key in BESIDE])
+def test_a_question_to_a_world_beside_is_answered(
+    key: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, step, command = BESIDE[key]
+    arguments = _filled(name, step, command.line)
+    place = shlex.split(_with_files(name, step, command.place))
+    with _screen("play", *place) as user:
+        user.until(lambda: "speed" in user.text, "the world", 90.0)
+        asking = subprocess.Popen(
+            [sys.executable, "-m", "kit", *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=os.environ,
+        )
+        endless = any(word in ENDLESS for word in arguments) and "--once" not in arguments
+        for _ in range(60 if endless else 2000):
+            user.pump(0.05)
+            if asking.poll() is not None:
+                break
+        if endless and asking.poll() is None:
+            asking.send_signal(signal.SIGINT)
+        out, error = asking.communicate(timeout=30)
+        assert asking.returncode in ((0, 130) if endless else (0,)), error + out
+        assert "Traceback" not in error
+        user.send(b"\x03")
+        assert user.wait() == 0

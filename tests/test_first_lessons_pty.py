@@ -1,0 +1,162 @@
+"""A scripted student goes through the first three lessons: on the full screen in a real terminal of 80x24, and line by
+line. Both ways lead to the same progress."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from kit.school.lessons.reading import lesson_names, lessons_folder, read, solutions_folder
+from kit.school.lessons.records import Exercise, Lesson, Step
+from kit.school.lessons.standing import Standing, standing
+from kit.school.lessons.works import folder_of, lay_out
+from kit.school.progress import Kind, Progress
+from kit.workspace import Workspace, open_workspace
+from tests.tui.test_play_pty import KIT, User
+
+FIRST = lesson_names()[:3]
+PATIENCE_S = 120.0
+
+
+@pytest.fixture
+def desk() -> Workspace:
+    return open_workspace()
+
+
+@pytest.fixture
+def user() -> Iterator[Callable[..., User]]:
+    made: list[User] = []
+
+    def run(*arguments: str) -> User:
+        made.append(User(KIT, *arguments))
+        return made[-1]
+
+    yield run
+    for each in made:
+        each.close()
+
+
+def solve(desk: Workspace, lesson: Lesson, exercise: Exercise) -> None:
+    """Writes what the reference solution says over the student's files."""
+    lay_out(desk, lesson, exercise)
+    folder = folder_of(desk, lesson, exercise)
+    found = solutions_folder() / lesson.name / exercise.name
+    single = found / f"solution{Path(exercise.file).suffix}"
+    files = {exercise.file: single} if single.is_file() else _below(found / "solution")
+    for name, file in files.items():
+        (folder / name).write_bytes(file.read_bytes())
+
+
+def _below(folder: Path) -> dict[str, Path]:
+    return {each.relative_to(folder).as_posix(): each for each in folder.rglob("*") if each.is_file()}
+
+
+def right(step: Step) -> int:
+    return 1 + next(number for number, option in enumerate(step.options) if option.right)
+
+
+def stand(desk: Workspace, lesson: Lesson) -> Standing:
+    with Progress(desk.folder) as progress:
+        return standing(lesson, progress.events())
+
+
+def reached(found: Standing) -> tuple[object, ...]:
+    """What both ways must agree on; how often one checked is nobody's business."""
+    return found.gone_through, found.predictions, found.passed, found.best, found.is_done
+
+
+def expected(lesson: Lesson) -> tuple[object, ...]:
+    return (
+        frozenset(step.number for step in lesson.steps if step.exercise is None),
+        {step.number: right(step) - 1 for step in lesson.steps if step.options},
+        frozenset(exercise.name for exercise in lesson.exercises),
+        {exercise.name: 1.0 for exercise in lesson.exercises},
+        True,
+    )
+
+
+def wait_for(condition: Callable[[], bool], user: User, what: str) -> None:
+    end = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < end, f"waited in vain for {what}:\n{user.text}"
+        user.pump(0.1)
+
+
+@pytest.mark.parametrize("name", FIRST)
+def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) -> None:
+    lesson = read(lessons_folder() / name)
+    screen = user("lesson", name)
+    count = len(lesson.steps)
+    for step in lesson.steps:
+        wait_for(
+            lambda step=step: f"step {step.number} of {count}" in screen.text, screen, f"step {step.number}"
+        )  # type: ignore[misc]
+        if step.options:
+            screen.send(str(right(step)).encode())
+            wait_for(
+                lambda step=step: step.number in stand(desk, lesson).predictions, screen, "the prediction"
+            )  # type: ignore[misc]
+        if step.exercise is not None:
+            solve(desk, lesson, step.exercise)
+            screen.send(b"r")
+            wait_for(
+                lambda step=step: step.exercise.name in stand(desk, lesson).passed,  # type: ignore[misc]
+                screen,
+                f"{step.exercise.name} to pass",
+            )
+        if step.number < count:
+            screen.send(b"n")
+    if lesson.steps[-1].exercise is None:
+        screen.send(b"n")
+        wait_for(lambda: stand(desk, lesson).is_done, screen, "the end")
+    screen.send(b"\x03")
+    assert screen.wait() == 0
+    screen.assert_sane()
+    assert reached(stand(desk, lesson)) == expected(lesson)
+
+
+@pytest.mark.parametrize("name", FIRST)
+def test_line_by_line(desk: Workspace, name: str) -> None:
+    lesson = read(lessons_folder() / name)
+    lines = []
+    for step in lesson.steps:
+        if step.options:
+            lines.append(str(right(step)))
+        if step.exercise is not None:
+            solve(desk, lesson, step.exercise)
+            lines.append("r")
+        lines.append("n")
+    done = subprocess.run(
+        [sys.executable, "-m", "kit", "lesson", name, "--plain"],
+        input="\n".join(lines) + "\n",
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stdout + done.stderr
+    assert "is done" in done.stdout
+    assert reached(stand(desk, lesson)) == expected(lesson)
+
+
+def test_a_step_is_not_gone_through_before_its_prediction(desk: Workspace) -> None:
+    lesson = read(lessons_folder() / FIRST[0])
+    done = subprocess.run(
+        [sys.executable, "-m", "kit", "lesson", "1", "--plain"],
+        input="n\nnonsense\n9\ng 99\nb\n?\nq\n",
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert "Traceback" not in done.stdout + done.stderr
+    with Progress(desk.folder) as progress:
+        assert progress.events(Kind.STEP) == progress.events(Kind.PREDICTION) == []
+    assert not stand(desk, lesson).is_begun
