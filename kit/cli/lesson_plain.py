@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import click
 
 from kit.host.reload import FileWatch
-from kit.school.lessons.checking import Report
+from kit.school.lessons.checking import Report, handed_in
 from kit.school.lessons.markup import parsed, plain, rows
 from kit.school.lessons.reading import WIDTH
 from kit.school.lessons.records import Command, Exercise, Scene, Step, StepKind
@@ -218,7 +218,7 @@ class PlainLesson:
 
     def _open(self, exercise: Exercise) -> None:
         file = self._visit.lay_out(exercise)
-        self._file = None if self._by_hand else FileWatch(file)
+        self._file = None if self._by_hand else FileWatch(handed_in(exercise, file))
         click.echo(f"Your file: {file}")
 
     def _ask(self, step: Step) -> None:

@@ -11,6 +11,7 @@ and then, and only when it says yes, ``close`` the old one and ``join`` the new.
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +21,8 @@ SETTLED_S: Final = 0.15
 """How long a file must look the same."""
 EMPTY_S: Final = 1.0
 """How long an empty file must: most are about to be filled."""
+MOST_FILES: Final = 200
+"""Of a folder."""
 LOOK_S: Final = 0.05
 """How often to look: asking more often costs nothing."""
 
@@ -33,7 +36,7 @@ class _Look(NamedTuple):
 
 
 class FileWatch:
-    """Notices when a file has been saved. ``clock`` gives seconds."""
+    """Notices when a file has been saved, or any file of a folder. ``clock`` gives seconds."""
 
     def __init__(self, file: Path, *, clock: Callable[[], float] = time.monotonic) -> None:
         self._file = file
@@ -61,7 +64,27 @@ class FileWatch:
 
     def _look(self) -> _Look | None:
         try:
+            if self._file.is_dir():
+                return _together(self._file)
             found = self._file.stat()
         except OSError:
             return None
         return _Look(found.st_mtime_ns, found.st_size, found.st_ino)
+
+
+def _together(folder: Path) -> _Look:
+    """A folder as if it were one file: what is hidden, such as an editor's own files, does not count."""
+    looks: list[_Look] = []
+    names_seen: list[str] = []
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(each for each in folders if not each.startswith((".", "__")))[:MOST_FILES]
+        for name in sorted(names)[: MOST_FILES - len(looks)]:
+            if not name.startswith("."):
+                found = Path(place, name).stat()
+                names_seen.append(name)
+                looks.append(_Look(found.st_mtime_ns, found.st_size, found.st_ino))
+    return _Look(
+        max((look.modified_ns for look in looks), default=0),
+        sum(look.size for look in looks),
+        hash((*names_seen, *looks)),
+    )

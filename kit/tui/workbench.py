@@ -6,7 +6,7 @@ import threading
 from pathlib import Path
 
 from kit.host.reload import FileWatch
-from kit.school.lessons.checking import Check, Report
+from kit.school.lessons.checking import Check, Report, handed_in
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.visit import Visit
 
@@ -25,7 +25,7 @@ class Workbench:
         self._visit = visit
         self.file: Path = visit.lay_out(exercise)
         """What the student edits."""
-        self._watch = FileWatch(self.file)
+        self._watch = FileWatch(handed_in(self.exercise, self.file))
         self._check: Check | None = None
 
     @property
@@ -46,7 +46,9 @@ class Workbench:
     def start(self) -> None:
         """Starts a check, unless one is running."""
         if self._check is None:
-            self._watch = FileWatch(self.file)  # what is checked now need not be checked once more
+            self._watch = FileWatch(
+                handed_in(self.exercise, self.file)
+            )  # what is checked now need not be checked once more
             self._check = self._visit.check(self.exercise)
 
     def look(self) -> bool:
@@ -69,7 +71,7 @@ class Workbench:
         """The exercise as at first; where the former files were kept. Raises WorkError."""
         self.close()
         kept = self._visit.begin_again(self.exercise)
-        self._watch = FileWatch(self.file)
+        self._watch = FileWatch(handed_in(self.exercise, self.file))
         return kept
 
     def close(self) -> None:

@@ -139,3 +139,28 @@ def test_the_old_version_drives_until_the_new_one_has_started(student: Student) 
     assert tick(new) == ["new"]
     assert [node.get_name() for node in graph.nodes] == ["desk", "greeter"]
     new.close()
+
+
+def test_of_a_folder_every_file_counts_but_hidden_ones(tmp_path: Path) -> None:
+    now = 0.0
+    (tmp_path / "maps").mkdir()
+    for name in ("world.yaml", "maps/hall.yaml"):
+        (tmp_path / name).write_text("one")
+    watch = FileWatch(tmp_path, clock=lambda: now)
+
+    def noticed() -> int:
+        nonlocal now
+        count = 0
+        for _ in range(100):
+            now += 0.02
+            count += watch.has_changed()
+        return count
+
+    assert noticed() == 0
+    (tmp_path / "maps" / ".hall.yaml.swp").write_text("an editor's")
+    assert noticed() == 0
+    (tmp_path / "maps" / "hall.yaml").write_text("two, longer")
+    assert noticed() == 1
+    (tmp_path / "world.yaml").rename(tmp_path / "other.yaml")
+    assert noticed() == 1
+    assert noticed() == 0

@@ -104,7 +104,7 @@ class Check:
             return
         if replay is not None:
             replay.unlink(missing_ok=True)
-        command = [sys.executable, "-m", "grader", "check", str(_handed_in(exercise, file))]
+        command = [sys.executable, "-m", "grader", "check", str(handed_in(exercise, file))]
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
         command += ["--replay", str(replay)] if replay is not None else []
         try:
@@ -193,7 +193,7 @@ def check(exercise: Exercise, file: Path, *, replay: Path | None = None) -> Repo
         return running.wait()
 
 
-def _handed_in(exercise: Exercise, file: Path) -> Path:
+def handed_in(exercise: Exercise, file: Path) -> Path:
     """The file, or the folder it came in where the starter is a folder."""
     return file.parent if (exercise.folder / "starter").is_dir() else file
 
