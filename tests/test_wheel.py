@@ -11,6 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons.reading import find_lesson, lesson_names
+from kit.school.lessons.works import folder_of
+from kit.workspace import open_workspace
+
 ROOT = Path(__file__).parent.parent
 
 
@@ -31,6 +35,13 @@ def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
     assert {
         name.split("/")[3] for name in names if name.count("/") > 3 and name.startswith("kit/data/maps/")
     } >= shipped
+    for folder, data in (("lessons", "lessons"), ("tests/solutions", "solutions")):
+        here = {
+            f"kit/data/{data}/{file.relative_to(ROOT / folder).as_posix()}"
+            for file in (ROOT / folder).rglob("*")
+            if file.is_file() and "__pycache__" not in file.parts
+        }
+        assert here <= set(names), sorted(here - set(names))
     assert not [name for name in names if name.startswith(("tests/", "maps/", "lessons/"))]
 
 
@@ -64,3 +75,35 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     )
     assert run.returncode == 0, run.stderr
     assert "300" in run.stdout
+    listed = _said(python, tmp_path, environment, "lesson")
+    assert all(name.partition("-")[0] in listed for name in lesson_names())
+    lesson = find_lesson("2")
+    exercise = lesson.exercises[0]
+    file = folder_of(open_workspace(tmp_path / "workspace"), lesson, exercise) / exercise.file
+    number = next(step.number for step in lesson.steps if step.exercise is exercise)
+    walked = subprocess.run(
+        [python, "-m", "kit", "lesson", "2", "--plain"],
+        input=f"g {number}\nr\nq\n",
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=240,
+    )
+    assert walked.returncode == 0, walked.stderr
+    assert file.is_file()
+    assert " points, in " in walked.stdout
+    assert "stars" in _said(python, tmp_path, environment, "game", "--plain")
+
+
+def _said(python: Path, folder: Path, environment: dict[str, str], *arguments: str) -> str:
+    return subprocess.run(
+        [python, "-m", "kit", *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    ).stdout
