@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.calls import Call
+from grader.own import OwnTest
 from grader.result import Visibility
 from grader.scoring import Anchors
 from kit.geometry import Pose
@@ -117,10 +118,13 @@ class Assignment:
     version: str
     """A digest of the folder's files: any change makes another one."""
     has_secrets: bool
+    own_tests: tuple[OwnTest, ...] = ()
+    """The teacher's, in the order of their files."""
+    own_files: tuple[Path, ...] = ()
 
     @property
     def max_points(self) -> float:
-        return sum(criterion.points for criterion in self.criteria)
+        return sum(each.points for each in (*self.criteria, *self.own_tests))
 
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)

@@ -15,6 +15,7 @@ from typing import Any, Final, Protocol
 
 from grader.assignment import Assignment, Criterion, Seeds
 from grader.kinds.contract import sort_of
+from grader.own import judged
 from grader.result import Episode, Result, Status, Test, Timing
 from grader.submission import Submission
 from kit.host.confine import Level
@@ -119,6 +120,7 @@ class Grading:
     def result(self) -> Result:
         """All criteria judged."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
+        tests += judged(self, self.assignment.own_tests, self.assignment.own_files)
         seen = self._gatherer.all()
         if any(each.failure is not None and each.failure.kind in FROM_OUTSIDE for each in seen):
             time.sleep(LAST_WORD_S)

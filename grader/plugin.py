@@ -4,7 +4,8 @@ It collects ``assignment.yaml``, one item per criterion, and nothing of the stud
 another process runs. A criterion that fails is a failure; a grader that breaks is an error, not the student's; what
 is judged only with secret seeds is skipped. Points stand in the items' properties, and so in a JUnit report.
 
-A teacher's own tests beside the assignment (``test_*.py``) get the fixture ``grading``: recordings the grader made.
+A teacher's own tests beside the assignment (``test_*.py``) get the fixture ``grading``: recordings the grader made. What
+they are worth says ``@pytest.mark.points(3)``; see ``grader.own``.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import pytest
 from grader.archives import Refused
 from grader.assignment import Assignment, Criterion
 from grader.grading import Grading
+from grader.own import MARK, MARK_HELP
 from grader.reading import SHEET, read
 from grader.result import Status, Test, amount
 from grader.session import LevelTooLow, Terms, opened
@@ -134,6 +136,7 @@ GRADINGS = pytest.StashKey[Gradings]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", MARK_HELP)
     config.stash[GRADINGS] = Gradings(config)
 
 
@@ -148,6 +151,13 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """A grader that breaks is an error in the report (as in a fixture), never a failure of the student's."""
     report = yield
+    mark = item.get_closest_marker(MARK)
+    if mark is not None and mark.args and report.when == "call":
+        item.user_properties += [
+            ("points", amount(mark.args[0] if report.passed else 0.0)),
+            ("max_points", amount(mark.args[0])),
+        ]
+        report.user_properties = list(item.user_properties)
     if (
         isinstance(item, CriterionItem)
         and call.excinfo is not None

@@ -15,6 +15,7 @@ from typing import Any, Final
 from grader.assignment import HINT_STEPS, Assignment, Criterion, Seeds, Trial
 from grader.checks.contract import Check
 from grader.kinds.contract import Sheet, kinds, sort_of
+from grader.own import OwnTest, declared
 from grader.result import Visibility
 from grader.scoring import Anchors
 from kit.host.confine import Level
@@ -68,6 +69,7 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
     if kind not in kinds():
         return None  # what the rest should say depends on the kind
     sort = sort_of(kind)
+    own_files = tuple(_own_files(section, folder))
     task = sort.read(Sheet(folder, section, secrets))
     made = Assignment(
         folder=folder,
@@ -82,11 +84,37 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
         task=task.content,
         version=digest(folder),
         has_secrets=secrets is not None,
+        own_tests=tuple(_own_tests(section, own_files)),
+        own_files=own_files,
     )
     section.finish()
     if secrets is not None:
         secrets.finish()
     return made
+
+
+def _own_files(section: Section, folder: Path) -> Iterator[Path]:
+    """The files with the teacher's own tests."""
+    for name in section.texts("tests", ()):
+        if "/" in name or not name.startswith("test_") or not (folder / name).is_file():
+            section.error(f"{quoted(name)} must be a file test_*.py in this folder", "tests")
+        else:
+            yield folder / name
+
+
+def _own_tests(section: Section, files: tuple[Path, ...]) -> Iterator[OwnTest]:
+    known: set[str] = set()
+    for file in files:
+        try:
+            found = tuple(declared(file))
+        except (ValueError, OSError, SyntaxError) as error:
+            section.error(str(error), "tests")
+            continue
+        for each in found:
+            if each.id in known:
+                section.error(f"two tests are called {quoted(each.id)}", "tests")
+            known.add(each.id)
+            yield each
 
 
 def _file_name(section: Section, endings: tuple[str, ...]) -> str:

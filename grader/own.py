@@ -1,0 +1,188 @@
+"""A teacher's own tests, for points: functions ``test_*`` in files that ``assignment.yaml`` names under ``tests``.
+
+They are pytest's, get the fixture ``grading``, and look at recordings that the grader made::
+
+    @pytest.mark.points(3, hints=["Drive on the right."])
+    def test_keeps_to_the_right(grading):
+        \"\"\"The robot left its side of the corridor.\"\"\"
+        assert all((drive.track[:, 0] > 0.4).all() for drive in grading.evidence("runs"))
+
+The docstring is the feedback, unless the assertion has a message of its own: what a test says of itself may be told, its
+source may not. No file but those named is ever imported: whoever hands in may work in the assignment's folder.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from grader.result import Status, Test, Visibility
+
+if TYPE_CHECKING:
+    import pytest
+
+    from grader.grading import Grading
+
+MARK: Final = "points"
+MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's own test is worth"
+
+
+@dataclass(frozen=True, slots=True)
+class OwnTest:
+    """One test function, as its file declares it."""
+
+    id: str
+    points: float
+    feedback: str = ""
+    visibility: Visibility = Visibility.VISIBLE
+    hints: tuple[str, ...] = ()
+
+    @property
+    def title(self) -> str:
+        words = self.id.removeprefix("test_").replace("_", " ").strip()
+        return words[:1].upper() + words[1:]
+
+
+def declared(file: Path) -> Iterator[OwnTest]:
+    """The tests of a file, which is read and not run. Raises ValueError, OSError, SyntaxError."""
+    for node in ast.parse(file.read_text(encoding="utf-8"), file.name).body:
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+            marks = [each for each in node.decorator_list if isinstance(each, ast.Call) and _is_mark(each)]
+            yield _declared(node, marks[0] if marks else None, file)
+
+
+def _is_mark(call: ast.Call) -> bool:
+    return isinstance(call.func, ast.Attribute) and call.func.attr == MARK
+
+
+def _declared(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> OwnTest:
+    said = " ".join((ast.get_docstring(node) or "").split())
+    if mark is None:
+        return OwnTest(node.name, 0.0, said)
+    try:
+        (points,) = map(ast.literal_eval, mark.args)
+        more = {word.arg: ast.literal_eval(word.value) for word in mark.keywords}
+        made = OwnTest(
+            node.name,
+            float(points),
+            said,
+            Visibility(more.pop("visibility", Visibility.VISIBLE.value)),
+            tuple(map(str, more.pop("hints", ()))),
+        )
+    except (ValueError, TypeError):
+        more = {"?": None}
+    if more or not 0.0 <= made.points <= 1e6:
+        raise ValueError(
+            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, a visibility and hints"
+        )
+    return made
+
+
+@dataclass(eq=False)
+class _Session:
+    """A pytest plugin that lends the grading out and notes what came of each test."""
+
+    grading: Grading
+    outcomes: dict[str, list[tuple[Status, str]]] = field(default_factory=dict)
+
+    def note(self, item: Any, status: Status, said: str) -> None:
+        name = getattr(item, "originalname", None) or item.name
+        self.outcomes.setdefault(name, []).append((status, said))
+
+
+def judged(grading: Grading, tests: Sequence[OwnTest], files: Sequence[Path]) -> tuple[Test, ...]:
+    """Runs the tests in this process. What breaks in them is the teacher's and costs no student a point."""
+    if not tests:
+        return ()
+    session = _Session(grading)
+    folder = grading.assignment.folder
+    with _alone():
+        import pytest
+
+        pytest.main(
+            [
+                *("-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"),
+                *("-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib", *map(str, files)),
+            ],
+            plugins=[_plugin(session)],
+        )
+    return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)
+
+
+@contextmanager
+def _alone() -> Iterator[None]:
+    """No plugin but pytest's own, whatever is installed or asked for elsewhere."""
+    before = dict(os.environ)
+    for name in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
+        os.environ.pop(name, None)
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+def _plugin(session: _Session) -> object:
+    """Made when it is needed: a grader that runs no such test imports no pytest."""
+    import pytest
+
+    class Plugin:
+        def pytest_configure(self, config: pytest.Config) -> None:
+            config.addinivalue_line("markers", MARK_HELP)
+
+        @pytest.fixture(scope="session")
+        def grading(self) -> Grading:
+            return session.grading
+
+        @pytest.hookimpl(wrapper=True)
+        def pytest_runtest_makereport(
+            self, item: pytest.Item, call: pytest.CallInfo[None]
+        ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+            report = yield
+            if call.excinfo is None:
+                if call.when == "call":
+                    session.note(item, Status.PASS, "")
+            elif call.excinfo.errisinstance(pytest.skip.Exception):
+                session.note(item, Status.SKIPPED, str(call.excinfo.value))
+            elif call.when == "call" and call.excinfo.errisinstance((AssertionError, pytest.fail.Exception)):
+                session.note(item, Status.FAIL, _own_words(str(call.excinfo.value)))
+            else:
+                session.note(item, Status.GRADER_ERROR, str(report.longrepr))
+            return report
+
+    return Plugin()
+
+
+def _own_words(message: str) -> str:
+    """An assertion's own message, without what pytest adds: that is the test's source."""
+    return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
+
+
+def _test(own: OwnTest, outcomes: Sequence[tuple[Status, str]]) -> Test:
+    """Several outcomes are those of several parameters: each is worth its share."""
+    statuses = [status for status, _ in outcomes]
+    blank = Test(own.id, own.title, Status.SKIPPED, 0.0, own.points, own.visibility)
+    if not outcomes or Status.GRADER_ERROR in statuses:
+        log = next((said for status, said in outcomes if status is Status.GRADER_ERROR), "It did not run.")
+        broken = "The grader broke here; that is not your fault and costs no points. Your teacher is told."
+        return replace(blank, status=Status.GRADER_ERROR, rationale=broken, log=log)
+    if set(statuses) == {Status.SKIPPED}:
+        return replace(blank, rationale=outcomes[0][1])
+    judged = [each for each in statuses if each is not Status.SKIPPED]
+    share = judged.count(Status.PASS) / len(judged)
+    if share == 1.0:
+        return replace(blank, status=Status.PASS, points=own.points)
+    said = next((words for status, words in outcomes if status is Status.FAIL and words), own.feedback)
+    return replace(
+        blank,
+        status=Status.PARTIAL if share > 0 else Status.FAIL,
+        points=round(own.points * share, 6),
+        rationale=said or f"“{own.title}” does not hold.",
+        hints=own.hints,
+    )
