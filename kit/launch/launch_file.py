@@ -15,15 +15,18 @@ from kit.host.limits import DESK, MIB
 from kit.host.output import Printed
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.wire import Json, ProtocolError
+from kit.launch.programs import DESK_BOUNDS, Bounds
 from kit.launch.requests import Argument, Request, parse_request
 from kit.ros.packages import SEARCH_VARIABLE
 
 LIMITS: Final = replace(DESK, reply_s=10.0, frame=16 * MIB)
 
 
-def declared_arguments(file: Path, folder: Path, search: Sequence[Path]) -> list[Argument]:
+def declared_arguments(
+    file: Path, folder: Path, search: Sequence[Path], bounds: Bounds = DESK_BOUNDS
+) -> list[Argument]:
     """The arguments that a launch file declares, without carrying it out. Raises GuestError."""
-    with _child(file, folder, search, {}, only_arguments=True) as child:
+    with _child(file, folder, search, {}, bounds, only_arguments=True) as child:
         requests = _requests(child, child.started())
     return [request for request in requests if isinstance(request, Argument)]
 
@@ -32,9 +35,14 @@ class LaunchFile:
     """One run of a launch file. Starts at once; ``begin`` waits. Whatever goes wrong is raised as GuestError."""
 
     def __init__(
-        self, file: Path, folder: Path, search: Sequence[Path], arguments: Mapping[str, str]
+        self,
+        file: Path,
+        folder: Path,
+        search: Sequence[Path],
+        arguments: Mapping[str, str],
+        bounds: Bounds = DESK_BOUNDS,
     ) -> None:
-        self._child = _child(file, folder, search, arguments, only_arguments=False)
+        self._child = _child(file, folder, search, arguments, bounds, only_arguments=False)
         self.wake_ns: int | None = None
         """When it wants to go on by itself, in the launch's time."""
 
@@ -60,12 +68,26 @@ class LaunchFile:
 
 
 def _child(
-    file: Path, folder: Path, search: Sequence[Path], arguments: Mapping[str, str], *, only_arguments: bool
+    file: Path,
+    folder: Path,
+    search: Sequence[Path],
+    arguments: Mapping[str, str],
+    bounds: Bounds,
+    *,
+    only_arguments: bool,
 ) -> Child:
-    environment = {**os.environ, SEARCH_VARIABLE: os.pathsep.join(map(str, search))}
-    installed = Installed(folder, Path.cwd(), environment)
+    # Whoever bounds a launch does not let it see the environment, nor be where the user is.
+    is_desk = bounds.file_limits is None
+    environment = dict(os.environ) if is_desk else {}
+    installed = Installed(
+        folder,
+        Path.cwd() if is_desk else folder,
+        {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
+    )
     start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}
-    return Child("launch", file, start, limits=LIMITS, installed=installed)
+    return Child(
+        "launch", file, start, limits=bounds.file_limits or LIMITS, level=bounds.level, installed=installed
+    )
 
 
 def _requests(child: Child, frame: Frame | None) -> list[Request]:

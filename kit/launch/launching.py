@@ -15,7 +15,7 @@ from kit.launch.finding import LaunchTarget
 from kit.launch.launch_file import LaunchFile
 from kit.launch.problems import CannotStart
 from kit.launch.processes import Ended, Process
-from kit.launch.programs import Means, is_ours, start
+from kit.launch.programs import DESK_BOUNDS, Bounds, Means, is_ours, start
 from kit.launch.requests import End, EndAll, Listen, Request, Say, Start
 from kit.launch.world import WorldWanted
 from kit.ros.graph import Graph
@@ -64,6 +64,7 @@ class Launch:
         seed: int = 0,
         workspace: Path | None = None,
         name: str = "",
+        bounds: Bounds = DESK_BOUNDS,
         say: Callable[[Line], None] = lambda line: None,
     ) -> None:
         self.target = target
@@ -86,7 +87,9 @@ class Launch:
             self._want_view,
             workspace,
             name,
+            bounds,
         )
+        self._started = 0
         self._waiting: list[Start] = []
         self._running: dict[int, _Running] = {}
         self._happened: list[Json] = []
@@ -94,7 +97,7 @@ class Launch:
         self._clock_ns = 0
         self._seen_ns = graph.now_ns
         self._looked_s = 0.0
-        self._file = LaunchFile(target.file, target.folder, target.search, arguments or {})
+        self._file = LaunchFile(target.file, target.folder, target.search, arguments or {}, bounds)
 
     def begin(self) -> None:
         """Reads the launch file and notes what it wants at once; what the kit has itself is there at once.
@@ -194,7 +197,11 @@ class Launch:
     def _start_waiting(self, which: Callable[[Start], bool] = lambda request: True) -> None:
         chosen = [request for request in self._waiting if which(request)]
         self._waiting = [request for request in self._waiting if not which(request)]
+        most = self._means.bounds.most
         for request in chosen:
+            self._started += 1
+            if most is not None and self._started > most:
+                raise CannotStart(f"{request.where}more than {most} processes are started")
             process = start(request, self._means)
             self._running[request.number] = _Running(request, process)
             self._happened.append(["started", request.number, process.pid])

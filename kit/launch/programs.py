@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from kit.host.confine import DESK_LEVEL, Level
 from kit.host.failure import GuestError
 from kit.host.guest import Guest
 from kit.host.installed import Installed
@@ -36,6 +37,23 @@ PROGRAM_LIMITS: Final = replace(
 
 
 @dataclass(frozen=True, slots=True)
+class Bounds:
+    """How far what a launch starts is bounded. The defaults are the desk's: it is its user's own."""
+
+    level: Level = DESK_LEVEL
+    limits: Limits = PROGRAM_LIMITS
+    file_limits: Limits | None = None
+    """Of the launch file's own process; None: the usual ones."""
+    commands: bool = True
+    """Whether anything but packages' programs may be run."""
+    most: int | None = None
+    """Processes that one launch may start."""
+
+
+DESK_BOUNDS: Final = Bounds()
+
+
+@dataclass(frozen=True, slots=True)
 class Means:
     """What is needed to start something."""
 
@@ -49,7 +67,7 @@ class Means:
     workspace: Path | None
     world: str
     """What other terminals call this launch."""
-    limits: Limits = PROGRAM_LIMITS
+    bounds: Bounds = DESK_BOUNDS
 
 
 def is_ours(request: Start) -> bool:
@@ -140,7 +158,13 @@ def _start_program(package_name: str, executable_name: str, request: Start, mean
 
 def _guest(file: Path, arguments: Sequence[str], installed: Installed, means: Means) -> Process:
     guest = Guest(
-        means.graph, file, args=arguments, seed=means.seed, limits=means.limits, installed=installed
+        means.graph,
+        file,
+        args=arguments,
+        seed=means.seed,
+        limits=means.bounds.limits,
+        level=means.bounds.level,
+        installed=installed,
     )
     return GuestProcess(guest)
 
@@ -156,6 +180,11 @@ def _environment(request: Start, means: Means) -> dict[str, str]:
 
 
 def _start_command(request: Start, means: Means) -> Process:
+    if not means.bounds.commands:
+        raise CannotStart(
+            f"{request.where}'{' '.join(request.command)[:60]}' is not started here: only programs of packages are, "
+            "with Node(package=..., executable=...)"
+        )
     command = list(request.command) if request.executable is None else [request.executable, *request.command]
     cwd = request.cwd or Path.cwd()
     name = Path(command[0]).name if command else ""
