@@ -1,0 +1,38 @@
+"""What the README says of the lessons is so. ``python tests/test_readme.py`` writes its table anew."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from kit.cli import VERBS
+from kit.school.lessons.reading import lesson_names, lessons_folder, read
+
+README = Path(__file__).parent.parent / "README.md"
+FIRST, LAST = "<!-- lessons -->\n", "<!-- end of lessons -->\n"
+
+
+def table() -> str:
+    """The lessons, and what each carries."""
+    rows = ["| Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|"]
+    for name in lesson_names():
+        lesson = read(lessons_folder() / name)
+        exercises = ", ".join(exercise.name for exercise in lesson.exercises)
+        rows.append(f"| {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.carries)} |")
+    return "\n".join(rows) + "\n"
+
+
+def test_the_table_of_lessons_is_true() -> None:
+    text = README.read_text()
+    assert text[text.index(FIRST) + len(FIRST) : text.index(LAST)] == table()
+
+
+def test_every_verb_it_names_exists() -> None:
+    named = set(re.findall(r"`kit ([a-z]+)", README.read_text()))
+    assert named <= set(VERBS)
+
+
+if __name__ == "__main__":
+    text = README.read_text()
+    head, tail = text.index(FIRST) + len(FIRST), text.index(LAST)
+    README.write_text(text[:head] + table() + text[tail:])
