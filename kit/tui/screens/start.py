@@ -64,7 +64,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def on_mount(self) -> None:
         self._show_menu()
         # At the latest; at the best, when the robot is on the screen and the processor is free.
-        self.set_timer(1.5, self._read_once)
+        self.set_timer(4.0, self._read_once)
 
     def on_unmount(self) -> None:
         self._school.close()
