@@ -88,7 +88,7 @@ class PlainLesson:
         if step.picture:
             click.echo(f"{step.picture}\n")
         click.echo(self._filled(step.text))
-        self._commands(step.commands)
+        self._commands([each for each in step.commands if each.line not in step.text])
         if step.options:
             self._ask(step)
         if step.exercise is not None:
@@ -109,7 +109,7 @@ class PlainLesson:
         right = next(each for each in step.options if each.right)
         click.echo(_wrapped(f"{'Right.' if option.right else 'Not so.'} {option.feedback}"))
         if not option.right:
-            click.echo(_wrapped(f"It is: {right.text} {right.feedback}"))
+            click.echo(_wrapped(f"It is: {right.text.rstrip('.')}. {right.feedback}"))
         click.echo(self._keys())
 
     def go(self, number: int) -> None:
