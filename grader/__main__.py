@@ -11,6 +11,7 @@ import click
 VERBS: Final[dict[str, tuple[str, str]]] = {
     "check": ("grader.verbs.check", "Judge one submission: a verdict per criterion, and what to do next."),
     "new": ("grader.verbs.new", "Make an assignment's folder, to start from."),
+    "checks": ("grader.verbs.checks", "List what can be checked, by what is handed in."),
     "self-test": ("grader.verbs.self_test", "Try an assignment out on its own solution and wrong solutions."),
     "report": ("grader.verbs.report", "Write a result in another format."),
     "ci": ("grader.verbs.ci", "Print a workflow file for GitHub or GitLab."),

@@ -40,3 +40,4 @@ def command(folder: Path, kind: str) -> None:
     except OSError as error:
         options.fail(f"{folder} cannot be made: {error.strerror or error}.")
     click.echo(f"{folder}: {kind}, ready. Try it: grader self-test {folder}")
+    click.echo(f"Then change {folder}/assignment.yaml. What can be checked: grader checks {kind}")

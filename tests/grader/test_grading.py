@@ -16,6 +16,7 @@ from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.checks import contract, drives
 from grader.kinds import controller
+from grader.kinds.contract import kinds, sort_of
 from grader.reading import read
 from grader.result import Result, Status, Verdict
 from grader.self_test import odds, prove
@@ -293,6 +294,15 @@ def test_every_verb_explains_itself() -> None:
     code, text = invoke("chek")
     assert code == 2
     assert "Did you mean `grader check`?" in text
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_what_can_be_checked_is_listed(kind: str) -> None:
+    code, text = invoke("checks", kind)
+    assert code == 0
+    assert all(f"\n{name}" in f"\n{text}" for name in sort_of(kind).checks)
+    assert max(map(len, text.splitlines())) <= 80
+    assert invoke("checks", f"{kind}x")[0] == 2
 
 
 def test_a_new_assignment_is_a_working_one(tmp_path: Path) -> None:
