@@ -38,10 +38,10 @@ class Check:
 
     def said(self, measure: float) -> str:
         """A measure in words, or with its unit."""
-        if math.isnan(measure):
-            return "not measured"
         if self.words is not None:
             return self.words[measure >= 1.0]
+        if math.isnan(measure):
+            return "not measured"
         if self.unit == "%":
             measure *= 100.0
         number = f"{measure:.2f}".rstrip("0").rstrip(".") if abs(measure) < 1e6 else f"{measure:g}"

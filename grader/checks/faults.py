@@ -47,8 +47,8 @@ class Run:
         return f"not reached, {run.bumps} bumps" if run.bumps else "not reached"
 
 
-AS_ASKED: Final = ("as asked", "not as asked")
-"""What no fault, and any, is called."""
+UNSAID: Final = ("", "")
+"""Of a check that counts faults, the faults themselves say more than their number."""
 
 Faults = Callable[[WorldFacts, Any], Iterator[str]]
 RunFaults = Callable[[Run, Any], Iterator[str]]

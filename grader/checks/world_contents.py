@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import ANY, AS_ASKED, count, metres, no_model
+from grader.checks.faults import ANY, UNSAID, count, metres, no_model
 from grader.kinds.contract import Look
 from grader.worlds.facts import Box, WorldFacts
 from kit.world.problems import quoted
@@ -49,7 +49,7 @@ def missing(world: WorldFacts, params: Has) -> Iterator[str]:
             yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Has)
+@check(none=1, full=0, words=UNSAID, params=Has)
 def has(look: Look, params: Has) -> float:
     """Something that the task asks for is not there:"""
     return count(look, missing, params)
@@ -97,7 +97,7 @@ def around(boxes: list[Box]) -> Box:
     return min(left), min(bottom), max(right), max(top)
 
 
-@check(none=1, full=0, words=AS_ASKED, params=WallsAsked)
+@check(none=1, full=0, words=UNSAID, params=WallsAsked)
 def walls(look: Look, params: WallsAsked) -> float:
     """The walls are not where they should be:"""
     return count(look, wrong_walls, params)
@@ -125,7 +125,7 @@ def wrong_stand(world: WorldFacts, params: Stands) -> Iterator[str]:
         yield f"{params.model} looks towards {theta:g} rad, not {params.theta:g}"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Stands)
+@check(none=1, full=0, words=UNSAID, params=Stands)
 def stands(look: Look, params: Stands) -> float:
     """A model does not stand where it should:"""
     return count(look, wrong_stand, params)

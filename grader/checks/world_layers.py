@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import AS_ASKED, count
+from grader.checks.faults import UNSAID, count
 from grader.kinds.contract import Look
 from grader.worlds.facts import WorldFacts
 from kit.world.problems import quoted, suggestion
@@ -53,7 +53,7 @@ def wrong_contacts(world: WorldFacts, params: Pairs) -> Iterator[str]:
             yield f"{a} and {b} do not collide ({reason}), and should"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Pairs)
+@check(none=1, full=0, words=UNSAID, params=Pairs)
 def collisions(look: Look, params: Pairs) -> float:
     """Who collides with whom is not as the task asks:"""
     return count(look, wrong_contacts, params)
@@ -90,7 +90,7 @@ def wrong_sights(world: WorldFacts, params: Sights) -> Iterator[str]:
                 )
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Sights)
+@check(none=1, full=0, words=UNSAID, params=Sights)
 def sights(look: Look, params: Sights) -> float:
     """Which laser sees whom is not as the task asks:"""
     return count(look, wrong_sights, params)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import check
-from grader.checks.faults import ANY, AS_ASKED, count, metres, no_model
+from grader.checks.faults import ANY, UNSAID, count, metres, no_model
 from grader.kinds.contract import Look
 from grader.worlds.facts import Device, Joint, Model, Part, WorldFacts
 from kit.world.problems import quoted, suggestion
@@ -79,7 +79,7 @@ def wrong_body(world: WorldFacts, params: BodyAsked) -> Iterator[str]:
             yield f"{name} has {what}: {str(asked != 'yes').lower()}"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=BodyAsked)
+@check(none=1, full=0, words=UNSAID, params=BodyAsked)
 def body(look: Look, params: BodyAsked) -> float:
     """A body is not as the task asks:"""
     return count(look, wrong_body, params)
@@ -121,7 +121,7 @@ def _between(model: Model, params: JointAsked) -> Joint | None:
     return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
 
 
-@check(none=1, full=0, words=AS_ASKED, params=JointAsked)
+@check(none=1, full=0, words=UNSAID, params=JointAsked)
 def joint(look: Look, params: JointAsked) -> float:
     """A joint is not as the task asks:"""
     return count(look, wrong_joint, params)
@@ -157,13 +157,13 @@ def silent(publishes: bool) -> Callable[[WorldFacts, Topics], Iterator[str]]:
     return missing
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Topics)
+@check(none=1, full=0, words=UNSAID, params=Topics)
 def publishes(look: Look, params: Topics) -> float:
     """The world's plugins do not say what the task asks:"""
     return count(look, silent(True), params)
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Topics)
+@check(none=1, full=0, words=UNSAID, params=Topics)
 def subscribes(look: Look, params: Topics) -> float:
     """The world's plugins do not listen where the task asks:"""
     return count(look, silent(False), params)
@@ -214,7 +214,7 @@ def _device(world: WorldFacts, name: str) -> Device | str:
     return found if found.rays else f"{name} is a {found.type}, not a Laser"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=LaserAsked)
+@check(none=1, full=0, words=UNSAID, params=LaserAsked)
 def laser(look: Look, params: LaserAsked) -> float:
     """The laser is not as the task asks:"""
     return count(look, wrong_laser, params)

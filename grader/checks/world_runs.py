@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import AS_ASKED, Run, metres, run_count
+from grader.checks.faults import UNSAID, Run, metres, run_count
 from grader.kinds.contract import Look
 
 
@@ -29,7 +29,7 @@ def wrong_rate(run: Run, params: TopicRate) -> Iterator[str]:
         yield f"{params.topic} came {is_:.3g} times a second, not {params.rate:g}"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=TopicRate)
+@check(none=1, full=0, words=UNSAID, params=TopicRate)
 def rate(look: Look, params: TopicRate) -> float:
     """A plugin speaks too often or too rarely:"""
     return run_count(look, wrong_rate, params)
@@ -52,7 +52,7 @@ def wrong_noise(run: Run, params: Noise) -> Iterator[str]:
         yield f"on {params.topic} what stands still spreads by {spread:.4g} m, not {params.deviation:g} m"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=Noise)
+@check(none=1, full=0, words=UNSAID, params=Noise)
 def noise(look: Look, params: Noise) -> float:
     """The noise, measured while the world stood still, is not what was asked ({where}):"""
     return run_count(look, wrong_noise, params)
@@ -72,7 +72,7 @@ def not_there(run: Run, params: NoParams) -> Iterator[str]:
         )
 
 
-@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+@check(none=1, full=0, words=UNSAID, params=NoParams)
 def drives(look: Look, params: NoParams) -> float:
     """Our driver does not reach its target in your world ({where}):"""
     return run_count(look, not_there, params)
@@ -86,12 +86,20 @@ def bumps(look: Look, params: NoParams) -> float:
     return float(look.found.run.bumps)
 
 
+@check(none=0, full=1, words=("not stopped", "stopped"))
+def stopped(look: Look, params: NoParams) -> float:
+    """Our driver went straight at where something solid should be, and nothing stopped it ({where})."""
+    if not isinstance(look.found, Run) or look.found.run.problem:
+        return math.nan
+    return float(look.found.run.bumps > 0)
+
+
 def no_way(run: Run, params: NoParams) -> Iterator[str]:
     if not run.run.way:
         yield "Look for a wall too many, a gap too narrow, or a start inside a wall"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+@check(none=1, full=0, words=UNSAID, params=NoParams)
 def reachable(look: Look, params: NoParams) -> float:
     """There is no way that is wide enough for the robot from its start to the target ({where})."""
     return run_count(look, no_way, params)
@@ -102,7 +110,7 @@ def leaks(run: Run, params: NoParams) -> Iterator[str]:
         yield "Look for two walls that should meet and do not"
 
 
-@check(none=1, full=0, words=AS_ASKED, params=NoParams)
+@check(none=1, full=0, words=UNSAID, params=NoParams)
 def closed(look: Look, params: NoParams) -> float:
     """The walls do not hold the robot in: somewhere it can leave."""
     return run_count(look, leaks, params)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -18,12 +18,17 @@ def remark(found: Seen | Run, name: str, params: Any) -> str:
     """What is wrong with a world in the light of a check, in words that help to mend it."""
     problems = found.world.problems
     if name == "loads":
-        return "\n".join(problems)
+        return "\n".join(problems if len(problems) == 1 else numbered(problems))
     if problems:
         return "The world cannot be read yet."
     if isinstance(found, Run):
         return found.run.problem or listed(RUNS[name](found, params))
     return listed(FAULTS[name](found.world, params)) if name in FAULTS else ""
+
+
+def numbered(problems: Sequence[str]) -> Iterator[str]:
+    """Each with its number, so that they can be told apart in one paragraph too."""
+    return (f"({number}) {problem}" for number, problem in enumerate(problems, 1))
 
 
 def listed(faults: Iterable[str]) -> str:
@@ -36,6 +41,11 @@ def listed(faults: Iterable[str]) -> str:
 
 MOST_TOLD: Final = 4
 """Faults of one check."""
+
+
+def nothing_more(run: Run, params: Any) -> Iterator[str]:
+    """For a check whose own sentence says all."""
+    return iter(())
 
 
 FAULTS: Final[Mapping[str, Faults]] = MappingProxyType(
@@ -60,7 +70,8 @@ RUNS: Final[Mapping[str, RunFaults]] = MappingProxyType(
         "rate": runs.wrong_rate,
         "noise": runs.wrong_noise,
         "drives": runs.not_there,
-        "bumps": lambda run, params: iter(()),
+        "bumps": nothing_more,
+        "stopped": nothing_more,
         "reachable": runs.no_way,
         "closed": runs.leaks,
         "together": runs.apart,
@@ -75,7 +86,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             *(contents.loads, contents.has, contents.walls, contents.stands),
             *(models.body, models.joint, models.publishes, models.subscribes, models.laser),
             *(layers.collisions, layers.sights, layers.few_layers),
-            *(runs.rate, runs.noise, runs.drives, runs.bumps),
+            *(runs.rate, runs.noise, runs.drives, runs.bumps, runs.stopped),
             *(runs.reachable, runs.closed, runs.together),
         )
     }

@@ -43,11 +43,16 @@ def facts_of(file: Path) -> tuple[WorldFacts, World | None]:
         world = load(file)
         simulation = Simulation(world)
     except WorldError as error:
-        # Where the snapshot lies is nothing to tell.
-        return WorldFacts(tuple(str(each).replace(f"{file.parent}/", "") for each in error.problems)), None
+        return WorldFacts(tuple(_without_place(str(each), file.parent) for each in error.problems)), None
     except SimulationError as error:
         return WorldFacts((f"{file.name}: {error}",)), None
     return _facts(world, simulation), world
+
+
+def _without_place(problem: str, folder: Path) -> str:
+    """A problem without where the snapshot lies, which is nothing to tell, nor what only a command could allow."""
+    said = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
+    return said.removesuffix(": allow a wider one as root")
 
 
 def _facts(world: World, simulation: Simulation) -> WorldFacts:

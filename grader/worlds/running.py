@@ -151,7 +151,8 @@ def _drive(runner: Runner, trip: Trip, order: Order, model: Model | None, drives
         guest: Guest | None = None
         if order.driver:
             if model is None or not drives:
-                return f"There is no model {order.robot or 'that'} with a drive for our driver to move."
+                wanted = f"The model {order.robot}" if order.robot else "No model of this world"
+                return f"{wanted} has {'no' if order.robot else 'a'} drive for our driver to move."
             try:
                 guest = Guest.start(
                     runner.graph, Path(order.driver), args=_told(model, order), seed=order.seed

@@ -126,6 +126,7 @@ def test_a_drive_is_run_and_measured(folder: Path) -> None:
     found = seen(folder, DRIVE)
     assert judged(found, "drives") == (True, "")
     assert judged(found, "bumps")[0]
+    assert not judged(found, "stopped")[0]
     assert judged(found, "reachable")[0]
     assert judged(found, "closed")[0]
     assert judged(found, "rate", topic="/scan", rate=10.0)[0]
@@ -149,6 +150,16 @@ def test_noise_is_measured(folder: Path) -> None:
 def test_a_gap_in_the_walls_is_found(folder: Path) -> None:
     change(folder, "room.dat", "0 30 0 0\n", "0 30 0 12\n")
     assert not judged(seen(folder, REST), "closed")[0]
+
+
+def test_a_wall_in_the_way_is_found(folder: Path) -> None:
+    change(folder, "room.dat", "0 30 0 0\n", "0 30 0 0\n20 0 20 30\n")
+    found = seen(folder, replace(DRIVE, time_s=8.0))
+    assert judged(found, "stopped")[0]
+    assert not judged(found, "bumps")[0]
+    assert not judged(found, "reachable")[0]
+    passed, said = judged(found, "drives")
+    assert (passed, "away" in said) == (False, True)
 
 
 def test_nobody_to_drive_is_said_and_costs_the_run(folder: Path) -> None:
@@ -211,7 +222,8 @@ def test_nothing_outside_the_folder_is_read(folder: Path, tmp_path: Path) -> Non
     shutil.copy(folder / "room.dat", tmp_path / "secret.dat")
     change(folder, "room.yaml", "data: room.dat", "data: ../secret.dat")
     passed, said = judged(seen(folder), "loads")
-    assert (passed, "outside" in said) == (False, True)
+    assert (passed, "outside the world's folder" in said) == (False, True)
+    assert str(tmp_path) not in said
 
 
 def test_a_drawing_in_the_place_of_a_map_file_is_explained(folder: Path) -> None:
