@@ -124,7 +124,12 @@ class Assignment:
 
     @property
     def max_points(self) -> float:
-        return sum(each.points for each in (*self.criteria, *self.own_tests))
+        return sum(each.points for each in self.tests)
+
+    @property
+    def tests(self) -> tuple[Criterion | OwnTest, ...]:
+        """Everything that earns points, in the order in which it is judged."""
+        return (*self.criteria, *self.own_tests)
 
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)

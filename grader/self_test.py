@@ -129,7 +129,7 @@ def _solution(assignment: Assignment, file: Path, terms: Terms) -> Proof:
 def _wrong(assignment: Assignment, file: Path, terms: Terms) -> Proof:
     name = f"{WRONG}/{file.name}"
     meant = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
-    known = {each.id for each in (*assignment.criteria, *assignment.own_tests)}
+    known = {each.id for each in assignment.tests}
     if not meant <= known:
         return Proof(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
     result = _graded(assignment, file, terms)

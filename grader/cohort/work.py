@@ -140,7 +140,7 @@ def _incident(queue: Queue, key: str) -> Result:
             Test(each.id, each.title, Status.GRADER_ERROR, 0.0, each.points, each.visibility),
             rationale="The grader died while it graded this. Nothing is lost; your teacher is told.",
         )
-        for each in (*assignment.criteria, *assignment.own_tests)
+        for each in assignment.tests
     )
     return Result(
         assignment.id,
