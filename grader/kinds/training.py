@@ -153,7 +153,8 @@ def look(assignment: Assignment, file: Path, conditions: Conditions) -> Look:
 
 
 def _failed(message: str) -> Look:
-    return Look(failure=Failure(FailureKind.IMPORT, printable(message)), label="the trainings")
+    failure = Failure(FailureKind.IMPORT, printable(message))
+    return Look(failure=failure, label="the trainings", outcome="not trained")
 
 
 def _remark(found: Trainings, check: str) -> str:

@@ -1,0 +1,135 @@
+"""Settings of a training: what is read of them, what they are refused for, and what is said of what came out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.kinds.contract import Conditions, Look
+from grader.kinds.training import look
+from grader.reading import read
+from grader.result import Status
+from grader.session import Terms, grade
+from grader.submission import Submission
+from grader.trainings import Order, Stop, Trainings
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+
+SHEET = """
+title: A table
+kind: training
+submit: training.yaml
+level: 0
+training: {task: turn, reward: progress, scale: 1.0, steps: 20000, seeds: [1, 2], episodes: 50}
+checks:
+  - {check: succeeds, points: 1}
+  - {check: every_case, points: 1}
+  - {check: reliable, points: 1}
+  - {check: honest, points: 1}
+  - {check: steps_used, points: 1}
+"""
+DESK = Conditions(Level.LIMITED, secret=False, may_fall=True)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "table"
+    made.mkdir()
+    (made / "assignment.yaml").write_text(SHEET)
+    return made
+
+
+def trained(folder: Path, text: str, conditions: Conditions = DESK) -> Look:
+    file = folder.parent / "training.yaml"
+    file.write_text(text)
+    return look(read(folder), file, conditions)
+
+
+def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
+    one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").found for _ in range(2))
+    assert one == two
+    assert [training.steps for training in one.each] == [10_000, 10_000]
+    assert all(len(training.tests) == 2 for training in one.each)
+
+
+def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
+    text = "batch: 5000\nsteps: 5000\n"
+    public = trained(folder, text).found
+    (folder / "secret.yaml").write_text("seeds: [7]\n")
+    secret = trained(folder, text, Conditions(Level.LIMITED, secret=True, may_fall=False)).found
+    assert len(secret.each) == 1
+    assert secret.each[0].tests != public.each[0].tests
+
+
+def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
+    seen: Trainings = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").found
+    assert seen.worst_case == "turn_b_to_a"
+    assert seen.pooled("turn_a_to_b").share - seen.pooled("turn_b_to_a").share > 0.2
+    assert seen.surely() < sum(seen.pooled(case).share for case in seen.budget.cases) / 2
+
+
+def test_a_first_good_test_stops(folder: Path) -> None:
+    seen: Trainings = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").found
+    assert seen.plan.stop is Stop.FIRST
+    assert any(training.steps < 20_000 for training in seen.each)
+    assert all(training.claimed >= 0.5 for training in seen.each if training.steps < 20_000)
+
+
+def test_the_best_policy_is_the_one_of_the_best_test(folder: Path) -> None:
+    text = "batch: 2000\ntest_episodes: 100\nlearning_rate: [0.9, 0.9]\nkeep: {}\n"
+    best, newest = (trained(folder, text.format(keep)).found for keep in ("best", "newest"))
+    assert sum(each.accuracy for each in best.each) > sum(each.accuracy for each in newest.each)
+
+
+def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> None:
+    seen: Trainings = trained(folder, "batch: 5000\norder: apart\n").found
+    assert seen.plan.order is Order.APART
+    first, last = seen.each[0].tests[0], seen.each[0].tests[-1]
+    assert last.counts["turn_b_to_a"].share > first.counts["turn_b_to_a"].share
+    assert "turn_a_to_b" in seen.picture()
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("", "empty"),
+        ("batch: [", "YAML"),
+        ("batch: 10", "at least"),
+        ("batch: 5000\nsteps: 99999999", "at most"),
+        ("batch: 5000\nstopp: first", "stop"),
+        ("batch: 5000\nalgorithm: ppo", "q-learning"),
+        ("batch: 5000\nlearning_rate: [2, 0]", "between 0 and 1"),
+        ("batch: 5000\nlearning_rate: .nan", "list"),
+        ("batch: 5000\ntrain_on: [left]", "turn_a_to_b"),
+        ("batch: 5000\nedges: [0.3, 0.2]", "rise"),
+        ("batch: 5000\nworlds: 100000", "at most"),
+        ("batch: 5000\ntest_episodes: 1000000", "at most"),
+        ("batch: !!python/object:os.system {}", "training.yaml"),
+    ],
+    ids=lambda value: value.splitlines()[-1] if value else "empty",
+)
+def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, word: str) -> None:
+    result = grade(
+        read(folder),
+        Submission("ada", "training.yaml", {"training.yaml": text.encode()}),
+        Terms(Level.LIMITED),
+    )
+    assert {test.status for test in result.tests} == {Status.STUDENT_ERROR}
+    assert word in result.tests[0].rationale
+    assert "/tmp" not in result.tests[0].rationale
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("task: turn", "task: trun", "turn"),
+        ("reward: progress", "reward: progres", "progress"),
+        ("seeds: [1, 2]", "seeds: [1.5]", "whole numbers"),
+        ("steps: 20000", "steps: 20000, algorithms: [q]", "no algorithm"),
+    ],
+)
+def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
+    (folder / "assignment.yaml").write_text(SHEET.replace(old, new))
+    with pytest.raises(WorldError, match=message):
+        read(folder)
