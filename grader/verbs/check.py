@@ -77,7 +77,9 @@ def command(
     if form not in FORMATS:
         options.fail(f"There is no format {form}; there are: {', '.join(FORMATS)}.")
     assignment = options.read_assignment(folder)
-    wanted = options.as_level(level if level is not None else require_level)
+    wanted = options.as_level(level)
+    if require_level is not None:
+        wanted = options.required(max(require_level, assignment.level if level is None else level))
     try:
         submission = take(file, assignment.submit)
         with opened(assignment, submission, Terms(wanted, secret)) as grading:

@@ -54,6 +54,16 @@ def read_assignment(folder: Path) -> Assignment:
         fail(str(error))
 
 
+def required(number: int) -> Level:
+    """This level; exit code 2 where the machine does not reach it."""
+    from kit.host.confine import Level
+    from kit.host.ladder import highest
+
+    if highest() < number:
+        fail(f"This machine does not reach confinement level {number}; `kit doctor` says why.")
+    return Level(number)
+
+
 def as_level(number: int | None) -> Level | None:
     from kit.host.confine import Level
 

@@ -22,6 +22,7 @@ from grader.result import Result, Status, Verdict
 from grader.self_test import odds, prove
 from grader.session import LevelTooLow, Terms, grade, opened
 from grader.submission import Submission
+from kit.host import ladder
 from kit.host.confine import Level
 from kit.recording import load
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
@@ -275,6 +276,23 @@ def test_a_users_mistake_is_one_clear_message(tmp_path: Path, arguments: tuple[s
     code, text = invoke("check", str(file), *(folders.get(each, each) for each in arguments))
     assert code == 2
     assert said in text
+
+
+def test_a_required_level_is_reached_or_nothing_is_graded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Never a lower one than the assignment's own."""
+    folder, file = write_assignment(tmp_path / "q", SECRET), tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    asked = ("check", str(file), "--assignment", str(folder), "--json")
+    code, text = invoke(*asked, "--require-level", "0")
+    if ladder.highest() is Level.LIMITED:
+        assert code == 2
+    else:
+        assert (code, json.loads(text)["level"]) == (1, 1)
+    monkeypatch.setattr(ladder, "highest", lambda: Level.FILTERED)
+    code, text = invoke(*asked, "--require-level", "2")
+    assert (code, "does not reach confinement level 2" in text) == (2, True)
 
 
 def test_a_submission_that_cannot_be_taken(tmp_path: Path) -> None:
