@@ -113,6 +113,44 @@ def write_lessons(folder: Path, more: int = 0) -> Path:
     return folder
 
 
+DRIVEN = """
+title: By hand
+summary: A drive.
+minutes: 5
+outcomes: [Drive]
+carries: [light]
+steps:
+  - kind: make
+    title: To the target
+    goal: Reach it
+    text: Drive there.
+    scene: {place: turn, case: turn_a_to_b, controller: teleop, seed: 1, seconds: 60}
+    exercise: drive
+    file: drive.npz
+    seconds: 20
+"""
+DRIVE = """
+title: A drive
+kind: drive
+submit: drive.npz
+level: 0
+drive: {place: turn, case: turn_a_to_b, time: 60}
+checks:
+  - {check: genuine, title: It is a drive, points: 1}
+  - {check: reached, title: It reaches the target, points: 3, after: genuine, hints: [Turn right.]}
+"""
+
+
+def write_drive(folder: Path) -> Path:
+    """A lesson with one exercise, that is driven by hand."""
+    lesson = folder / "01-by-hand"
+    (lesson / "drive").mkdir(parents=True)
+    (folder / "outcomes.yaml").write_text("light: Read a light\n")
+    (lesson / "lesson.yaml").write_text(DRIVEN)
+    (lesson / "drive" / "assignment.yaml").write_text(DRIVE)
+    return lesson
+
+
 def write_solutions(folder: Path) -> Path:
     """What solves its exercises, as far as somebody may look at it."""
     (folder / "01-colours" / "colour").mkdir(parents=True)

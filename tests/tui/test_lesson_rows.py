@@ -9,11 +9,12 @@ import pytest
 from rich.cells import cell_len
 
 from kit.school.lessons.checking import Judged, Report
-from kit.school.lessons.reading import read
+from kit.school.lessons.reading import find_lesson, lesson_names, read
 from kit.school.lessons.records import Lesson
 from kit.school.lessons.standing import Standing, standing
 from kit.school.lessons.visit import Hint
 from kit.tui import lesson_rows as say
+from kit.tui.lesson_sheet import LEAST_PICTURE
 from kit.tui.screens.lesson_keys import Possible, keys
 from kit.tui.text_rows import Row
 from tests.tui.lesson_folder import write_lessons
@@ -106,3 +107,12 @@ def test_the_keys_fit_whatever_is_possible(now: Possible, width: int) -> None:
     shown = written(keys(now, width))
     assert cell_len(shown.rstrip()) <= width
     assert shown.rstrip().endswith("? help Esc leave")
+
+
+@pytest.mark.parametrize("name", lesson_names())
+def test_every_question_is_in_sight_at_80x24_with_the_scene_and_some_words(name: str) -> None:
+    for step in find_lesson(name).steps:
+        asked = len(say.question(step, None, False, 80)) + 1 if step.options else 0
+        picture = LEAST_PICTURE if step.scene is not None else len(step.picture.splitlines())
+        fixed = 3 + (2 if step.exercise is not None else 0)  # heading, title, keys; file and status
+        assert 24 - fixed - asked - picture >= 3, f"{name} step {step.number}: no room for the words"

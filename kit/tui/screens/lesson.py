@@ -16,6 +16,7 @@ from kit.school.progress import ProgressError
 from kit.tui import lesson_rows as say
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, named
+from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.lesson_sheet import BESIDE, Content, LessonSheet
 from kit.tui.look import Look
@@ -30,6 +31,8 @@ from kit.tui.workbench import Workbench
 from kit.workspace import Workspace
 
 ARROWS = ("up", "down", "left", "right")
+HELD = (*ARROWS, "pageup", "pagedown", "space", "j")
+"""Keys that do more the longer they are held."""
 LOOK_S = 0.2
 """Between two looks at the exercise's file and its check."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
@@ -285,6 +288,11 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
     def on_key(self, event: events.Key) -> None:
         if event.key != "y" and self.leave_question():
             event.stop()
+            event.prevent_default()
+
+    def on_key_repeated(self, event: KeyRepeated) -> None:
+        """A key that is held scrolls and drives; it does not go on and on."""
+        if not self.takes(event.key) and base_key(event.key) not in HELD:
             event.prevent_default()
 
     def action_foresee(self, number: int) -> None:

@@ -95,7 +95,7 @@ class BenchKeys(Screen[None]):
             "worst": report is not None and (report.replay is not None or bool(_pictures(bench))),
             "printed": bool(_logs(bench)),
             "solution": self.visit.may_see_solution(bench.exercise),
-            "begin_again": not bench.by_hand,
+            "begin_again": True,
         }
 
     def look_at_bench(self) -> None:
@@ -182,7 +182,7 @@ class BenchKeys(Screen[None]):
         self.app.push_screen(ScrollPage(f"One way to do it: {next(iter(files))}", rows))
 
     def action_begin_again(self) -> None:
-        if (bench := self._free) is not None and not bench.by_hand:
+        if self._free is not None:
             self._asks = True
             self.show()
 

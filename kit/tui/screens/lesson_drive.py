@@ -75,12 +75,15 @@ class HandDrive(WatchScreen):
         self._teleop = find(TELEOP)
         self._strength = 1.0
         self._started = self._saving = self._reached = False
+        self._is_open = False
+        """Whether what is seen is the drive that is to be kept, and not the one before."""
         self.was_kept = False
         self.problem = ""
         """Why the drive could not be kept."""
 
     def open_world(self) -> None:
-        self._started = self._reached = False
+        self._started = self._reached = self._is_open = False
+        self.behind.set_paused(True)
         self.behind.open(self._place, self._teleop, paused=True)
 
     def _place(self) -> Place:
@@ -95,7 +98,7 @@ class HandDrive(WatchScreen):
 
     def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
-        if self._reached or (not messages and strength == self._strength):
+        if not self._is_open or self._reached or (not messages and strength == self._strength):
             return
         self._strength = strength
         if not self._started and any(message.startswith("p_") for message in messages):
@@ -106,7 +109,8 @@ class HandDrive(WatchScreen):
     def _show(self) -> None:
         super()._show()
         view = self.view
-        if view is None or view.failure is not None:
+        self._is_open = self._is_open or (view is not None and view.tick == 0)
+        if view is None or not self._is_open or view.failure is not None:
             return
         if view.score.reached_s is not None and not self._reached:
             self._reached = True
@@ -152,7 +156,8 @@ class HandDrive(WatchScreen):
 
     def action_reset(self) -> None:
         """A new drive, recorded from its first tick."""
-        self.open_world()
+        if self._started and not self._saving:
+            self.open_world()
 
     def action_back(self) -> None:
         if self._saving:

@@ -1,0 +1,38 @@
+"""``kit`` alone where there is no full screen: where one stands, and what to type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.cli.start import WAYS
+from kit.school.progress import FILE, Kind, Progress
+
+
+def said(*words: str) -> str:
+    result = CliRunner().invoke(main, words, env={"TERM": "dumb"})
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_a_new_student_is_told_where_to_begin() -> None:
+    told = said()
+    assert "Begin: `kit lesson 1`" in told
+    assert all(line in told for line, _ in WAYS)
+
+
+def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    with Progress(tmp_path / "home") as progress:
+        progress.add(Kind.STEP, "01-drive/1")
+    assert "Go on: `kit lesson 1`" in said("start", "--plain", "--workspace", str(tmp_path / "home"))
+
+
+def test_a_damaged_journal_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / FILE).write_bytes(b"nonsense" * 999)
+    told = said("start", "--plain", "--workspace", str(tmp_path / "home"))
+    assert "was damaged" in told
+    assert "kit lesson" in told

@@ -1,0 +1,128 @@
+"""A drive by hand that is handed in: opened from its step, kept, checked, looked at again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+from textual.screen import Screen
+
+from kit.recording import load
+from kit.school.lessons.reading import read
+from kit.school.lessons.visit import Visit
+from kit.school.progress import Kind, Progress
+from kit.session import Session
+from kit.tui.look import Look
+from kit.tui.screens.lesson import LessonScreen
+from kit.tui.screens.lesson_drive import HandDrive
+from kit.workspace import open_workspace
+from tests.tui.lesson_folder import write_drive
+from tests.tui.lesson_stage import rows, seen, stage, text, until
+
+
+@pytest.fixture
+def progress(tmp_path: Path) -> Iterator[Progress]:
+    with Progress(open_workspace(tmp_path / "home").folder) as opened:
+        yield opened
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "home" / "lessons" / "01-by-hand" / "drive" / "drive.npz"
+
+
+def opened(tmp_path: Path, progress: Progress, look: Look) -> Screen[None]:
+    desk = open_workspace(tmp_path / "home")
+    return LessonScreen(look, Visit(read(write_drive(tmp_path / "lessons")), progress, desk), desk)
+
+
+async def drive(pilot: Pilot[None]) -> HandDrive:
+    """Opens the drive and waits until it can be driven."""
+    await seen(pilot, "d opens it to be driven")
+    await pilot.press("d")
+    await seen(pilot, "The clock starts with your first key.")
+    screen = pilot.app.screen
+    assert isinstance(screen, HandDrive)
+    return screen
+
+
+def test_a_drive_is_kept_when_it_is_left_and_then_checked(
+    tmp_path: Path, progress: Progress, file: Path
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = await drive(pilot)
+        assert "0:00.00" in rows(pilot)[0]
+        await pilot.press("up")
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.5, "half a second")
+        await pilot.press("escape")
+        await seen(pilot, "[ok] It is a drive")
+        assert "[no] It reaches the target" in text(pilot)
+        assert "1 of 4 points" in text(pilot)
+        await pilot.press("w")
+        await seen(pilot, "Esc back")
+
+    stage(lambda look: opened(tmp_path, progress, look), scene)
+    recording = load(file)
+    assert (recording.place, recording.case) == ("turn", "turn_a_to_b")
+    assert recording.ticks > 50
+    [attempt] = progress.events(Kind.ATTEMPT)
+    assert attempt.content["lost"] == ["reached"]
+
+
+def test_a_drive_that_never_began_is_not_kept_and_not_checked(
+    tmp_path: Path, progress: Progress, file: Path
+) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await drive(pilot)
+        await pilot.press("escape")
+        await seen(pilot, "d drives")
+        assert "Checking" not in text(pilot)
+
+    stage(lambda look: opened(tmp_path, progress, look), scene)
+    assert not file.exists()
+
+
+def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: Progress, file: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = await drive(pilot)
+        await pilot.press("left")
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 1.0, "a second")
+        await pilot.press("r")
+        await seen(pilot, "The clock starts with your first key.")
+        await until(pilot, lambda: screen.view is not None and screen.view.tick == 0, "the beginning")
+        await pilot.press("escape")
+        await seen(pilot, "d drives")
+
+    stage(lambda look: opened(tmp_path, progress, look), scene)
+    assert not file.exists()
+
+
+def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progress, file: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = await drive(pilot)
+        await pilot.press("up")
+        # Nobody can steer round a corner here: the robot is put there.
+
+        def put(session: Session) -> None:
+            assert session.place.case is not None
+            session.runner.tell("move_model", session.place.robot, (*session.place.case.target, 0.0))
+
+        screen.behind.wish(put)
+        await seen(pilot, "The target is reached, and the drive is kept.")
+        await until(pilot, file.exists, "the file")
+        await pilot.press("escape")
+        await seen(pilot, "[no] It is a drive")  # for it was not driven all the way
+
+    stage(lambda look: opened(tmp_path, progress, look), scene)
+
+
+def test_who_leaves_the_kit_keeps_the_drive_too(tmp_path: Path, progress: Progress, file: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        screen = await drive(pilot)
+        await pilot.press("up")
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.3, "a moment")
+
+    stage(lambda look: opened(tmp_path, progress, look), scene)
+    assert load(file).ticks > 30
