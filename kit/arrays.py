@@ -53,6 +53,8 @@ class Fleet(NamedTuple):
     """(maps + 1): map m has the blocks ``blocks[m]:blocks[m + 1]``."""
     hulls: Shapes
     """Polygons in their robots' own frames; those of robot k are on layer bit ``1 << k``."""
+    sight: Integers
+    """(polygons): the same bits, 0 for a polygon that no lidar sees."""
     robot_of: Integers
     """(corners): whose corner it is."""
     radius: float

@@ -38,6 +38,11 @@ def jit(function: Function) -> Function:
     return cast(Function, compiled)
 
 
+def inlined(function: Function) -> Function:
+    """Becomes a part of its callers: handing over arrays costs more than a short loop."""
+    return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
+
+
 # --- motion -----------------------------------------------------------------------------------------------
 
 
@@ -72,10 +77,8 @@ def twist_step(
 
 
 @jit
-def ray_segment(
-    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, near: Single
-) -> Single:
-    """How near to the origin the ray ``(cos, sin)`` meets the segment a-b, or ``near`` if that is nearer.
+def ray_segment(cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single) -> Single:
+    """How near to the origin the ray ``(cos, sin)`` meets the segment a-b: not above 0, or nan, where it does not.
 
     It crosses the segment where a and b lie on different sides of it: cross(ray, a) * cross(ray, b) <= 0.
     Two segments that share an end share that product's factor, so no ray slips between them. A ray along
@@ -84,7 +87,7 @@ def ray_segment(
     a = cos * ay - sin * ax
     b = cos * by - sin * bx
     nearness = (b - a) * (Single(1) / (ax * by - ay * bx))
-    return nearness if (a * b <= 0) & (nearness > near) else near
+    return nearness if a * b <= 0 else Single(0)
 
 
 @jit
@@ -225,33 +228,48 @@ def rays_meeting(
     return int(first), int(end)
 
 
-@jit
-def meet_segment(
-    cos: Singles, sin: Singles, ax: float, ay: float, bx: float, by: float, near: Singles
+@inlined
+def meet_pair(
+    x: float, y: float, rays: Beams, ends: Floats, j: int, k: int, near: Singles, nearer: Singles
 ) -> None:
-    """Brings every ray as near as the segment a-b, given relative to the sensor."""
-    x1, y1, x2, y2 = Single(ax), Single(ay), Single(bx), Single(by)
-    for i in range(near.shape[0]):
-        near[i] = ray_segment(cos[i], sin[i], x1, y1, x2, y2, near[i])
+    """Fills ``nearer``: every ray of ``near`` as near as the segments j and k of ``ends``, seen from ``(x, y)``."""
+    ax, ay, bx, by = ends[j, 0] - x, ends[j, 1] - y, ends[j, 2] - x, ends[j, 3] - y
+    cx, cy, dx, dy = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - x, ends[k, 3] - y
+    for i in range(near.shape[0]):  # in place, compilers store under a mask: very slow on some processors
+        one = ray_segment(rays.cos[i], rays.sin[i], Single(ax), Single(ay), Single(bx), Single(by))
+        other = ray_segment(rays.cos[i], rays.sin[i], Single(cx), Single(cy), Single(dx), Single(dy))
+        one = one if one > near[i] else near[i]
+        nearer[i] = other if other > one else one
+
+
+@inlined
+def meet_segments(
+    x: float, y: float, rays: Beams, ends: Floats, first: int, end: int, near: Singles, room: Singles
+) -> None:
+    """Brings every ray as near as the nearest of ``ends[first:end]``; ``room``: as large as ``near``."""
+    for j in range(first, end, 4):
+        meet_pair(x, y, rays, ends, j, min(j + 1, end - 1), near, room)
+        meet_pair(x, y, rays, ends, min(j + 2, end - 1), min(j + 3, end - 1), room, near)
 
 
 @jit
 def meet_walls(
-    x: float, y: float, cos: Singles, sin: Singles, walls: Segments, first: int, end: int, near: Singles
+    x: float, y: float, rays: Beams, walls: Segments, first: int, end: int, near: Singles, room: Singles
 ) -> None:
     """Brings every ray as near as the nearest wall of the blocks from ``first`` to before ``end``."""
+    if end - first == 1:  # no slices: they cost more than a wall
+        meet_segments(x, y, rays, walls.ends, walls.starts[first], walls.starts[end], near, room)
+        return
     for k in range(first, end):
-        ray, last = 0, near.shape[0]
-        if end - first > 1:
-            disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-            ray, last = rays_meeting(cos, sin, disc_x, disc_y, Single(walls.discs[k, 2]), near)
-        if ray >= last:
-            continue
-        some_cos, some_sin, some = cos[ray:last], sin[ray:last], near[ray:last]
-        for j in range(walls.starts[k], walls.starts[k + 1]):
-            ax, ay = walls.ends[j, 0] - x, walls.ends[j, 1] - y
-            bx, by = walls.ends[j, 2] - x, walls.ends[j, 3] - y
-            meet_segment(some_cos, some_sin, ax, ay, bx, by, some)
+        disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
+        ray, last = rays_meeting(rays.cos, rays.sin, disc_x, disc_y, Single(walls.discs[k, 2]), near)
+        if ray < last:
+            few, begin, stop = (
+                Beams(rays.cos[ray:last], rays.sin[ray:last]),
+                walls.starts[k],
+                walls.starts[k + 1],
+            )
+            meet_segments(x, y, few, walls.ends, begin, stop, near[ray:last], room[ray:last])
 
 
 @jit
@@ -270,11 +288,10 @@ def meet_shapes(
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
             continue
-        a = corners[corners.shape[0] - 1]
+        rim = np.empty((corners.shape[0], 4))
         for j in range(corners.shape[0]):
-            b = corners[j]
-            meet_segment(cos, sin, a[0] - x, a[1] - y, b[0] - x, b[1] - y, near)
-            a = b
+            rim[j, :2], rim[j, 2:] = corners[j - 1], corners[j]
+        meet_segments(x, y, Beams(cos, sin), rim, 0, corners.shape[0], near, np.empty_like(near))
 
 
 @jit
@@ -307,7 +324,7 @@ def scan(
     turn_beams(theta, beams, cos, sin)
     least = Single(1.0 / reach)
     ranges[:] = least
-    meet_walls(x, y, cos, sin, walls, 0, walls.discs.shape[0], ranges)
+    meet_walls(x, y, Beams(cos, sin), walls, 0, walls.discs.shape[0], ranges, np.empty_like(ranges))
     meet_shapes(x, y, cos, sin, shapes, bits, ranges)
     for i in range(ranges.shape[0]):
         ranges[i] = Single(1) / ranges[i] if ranges[i] > least else Single(np.nan)
@@ -349,10 +366,10 @@ def place_shapes(
 
 
 @jit
-def placed_hulls(fleet: Fleet) -> Shapes:
-    """Room for the hulls of one world, where its robots are."""
+def placed_hulls(fleet: Fleet, bits: Integers) -> Shapes:
+    """Room for the hulls of one world, where its robots are, on the layers ``bits``."""
     own = fleet.hulls
-    return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, own.polygon_bits)
+    return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, bits)
 
 
 @jit
@@ -363,16 +380,12 @@ def nearest_wall(pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Fl
     as near as the upright rectangle around it: to be sure, that is enough.
     """
     x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
-    squares = np.empty(walls.shape[0])
     for j in range(walls.shape[0]):
         ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
         dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
-        squares[j] = dx * dx + dy * dy
-    for j in range(walls.shape[0]):
-        nearest = min(nearest, squares[j])
-        if squares[j] > radius * radius:
+        nearest = min(nearest, dx * dx + dy * dy)
+        if dx * dx + dy * dy > radius * radius:
             continue
-        ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
         ax, ay, bx, by = cos * ax + sin * ay, cos * ay - sin * ax, cos * bx + sin * by, cos * by - sin * bx
         for k in range(hulls.polygon_bits.shape[0]):
             corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
@@ -425,7 +438,7 @@ def drive_worlds(
     ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``free`` (n, r): no wall
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
-    room, before, starts = placed_hulls(fleet), np.empty_like(poses[0]), fleet.walls.starts
+    room, before = placed_hulls(fleet, fleet.hulls.polygon_bits), np.empty_like(poses[0])
     for i in range(poses.shape[0]):
         near = False
         for k in range(poses.shape[1]):
@@ -438,7 +451,7 @@ def drive_worlds(
             near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
         if near:
             first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
-            walls = fleet.walls.ends[starts[first] : starts[end]]
+            walls = fleet.walls.ends[fleet.walls.starts[first] : fleet.walls.starts[end]]
             stop_robots(fleet, walls, before, room, poses[i], free[i], hit[i])
 
 
@@ -468,9 +481,10 @@ def look_worlds(
 
     The noise of world i is number ``drawn[i]`` and following of ``keys[i]``.
     """
-    robots, rays, ends = ranges.shape[1], ranges.shape[2], fleet.walls.ends
-    cos, sin, near = np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
-    hulls = placed_hulls(fleet)
+    robots, rays = ranges.shape[1], ranges.shape[2]
+    cos, sin = np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
+    near, room = np.empty_like(cos), np.empty_like(cos)
+    hulls = placed_hulls(fleet, fleet.sight)
     for i in range(ranges.shape[0]):
         first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
         if robots > 1:
@@ -479,12 +493,7 @@ def look_worlds(
             x, y = poses[i, k, 0], poses[i, k, 1]
             turn_beams(poses[i, k, 2], fleet.beams, cos, sin)
             near[:] = Single(1.0 / fleet.reach)
-            if end - first == 1:  # what meet_walls does; here the compiler knows the arrays apart
-                for j in range(fleet.walls.starts[first], fleet.walls.starts[end]):
-                    ax, ay, bx, by = ends[j, 0] - x, ends[j, 1] - y, ends[j, 2] - x, ends[j, 3] - y
-                    meet_segment(cos, sin, ax, ay, bx, by, near)
-            else:
-                meet_walls(x, y, cos, sin, fleet.walls, first, end, near)
+            meet_walls(x, y, Beams(cos, sin), fleet.walls, first, end, near, room)
             if robots > 1:
                 dx, dy = Single(poses[i, 1 - k, 0] - x), Single(poses[i, 1 - k, 1] - y)
                 ray, last = rays_meeting(cos, sin, dx, dy, Single(fleet.radius), near)
@@ -580,15 +589,8 @@ def warm() -> None:
     ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
     walls = Segments(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
     shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
-    scan(
-        (0.0, 0.0, 0.0),
-        Beams(np.ones(2, dtype=np.float32), np.zeros(2, dtype=np.float32)),
-        2.0,
-        walls,
-        shapes,
-        1,
-        ranges,
-    )
+    beams = Beams(np.ones(2, dtype=np.float32), np.zeros(2, dtype=np.float32))
+    scan((0.0, 0.0, 0.0), beams, 2.0, walls, shapes, 1, ranges)
     add_noise(ranges, 0.0, 1, 0)
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)

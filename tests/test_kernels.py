@@ -94,10 +94,23 @@ def test_limits_of_a_motor(
 
 
 def test_a_ray_and_a_segment() -> None:
-    hit = kernels.ray_segment(*singles(1, 0, 2, -1, 2, 3), FAR)
+    hit = kernels.ray_segment(*singles(1, 0, 2, -1, 2, 3))
     assert hit == 0.5
-    for miss in ((2, 1, 2, 3), (-2, -1, -2, 3), (11, -1, 11, 1), (2, 0, 5, 0)):  # beside, behind, far, along
-        assert kernels.ray_segment(*singles(1, 0, *miss), FAR) == FAR
+    for miss in ((2, 1, 2, 3), (-2, -1, -2, 3), (2, 0, 5, 0)):  # beside, behind, along
+        assert not kernels.ray_segment(*singles(1, 0, *miss)) > 0.0
+
+
+@pytest.mark.parametrize("count", range(6))
+def test_the_nearest_of_some_segments(count: int) -> None:
+    ends = np.array([(far, -1.0, far, 1.0) for far in (5.0, 3.0, 11.0, 2.0, 4.0)[:count]]).reshape(-1, 4)
+    ranges, walls = (
+        np.zeros(9, dtype=np.float32),
+        kernels.Segments(ends, np.array([0, count]), np.zeros((1, 3))),
+    )
+    beams = kernels.Beams(np.ones(9, dtype=np.float32), np.zeros(9, dtype=np.float32))
+    kernels.scan((0.5, 0.0, 0.0), beams, 10.0, walls, NOTHING, 1, ranges)
+    nearest = min(ends[:, 0], default=math.inf) - 0.5
+    assert ranges == pytest.approx(nearest if nearest < 10 else math.nan, nan_ok=True)
 
 
 def test_no_ray_slips_between_segments_that_share_an_end() -> None:
@@ -108,8 +121,10 @@ def test_no_ray_slips_between_segments_that_share_an_end() -> None:
         cos, sin = np.float32(corner[0] / length), np.float32(corner[1] / length)
         left = np.float32(corner[0] - y), np.float32(corner[1] + x)
         right = np.float32(corner[0] + y), np.float32(corner[1] - x)
-        far = kernels.ray_segment(cos, sin, *left, *corner, FAR)
-        assert kernels.ray_segment(cos, sin, *corner, *right, far) == pytest.approx(1 / length, rel=1e-5)
+        found = [
+            kernels.ray_segment(cos, sin, *one, *other) for one, other in ((left, corner), (corner, right))
+        ]
+        assert max(found) == pytest.approx(1 / length, rel=1e-5)
 
 
 def test_a_ray_and_a_circle() -> None:

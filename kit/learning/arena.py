@@ -40,6 +40,8 @@ class Robot:
 
     hull: tuple[Corners, ...]
     """Convex polygons, counter-clockwise, in the robot's frame [m]."""
+    seen: tuple[bool, ...]
+    """Which of them the other robot's lidar sees."""
     directions: tuple[float, ...]
     """Of the lidar's rays, in the robot's frame [rad]."""
     reach: float
@@ -75,10 +77,10 @@ def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
     for model in world.models:
         if model not in driving:
             _check_scenery(model)
-    made = [_robot(model) for model in driving]
+    made = [_robot(model, watcher) for model, watcher in zip(driving, reversed(driving), strict=True)]
     if made[1:] and made[0] != made[1]:
         raise Unsupported(f"{driving[1].place}: the batch engine wants two robots alike")
-    touched = [_walls(world, _body(model).footprints[0].mask) for model in driving]
+    touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
     seen = [_walls(world, _laser(model).sight.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
@@ -115,6 +117,7 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
         ),
         blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
         hulls=hulls,
+        sight=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
         robot_of=robot_of,
         radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
         beams=_beams(first.robot.directions),
@@ -175,7 +178,8 @@ def _laser(model: Model) -> LaserParams:
     return lasers[0]
 
 
-def _robot(model: Model) -> Robot:
+def _robot(model: Model, watcher: Model) -> Robot:
+    """``watcher``: whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose() or laser.sight.origin != Pose():
         raise Unsupported(f"{body.place}: the batch engine wants a dynamic body with its lidar at the origin")
@@ -193,15 +197,15 @@ def _robot(model: Model) -> Robot:
     assert isinstance(params, DiffDriveParams)
     if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
         raise Unsupported(f"{drives[0].place}: the batch engine's motors have no limits")
-    return Robot(tuple(_polygons(body)), laser.directions, laser.reach, laser.noise)
+    sight = _laser(watcher).sight.bits
+    seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
+    return Robot(tuple(_polygons(body)), seen, laser.directions, laser.reach, laser.noise)
 
 
 def _polygons(body: Body) -> Iterator[Corners]:
     for footprint in body.footprints:
-        if footprint.sensor or footprint.mask != body.footprints[0].mask or not footprint.mask:
-            raise Unsupported(
-                f"{footprint.place}: the batch engine wants all footprints alike, and colliding"
-            )
+        if footprint.sensor or not footprint.mask:
+            raise Unsupported(f"{footprint.place}: the batch engine wants all footprints colliding")
         if not isinstance(footprint.shape, Polygon):
             raise Unsupported(f"{footprint.place}: the batch engine has no round footprints")
         yield footprint.shape.points
@@ -212,7 +216,8 @@ def _walls(world: World, bits: int) -> tuple[Layer, ...]:
 
 
 def _check_pair(one: Model, other: Model) -> None:
-    """Two robots touch and see each other."""
-    mine, theirs, sees = _body(one).footprints[0], _body(other).footprints[0], _laser(one).sight.bits
-    if not mine.mask & theirs.mask or not sees & theirs.category:
+    """Every part of one touches every part of the other, and it sees some of it."""
+    mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).sight.bits
+    touch = all(each.mask & part.mask for each in mine for part in theirs)
+    if not touch or not any(sees & part.category for part in theirs):
         raise Unsupported(f"{one.place}: the batch engine wants robots that touch and see each other")

@@ -7,7 +7,9 @@ from importlib.util import find_spec
 from platform import machine, python_version, system
 
 NEEDED = ("torch", "stable_baselines3", "sb3_contrib")
-INSTALL = "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
+INSTALL = (
+    "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
+)
 """In the kit's folder. The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
 RECORDED = ("robot-learning-kit", "torch", "stable-baselines3", "sb3-contrib", "gymnasium", "numpy", "numba")
 

@@ -173,6 +173,7 @@ KIT_PPO_HALLWAY = Preset(
     steps=4_000_000,  # with three a door or a curve is not always learned well; most runs are sure before half of it
     worlds=240,  # sixteen of each case
     learning_rate=Falling(1e-3, 3e-5),  # the end of training is for precision
+    activation="relu",  # as good as tanh here; tanh alone takes a quarter of the time
 )
 KIT_PPO_WHEELCHAIRS = Preset(
     Rollouts(
@@ -181,8 +182,8 @@ KIT_PPO_WHEELCHAIRS = Preset(
         n_epochs=4,
         ent_coef=Falling(0.01, 0.001),  # sampled moves leave the 0.05 m that side by side allows
     ),
-    UntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.97),
-    steps=8_000_000,  # with noisy starts half of it leaves the straight at 0.93
+    UntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.955),
+    steps=12_000_000,  # being side by side goes on getting better long after every target is reached
     worlds=225,  # twenty-five of each case
     learning_rate=Falling(1e-3, 3e-5),
 )

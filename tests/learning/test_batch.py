@@ -327,8 +327,8 @@ def test_two_robots_see_each_other_beside_them() -> None:
     task = replace(short(WHEELCHAIRS, "pair_straight"), start=Start(gap=0.4), lidar_noise=0.0)
     batch = BatchEnv(task, 1, seed=0)
     seen = batch.reset()[0].reshape(2, NINETEEN.size) / 0.5
-    wheel, tail = (0.4 - 0.085) / math.cos(math.radians(6)), (0.4 - 0.055) / math.cos(math.radians(10))
-    assert seen[:, 5:7] == pytest.approx(np.array([[wheel, tail]] * 2), abs=1e-3)
+    hull = [(0.4 - 0.055) / math.cos(math.radians(degrees)) for degrees in (6, 10)]  # wheels are not seen
+    assert seen[:, 5:7] == pytest.approx(np.array([hull] * 2), abs=1e-3)
     step = batch.step(np.zeros((1, 2), dtype=np.int64))
     assert step.transition.adjacent[0]
     assert step.transition.abreast[0] == pytest.approx(1.0)
