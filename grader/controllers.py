@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from grader.assignment import Assignment, Criterion, Seeds, Trial
@@ -57,14 +56,3 @@ class ControllerRuns:
             if not (cannot and self._may_fall and self.level > Level.LIMITED):
                 return drive
             self.level = Level(self.level - 1)
-
-
-def only(assignment: Assignment, seeds: int) -> Assignment:
-    """The same assignment with at most so many seeds of each kind: for a quick look."""
-    return replace(
-        assignment,
-        trials=tuple(
-            replace(trial, seeds=trial.seeds[:seeds], secret_seeds=trial.secret_seeds[:seeds])
-            for trial in assignment.trials
-        ),
-    )

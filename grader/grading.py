@@ -9,11 +9,11 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from types import MappingProxyType
 from typing import Any, Final, Protocol
 
 from grader.assignment import Assignment, Criterion, Seeds
+from grader.edition import grader_version
 from grader.kinds.contract import sort_of
 from grader.own import judged
 from grader.result import Episode, Result, Status, Test, Timing
@@ -287,13 +287,6 @@ def _status(failure: Failure | None) -> Status:
 def _finite(measure: float | None) -> float | None:
     """For JSON, which has no word for infinity."""
     return round(measure, 6) if measure is not None and math.isfinite(measure) else None
-
-
-def grader_version() -> str:
-    try:
-        return version("robot-learning-kit")
-    except PackageNotFoundError:
-        return "unknown"
 
 
 def _platform() -> str:

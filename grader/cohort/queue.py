@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from grader.archives import Refused, is_archive
 from grader.assignment import Assignment
-from grader.grading import grader_version
+from grader.edition import grader_version
 from grader.reading import read
 from grader.result import SCHEMA, Result
 from grader.session import Terms

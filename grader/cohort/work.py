@@ -15,7 +15,7 @@ from typing import IO, Final
 
 from grader.assignment import Assignment
 from grader.cohort.queue import Queue
-from grader.grading import grader_version
+from grader.edition import grader_version
 from grader.result import Result, Status, Test, Verdict
 from grader.session import grade
 

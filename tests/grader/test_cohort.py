@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from grader import edition
 from grader.__main__ import main
 from grader.cohort import gradebook
 from grader.cohort.choice import RULES, chosen
@@ -128,6 +129,23 @@ def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> Non
     assert key_of(submission, assignment, Terms(Level.LIMITED, secret=True)) != key
     changed = read(write_assignment(tmp_path / "quick2", QUICK.replace("points: 3", "points: 4")))
     assert key_of(submission, changed, TERMS) != key
+
+
+def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its code may be brought up to date without another version number."""
+    for key in queue.waiting():
+        work(queue, key)
+    assert edition.grader_version() == edition.grader_version.__wrapped__()
+    seen = list(edition._sources())
+    assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
+    edited = tmp_path / "edited.py"
+    edited.write_text(seen[0][1].read_text() + "# another line\n")
+    monkeypatch.setattr(edition, "_sources", lambda: [(seen[0][0], edited), *seen[1:]])
+    other = edition.grader_version.__wrapped__()
+    assert other != edition.grader_version()
+    monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
+    prepare(queue, tmp_path / "in", queue.assignment(), TERMS)
+    assert len(queue.waiting()) == 4
 
 
 def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_path: Path) -> None:
