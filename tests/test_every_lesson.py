@@ -24,6 +24,8 @@ from kit.school.lessons.works import folder_of, lay_out, solution
 from kit.workspace import Workspace, open_workspace
 
 NAMES = lesson_names()
+SLOW_S = 20.0
+"""Exercises that promise no quicker check are proven with the long tests."""
 EXERCISES = [(name, exercise.name) for name in NAMES for exercise in read(lessons_folder() / name).exercises]
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
@@ -79,7 +81,18 @@ def test_nothing_is_solved_that_is_not_asked() -> None:
     assert solved == asked
 
 
-@pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
+@pytest.mark.parametrize(
+    ("name", "exercise"),
+    [
+        pytest.param(
+            name,
+            each,
+            marks=[pytest.mark.long] if exercise_of(name, each)[1].seconds > SLOW_S else [],
+            id=f"{name}-{each}",
+        )
+        for name, each in EXERCISES
+    ],
+)
 def test_the_student_s_way(tmp_path: Path, name: str, exercise: str) -> None:
     """What is laid out fails politely, the solution earns everything, within the promised time."""
     lesson, task = exercise_of(name, exercise)

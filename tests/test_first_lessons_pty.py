@@ -20,6 +20,9 @@ from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import KIT, User
 
 FIRST = lesson_names()[:3]
+ONE_BY_ONE = [
+    pytest.param(name, marks=[pytest.mark.long] if name != FIRST[0] else [], id=name) for name in FIRST
+]
 PATIENCE_S = 120.0
 
 
@@ -87,7 +90,7 @@ def wait_for(condition: Callable[[], bool], user: User, what: str) -> None:
         user.pump(0.1)
 
 
-@pytest.mark.parametrize("name", FIRST)
+@pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) -> None:
     lesson = read(lessons_folder() / name)
     screen = user("lesson", name)
@@ -120,7 +123,7 @@ def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) ->
     assert reached(stand(desk, lesson)) == expected(lesson)
 
 
-@pytest.mark.parametrize("name", FIRST)
+@pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_line_by_line(desk: Workspace, name: str) -> None:
     lesson = read(lessons_folder() / name)
     lines = []

@@ -71,7 +71,10 @@ rclpy.spin(Jump())
 """
 
 
-@pytest.mark.parametrize("level", LEVELS, ids=[level.id for level in LEVELS])
+@pytest.mark.parametrize(
+    "level",
+    [pytest.param(each, marks=[pytest.mark.long] if each.par > 16 else [], id=each.id) for each in LEVELS],
+)
 def test_the_reference_earns_every_star(level: Level) -> None:
     finish, recording = reference(level)
     assert finish.stars(level.par) == (True, True, True)
