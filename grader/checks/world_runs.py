@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import UNSAID, Run, metres, run_count
+from grader.checks.faults import UNSAID, Run, run_count
 from grader.kinds.contract import Look
 
 
@@ -60,13 +60,13 @@ def noise(look: Look, params: Noise) -> float:
 
 def not_there(run: Run, params: NoParams) -> Iterator[str]:
     if run.run.reached_s is None:
-        away = "" if run.run.away is None else f"it ended {metres(run.run.away)} away"
+        away = "" if run.run.away is None else f"it ended {run.run.away:.1f} m away"
         yield ", ".join(
             part
             for part in (
                 away,
-                f"after {metres(run.run.distance)} of way" if run.run.distance > 0.05 else "and never moved",
-                f"with {run.run.bumps} bumps" if run.run.bumps else "",
+                f"after {run.run.distance:.1f} m of way" if run.run.distance > 0.05 else "and never moved",
+                f"with {run.run.bumps} bump{'s' if run.run.bumps > 1 else ''}" if run.run.bumps else "",
             )
             if part
         )

@@ -133,27 +133,33 @@ def _remark(made: Made, name: str) -> str:
 
 def _made(section: Section, case: Case) -> Made:
     layers = []
-    inner = section.section("layers", None)
+    inner = _inner(section, "layers")
     for name in () if inner is None else tuple(inner.keys()):
         assert inner is not None
         layers.append(NamedLayer(name, frozenset(_known(inner, name, case.names, "thing"))))
     names = [layer.name for layer in layers]
-    watched = section.section("lasers", None)
+    watched = _inner(section, "lasers")
     watches = {}
     for laser in () if watched is None else tuple(watched.keys()):
         assert watched is not None
         if laser not in case.laser:
             watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
         watches[laser] = _known(watched, laser, names, "layer of yours")
-    lines = tuple(_requirement(section, line, case) for line in section.texts("proof", ()))
+    said = () if section.is_blank("proof") else section.texts("proof", ())
+    lines = tuple(_requirement(section, line, case) for line in said)
     if max(len(layers), len(lines)) > MOST:
         section.error(f"at most {MOST} layers and {MOST} lines of proof")
     section.finish()
     return Made(case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each)))
 
 
+def _inner(section: Section, key: str) -> Section | None:
+    """A mapping; None where nothing is written yet."""
+    return None if section.is_blank(key) else section.section(key, None)
+
+
 def _known(section: Section, key: str, known: list[str] | tuple[str, ...], what: str) -> tuple[str, ...]:
-    names = section.texts(key, ())
+    names = () if section.is_blank(key) else section.texts(key, ())
     for name in names:
         if name not in known:
             section.error(f"there is no {what} called {quoted(name)}: {suggestion(name, known)}", key)

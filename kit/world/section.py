@@ -72,6 +72,13 @@ class Section:
         self._asked.add(key)
         return key in self._entries
 
+    def is_blank(self, key: str) -> bool:
+        """Whether the key is missing, or nothing stands behind it. Asking makes it a known key."""
+        if not self.has(key):
+            return True
+        value = self._entries[key].value
+        return isinstance(value, Leaf) and value.plain and value.is_null
+
     def keys(self) -> tuple[str, ...]:
         """Every key written in the file, in order."""
         return tuple(self._entries)

@@ -64,8 +64,10 @@ def graded(folder: Path, text: str) -> Result:
         (GOOD.replace("[robot - walls, walls - drone]", "[robot - walls, walls - robot]"), "proof"),
         ("layers: {all: [robot, drone, walls]}\nlasers: {lidar: [all]}\nproof: []\n", "nothing_more proof"),
         ("{}", "complete proof"),
+        ("layers:\nlasers:\nproof:\n", "complete proof"),
+        ("layers:\n  floor:\nlasers:\n  lidar:\n", "complete proof"),
     ],
-    ids=["good", "another proof", "blind", "sees itself", "too many", "fits", "twice", "all in one", "nothing"],
+    ids=["good", "another proof", "blind", "sees itself", "too many", "fits", "twice", "all in one", "nothing", "blank", "blank lists"],
 )  # fmt: skip
 def test_what_is_lost(folder: Path, text: str, lost: str) -> None:
     result = graded(folder, text)

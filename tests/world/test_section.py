@@ -225,3 +225,11 @@ def test_the_error_says_all_sorted_by_place() -> None:
     a, b = Place(Path("a.yaml"), 10, 2), Place(Path("a.yaml"), 9, 1)
     error = WorldError([Problem(a, "late"), Problem(b, "early"), Problem(a, "late")])
     assert str(error) == "a.yaml:9:1: early\na.yaml:10:2: late"
+
+
+def test_a_key_with_nothing_behind_it_is_blank_and_known(read: Callable[[str], Reading]) -> None:
+    reading = read('none:\ntilde: ~\ntext: ""\nword: x\nlist: []\n')
+    blank = [key for key in (*reading.section.keys(), "missing") if reading.section.is_blank(key)]  # noqa: SIM118
+    assert blank == ["none", "tilde", "missing"]
+    reading.section.finish()
+    assert reading.problems == []
