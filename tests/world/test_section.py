@@ -229,7 +229,7 @@ def test_the_error_says_all_sorted_by_place() -> None:
 
 def test_a_key_with_nothing_behind_it_is_blank_and_known(read: Callable[[str], Reading]) -> None:
     reading = read('none:\ntilde: ~\ntext: ""\nword: x\nlist: []\n')
-    blank = [key for key in (*reading.section.keys(), "missing") if reading.section.is_blank(key)]  # noqa: SIM118
+    blank = [key for key in (*reading.section.keys(), "missing") if reading.section.is_blank(key)]
     assert blank == ["none", "tilde", "missing"]
     reading.section.finish()
     assert reading.problems == []
