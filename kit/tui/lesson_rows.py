@@ -17,6 +17,7 @@ WIDTH: Final = 76
 """Longer lines are hard to read, however wide the terminal."""
 MARGIN: Final = 2
 LONGEST_BAR: Final = 12
+LEAST_TITLE: Final = 8
 
 _STYLES: Final = {Style.PLAIN: "", Style.CODE: "code", Style.BOLD: "bold"}
 _KINDS: Final = {
@@ -34,20 +35,26 @@ _WHERE: Final = {
 
 
 def heading(standing: Standing, step: Step, width: int) -> Row:
-    """Lesson, goal, which step of how many, and a bar of what is done."""
+    """Lesson, goal, which step of how many, and a bar of what is done. A long lesson's title gives way to the goal."""
     count = len(standing.lesson.steps)
     bar = progress_bar(standing, step) if count <= LONGEST_BAR else ""
-    return spread(
-        row((standing.lesson.title, "bold"), "  ", (step.goal, "dim")),
-        row(f"step {step.number} of {count} ", (bar, "bold")),
-        width,
-    )
+    where = f"step {step.number} of {count} "
+    title, room = standing.lesson.title, width - len(where) - len(bar) - len(step.goal) - 3
+    if len(title) > room:
+        title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""
+    left = row((title, "bold"), "  ", (step.goal, "dim")) if title else row((step.goal, "dim"))
+    return spread(left, row(where, (bar, "bold")), width)
 
 
 def progress_bar(standing: Standing, here: Step | None = None) -> str:
     """One character a step: full where it is done, half where one stands."""
     return "".join(
-        "█" if standing.is_step_done(step) else "▒" if step is here else "░" for step in standing.lesson.steps
+        "█"
+        if standing.is_step_done(step)
+        else "▒"
+        if here is not None and step.number == here.number
+        else "░"
+        for step in standing.lesson.steps
     )
 
 
@@ -57,18 +64,31 @@ def title(step: Step, caption: str, width: int) -> Row:
 
 
 def words(text: str, width: int) -> list[Row]:
-    """A lesson's text. Code that is too long for a row goes on in the next."""
+    """A lesson's text."""
     room = min(width - 2 * MARGIN, WIDTH)
     made: list[Row] = []
     for each in rows(parsed(text), room):
-        if len(each) == 1 and len(line := each[0].text) > room:
-            style = _STYLES[each[0].style]
-            made += [row(" " * MARGIN, (line[at : at + room], style)) for at in range(0, len(line), room)]
+        if len(each) == 1 and len(each[0].text) > room:
+            made += [row(" " * MARGIN, (part, _STYLES[each[0].style])) for part in broken(each[0].text, room)]
         else:
             made.append(
                 row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
             )
     return made
+
+
+def broken(line: str, room: int) -> list[str]:
+    """A line of code that is too long, on several. A command goes on after a backslash, as a shell takes it."""
+    indent = line[: len(line) - len(line.lstrip())]
+    is_command = line.split()[:1] in (["kit"], ["grader"])
+    parts: list[str] = []
+    while len(line) > room:
+        first = len(line) - len(line.lstrip())
+        blank = line.rfind(" ", first, room - 1) if is_command else -1
+        cut = blank if blank > 0 else room
+        parts.append(f"{line[:cut]} \\" if blank > 0 else line[:cut])
+        line = indent + "  " + line[cut:].lstrip() if blank > 0 else line[cut:]
+    return [*parts, line]
 
 
 def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:
@@ -78,7 +98,8 @@ def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:
         lines = [line for command, line in filled if command.how is how]
         if lines:
             made += [row(), row(" " * MARGIN, (where, "dim"))]
-            made += [row(" " * 2 * MARGIN, (line, "code")) for line in lines]
+            parts = (part for line in lines for part in broken(" " * MARGIN + line, _room(width)))
+            made += [row(" " * MARGIN, (part, "code")) for part in parts]
     return made
 
 
@@ -178,15 +199,19 @@ def checking(seconds: float) -> Row:
     return row((f" Checking... {seconds:.1f} s", "bold"))
 
 
-def file_rows(path: str, by_hand: bool, width: int) -> list[Row]:
-    """The whole path of what is edited, on as many rows as it needs."""
+def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
+    """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
     head = " Kept in " if by_hand else " Edit "
+    tail = ", and what lies beside it" if others else ""
     room = max(10, width - len(head))
     parts = [path[at : at + room] for at in range(0, len(path), room)]
-    return [
+    made = [
         row((head if number == 0 else " " * len(head), "dim"), (part, "bold"))
         for number, part in enumerate(parts)
     ]
+    if len(parts[-1]) + len(tail) <= room:
+        made[-1] = (*made[-1], (tail, "dim"))
+    return made
 
 
 def ending(standing: Standing, width: int) -> list[Row]:

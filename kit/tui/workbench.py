@@ -3,15 +3,52 @@
 from __future__ import annotations
 
 import threading
+import time
 from pathlib import Path
+from typing import Final
 
 from kit.host.reload import FileWatch
 from kit.school.lessons.checking import Check, Report, handed_in
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.visit import Visit
+from kit.school.lessons.works import STARTER
 
 BY_HAND = ".npz"
 """What a drive by hand is handed in as."""
+
+RESCAN_S: Final = 1.0
+"""Between two looks for files that are new."""
+MOST_FILES: Final = 200
+"""No exercise has more; a folder that was unpacked there by mistake may."""
+
+
+class FilesWatch:
+    """Notices when any file of an exercise has been saved. One that is new counts from its next save on: editors
+    make files for a moment."""
+
+    def __init__(self, file: Path) -> None:
+        self._folder = file.parent
+        self._watches = {file: FileWatch(file)}
+        self._scan()
+
+    def has_changed(self) -> bool:
+        """Whether something was saved since the last time this was true. Call it often."""
+        if time.monotonic() - self._scanned >= RESCAN_S:
+            self._scan()
+        changed = [watch.has_changed() for watch in self._watches.values()]
+        return any(changed)
+
+    def _scan(self) -> None:
+        self._scanned = time.monotonic()
+        try:
+            for file in sorted(self._folder.rglob("*")):
+                parts = file.relative_to(self._folder).parts
+                if any(part.startswith((".", "__")) for part in parts) or file.name.endswith("~"):
+                    continue
+                if file not in self._watches and len(self._watches) < MOST_FILES and file.is_file():
+                    self._watches[file] = FileWatch(file)
+        except OSError:  # a network drive that is away comes back
+            return
 
 
 class Workbench:
@@ -32,6 +69,11 @@ class Workbench:
     def by_hand(self) -> bool:
         """Whether what is handed in is driven, not written."""
         return self.exercise.file.endswith(BY_HAND)
+
+    @property
+    def has_others(self) -> bool:
+        """Whether there are more files to edit, beside the one."""
+        return (self.exercise.folder / STARTER).is_dir()
 
     @property
     def seconds(self) -> float | None:

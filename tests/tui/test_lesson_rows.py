@@ -53,14 +53,33 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: Standing, width
     assert widest(say.question(predict, predict.options[0], True, width)) <= width
     assert widest(say.feedback(predict, predict.options[1], width)) <= width
     assert widest(say.verdict(REPORT, hints, width)) <= width
-    assert widest(say.file_rows("/home/" + "ada" * 60, False, width)) <= width
+    assert widest(say.file_rows("/home/" + "ada" * 60, False, True, width)) <= width
     assert widest(say.ending(stand, width)) <= width
 
 
 def test_a_long_path_is_there_to_the_last_character() -> None:
     path = "/home/" + "ada" * 60 + "/controller.py"
-    rows = say.file_rows(path, False, 80)
+    rows = say.file_rows(path, False, False, 80)
     assert "".join(written(row)[6:] for row in rows) == path
+
+
+def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
+    line = "    kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
+    parts = say.broken(line, 76)
+    assert all(len(part) <= 76 for part in parts)
+    assert "".join(part.removesuffix("\\") for part in parts).split() == line.split()
+    assert [part.endswith(" \\") for part in parts] == [True] * (len(parts) - 1) + [False]
+    code = "    x = " + "1 + " * 30 + "1"
+    assert "".join(say.broken(code, 76)) == code
+
+
+def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
+    stand = standing(replace(lesson, title="Services, parameters and looking inside"), [])
+    step = replace(lesson.steps[0], goal="Foresee what the robot is told")
+    shown = written(say.heading(stand, step, 80))
+    assert "Foresee what the robot is told" in shown
+    assert "..." in shown
+    assert shown.rstrip().endswith("▒░░░░")
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:

@@ -161,8 +161,9 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         if not width or not self.is_mounted:
             return
         over, step = self.is_over, self.step
-        file = say.file_rows(str(self.bench.file), self.bench.by_hand, width) if self.bench else []
-        said = [self.bench_status()] if self.bench is not None else []
+        bench = self.bench
+        file = say.file_rows(str(bench.file), bench.by_hand, bench.has_others, width) if bench else []
+        said = [self.bench_status()] if bench is not None else []
         self._rows("heading").show([say.heading(self.visit.standing, step, width)])
         self._show_title()
         self._rows("file").show_all(file)
