@@ -143,6 +143,8 @@ def test_a_new_student_drives_with_an_arrow_key_and_is_in_a_lesson_with_enter(op
     user.send(b"\x1b")
     sees(user, "Lesson 1")
     user.send(b"8")
+    sees(user, "exercises passed")
+    user.send(b"\x1b[F")
     sees(user, "kit progress export FILE")
     user.send(b"\x03")
     assert user.wait() == 0
