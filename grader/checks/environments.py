@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.checks.contract import Check, NoParams, check
-from grader.environments import Episode, Moment, Visit, sectors
+from grader.environments import Episode, Visit, sectors
 from grader.kinds.contract import Look
 from kit.geometry import Pose
 
@@ -51,11 +51,15 @@ def spaces_facts(seen: Visit) -> Iterator[str]:
 
 
 def _space(told: Mapping[str, object]) -> str:
-    return (
-        "missing"
-        if told.get("kind") in (None, "NoneType")
-        else ", ".join(f"{k} {v}" for k, v in told.items())
-    )
+    """A space as one would write it."""
+    kind = told.get("kind")
+    if kind == "Discrete":
+        return f"Discrete({told.get('n')})" + (f" from {told.get('start')} on" if told.get("start") else "")
+    if kind == "Box":
+        shape = told.get("shape")
+        sizes = ", ".join(map(str, shape)) if isinstance(shape, list) else "?"
+        return f"Box({told.get('low')}, {told.get('high')}, shape ({sizes}), {told.get('dtype')})"
+    return "missing" if kind in (None, "NoneType") else f"a {kind}"
 
 
 def resets_facts(seen: Visit) -> Iterator[str]:
@@ -75,7 +79,8 @@ def resets_facts(seen: Visit) -> Iterator[str]:
         elif away > NEAR_HOME[0] or turned > NEAR_HOME[1]:
             yield f"After reset() the robot stands {away:.2f} m and {math.degrees(turned):.0f} degrees from its home."
         elif not _seen_right(parts[0], episode.ranges, seen):
-            yield "The observation of reset() is not of the newest scan: was the old one, from before, kept?"
+            wrong = _difference(parts[0], episode.ranges, seen)
+            yield f"In the observation of reset(): {wrong} Was the scan from before the reset kept?"
         else:
             yield ""
 
@@ -103,7 +108,12 @@ def steps_facts(seen: Visit) -> Iterator[str]:
 def sees_facts(seen: Visit) -> Iterator[str]:
     """For every step: nine sectors of the newest scan."""
     for moment in seen.moments:
-        yield "" if _seen_right(moment.part(0), moment.ranges, seen) else _difference(moment, seen)
+        told = moment.part(0)
+        if _seen_right(told, moment.ranges, seen):
+            yield ""
+        else:
+            wrong = _difference(told, moment.ranges, seen)
+            yield wrong[0].upper() + wrong[1:]
 
 
 def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], seen: Visit) -> bool:
@@ -118,10 +128,11 @@ def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], seen: Vis
     )
 
 
-def _difference(moment: Moment, seen: Visit) -> str:
-    numbers, wanted = moment.part(0).get("numbers"), sectors(moment.ranges, SECTORS, seen.wish.clip)
+def _difference(told: Mapping[str, object], ranges: tuple[float, ...], seen: Visit) -> str:
+    """Where an observation that is not right is wrong first."""
+    numbers, wanted = told.get("numbers"), sectors(ranges, SECTORS, seen.wish.clip)
     if not isinstance(numbers, list) or len(numbers) != len(wanted):
-        return f"An observation is {SECTORS} numbers."
+        return f"an observation is {SECTORS} numbers."
     place = next(
         k
         for k, (one, other) in enumerate(zip(numbers, wanted, strict=True))
@@ -129,7 +140,7 @@ def _difference(moment: Moment, seen: Visit) -> str:
     )
     given = numbers[place]
     shown = f"{given:.3f}" if isinstance(given, float) else "no finite number"
-    return f"Sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
+    return f"sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
 
 
 def acts_facts(seen: Visit) -> Iterator[str]:
@@ -173,7 +184,7 @@ def timeout_facts(seen: Visit) -> Iterator[str]:
     """Whether running out of time truncates."""
     last = seen.wish.max_steps - 1
     episode = seen.episodes["turning on the spot"]
-    yield _ended(episode, last, f"{seen.wish.max_steps} steps were made", "truncated")
+    yield _ended(episode, last, "the time was up", "truncated")
 
 
 def _ended(episode: Episode, due: int | None, why: str, how: str) -> str:
@@ -290,19 +301,19 @@ def acts(look: Look, params: NoParams) -> float:
     return _measure(acts_facts, look)
 
 
-@check(none=0, full=1, words=("not as it should be", "terminated"))
+@check(none=0, full=1, words=("something else", "terminated"))
 def crash(look: Look, params: NoParams) -> float:
     """A collision ends the episode."""
     return _measure(crash_facts, look)
 
 
-@check(none=0, full=1, words=("not as it should be", "terminated"))
+@check(none=0, full=1, words=("something else", "terminated"))
 def arrival(look: Look, params: NoParams) -> float:
     """Reaching the target ends the episode."""
     return _measure(arrival_facts, look)
 
 
-@check(none=0, full=1, words=("not as it should be", "truncated"))
+@check(none=0, full=1, words=("something else", "truncated"))
 def timeout(look: Look, params: NoParams) -> float:
     """When its time is up an episode is cut off."""
     return _measure(timeout_facts, look)

@@ -46,7 +46,7 @@ REFERENCE: Final = "reference.py"
 CASES: Final = "_cases"
 """What follows a function's name in the name of what makes its cases."""
 MOST_CASES: Final = 500
-LONGEST_SHOWN: Final = 6
+LONGEST_SHOWN: Final = 9
 """Entries of a list that are written out."""
 
 

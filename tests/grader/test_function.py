@@ -182,4 +182,4 @@ def test_what_is_the_same(expected: object, actual: object, same: bool) -> None:
 
 
 def test_long_lists_are_shortened() -> None:
-    assert shown([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
+    assert shown([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
