@@ -16,6 +16,8 @@ from kit.tui.text_rows import Row, TextRows, row
 LEAST_PICTURE: Final = 8
 MOST_PICTURE: Final = 14
 """Rows of a scene above the words."""
+LEAST_WORDS: Final = 3
+"""Rows of the words below it, on the smallest screen."""
 BESIDE: Final = 82
 """Columns of the words, where the picture is beside them."""
 
@@ -78,7 +80,7 @@ class LessonSheet(Container):
         self._scene.display = content.moves
         self._rows("ask").show_all(content.asked)
         asked = len(content.asked)
-        least = min(LEAST_PICTURE, max(room // 2, 4))
+        least = min(LEAST_PICTURE, max(room - asked - LEAST_WORDS, 4))
         rows = min(max(room - content.first_words - asked, least), MOST_PICTURE)
         if content.moves:
             self._set_height(self._scene, "1fr" if beside else rows)

@@ -46,8 +46,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     ]
     DEFAULT_CSS = f"""
     StartScreen #panel {{ width: {PANEL_WIDTH}; }}
-    StartScreen.-narrow #middle {{ layout: vertical; }}
-    StartScreen.-narrow #panel {{ display: block; width: 1fr; height: 12; }}
+    StartScreen.-narrow #panel {{ display: block; }}
     """
 
     def __init__(self, look: Look, school: School, *, seed: int = 0) -> None:

@@ -275,6 +275,7 @@ def test_where_one_is_and_the_keys_are_always_in_sight(
         assert "leave" in shown[-1]
         if step == 1:
             assert all(f"{number}  " in text(pilot) for number in (1, 2, 3))
+            assert "A robot stands in a corridor." in text(pilot)
         if step == COLOUR:
             assert str(student.file) in "".join(row.strip() for row in shown)
 
