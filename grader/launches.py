@@ -12,7 +12,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -154,16 +154,14 @@ def launched(
             say=lambda line: printed.append(str(line)),
         )
     except GuestError as error:
-        return Launched(run, error.failure)
+        return Launched(run, _told(error.failure, target))
     try:
         launch.begin()
         seen = _with_world(run, launch, questions) if launch.world else _without(run, launch, questions)
     except GuestError as error:
-        return Launched(run, error.failure, arguments)
+        return Launched(run, _told(error.failure, target), arguments)
     except (CannotStart, WorldError, PackageError, OSError) as problem:
-        # Where the copy lies is nothing to tell.
-        text = printable(str(problem).replace(f"{target.folder}/", ""))
-        return Launched(run, Failure(FailureKind.EXCEPTION, text), arguments)
+        return Launched(run, _told(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments)
     finally:
         launch.close()
     return Launched(
@@ -173,6 +171,11 @@ def launched(
         printed=tuple(_steady(line, target) for line in printed[:MOST_LINES]),
         **seen,
     )
+
+
+def _told(failure: Failure, target: LaunchTarget) -> Failure:
+    """Where the copy lies is nothing to tell."""
+    return replace(failure, message=printable(failure.message.replace(f"{target.folder}/", "")))
 
 
 def _steady(line: str, target: LaunchTarget) -> str:

@@ -26,6 +26,8 @@ class Place:
     robot: str | None
     """The model that drives; None in a world without models."""
     case: Case | None = None
+    charges: Path | None = None
+    """A charge file to use in place of the world's own; see ``kit.fields.layout``."""
 
     @property
     def drivers(self) -> tuple[str, ...]:

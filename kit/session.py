@@ -171,6 +171,8 @@ class Session:
             "models": json.dumps(place.partners),
             "world": json.dumps(str(place.world.file.absolute())),
         }
+        if place.charges is not None:
+            told["charges"] = json.dumps(str(place.charges.absolute()))
         if place.case is not None:
             x, y = place.case.target
             told |= {"target": f"[{x!r}, {y!r}]", "target_radius": repr(float(place.case.target_radius))}

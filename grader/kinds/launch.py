@@ -165,7 +165,10 @@ def _remark(seen: Launched, name: str, params: Any) -> str:
 def _missing_node(seen: Launched, params: Nodes) -> str:
     missing = next((each for each in params.nodes if each not in seen.nodes), None)
     there = ", ".join(seen.nodes) or "none"
-    return "" if missing is None else f"There is no node {missing}; there are: {there}."
+    if missing is None:
+        return ""
+    died = f" {seen.died[0]}" if seen.died else ""
+    return f"There is no node {missing}; there are: {there}.{died}"
 
 
 def _missing_argument(seen: Launched, params: Arguments) -> str:

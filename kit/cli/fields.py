@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -28,6 +28,11 @@ PICTURE: Final = (78, 30)
 
 BOTH: Final = ("fields", "abreast")
 
+_CHARGES = click.option(
+    "--charges",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A charge file to use instead of the map's own.",
+)
 _RUNS = click.option(
     "--runs", type=click.IntRange(1, 1000), default=20, show_default=True, help="Of each case."
 )
@@ -52,6 +57,7 @@ def command() -> None:
 @options.case
 @options.controller_of("fields")
 @click.option("--plain", is_flag=True, help="The field, the charges and the traps as text.")
+@_CHARGES
 @click.option("--derived", is_flag=True, help="Charges from the walls, even where some are drawn by hand.")
 @options.seed
 @options.workspace
@@ -62,6 +68,7 @@ def show(
     case: str | None,
     controller: str,
     plain: bool,
+    charges: Path | None,
     derived: bool,
     seed: int,
     workspace: Path | None,
@@ -80,7 +87,7 @@ def show(
             desk = open_desk(workspace)
         except WorkspaceError as error:
             options.fail(str(error))
-        there = _place(place, case)
+        there = replace(_place(place, case), charges=charges)
         course = _course(there, derived)
         terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
         find(controller, desk.controllers)
@@ -103,6 +110,7 @@ def show(
             runs=desk.runs,
             seed=seed,
             derived=derived,
+            charges=charges,
         )
     )
     app.run()
@@ -120,11 +128,18 @@ def show(
     show_default=True,
     help="Who drives: a controller's name or file; may be given several times.",
 )
+@_CHARGES
 @_RUNS
 @options.seed
 @_JSON
 def test(
-    place: str, case: str | None, controllers: tuple[str, ...], runs: int, seed: int, as_json: bool
+    place: str,
+    case: str | None,
+    controllers: tuple[str, ...],
+    charges: Path | None,
+    runs: int,
+    seed: int,
+    as_json: bool,
 ) -> None:
     """Run the cases of a map without a screen, and print how well the robots did.
 
@@ -139,7 +154,7 @@ def test(
         drivers = [find(each) for each in controllers]
         cases = [case] if case is not None else [each.name for each in find_map(place).cases]
         for name in cases:
-            there = _place(place, name)
+            there = replace(_place(place, name), charges=charges)
             for driver in drivers:
                 found.append(repeat(there, driver, runs=runs, seed=seed))
                 if not as_json:
@@ -265,7 +280,12 @@ def _course(place: Place, derived: bool) -> Course:
             "`kit maps` lists them."
         )
     return Course.open(
-        place.world.file, place.partners, place.case.target, place.case.target_radius, derived=derived
+        place.world.file,
+        place.partners,
+        place.case.target,
+        place.case.target_radius,
+        derived=derived,
+        charges=place.charges,
     )
 
 

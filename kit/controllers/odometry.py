@@ -26,7 +26,7 @@ PERIOD_NS = 100_000_000
 
 class CourseNode(Node):
     """Drives one robot or two along a course. Parameters: ``world`` (a world file), ``models`` (the left one first),
-    ``target`` [x, y], ``target_radius`` [m].
+    ``target`` [x, y], ``target_radius`` [m], ``charges`` (a charge file to use instead of the world's).
 
     Stops for good, and says why, when there is no course or a robot has touched something.
     """
@@ -69,11 +69,18 @@ class CourseNode(Node):
         models = list(self.declare_parameter("models", ["left", "right"]).value)
         target = [float(each) for each in self.declare_parameter("target", [math.nan, math.nan]).value]
         radius = float(self.declare_parameter("target_radius", 0.25).value)
+        charges = str(self.declare_parameter("charges", "").value)
         if not world:
             raise ValueError("no world is given: add -p world:=WORLD.yaml.")
         if len(target) != 2 or not all(map(math.isfinite, target)):
             raise ValueError("no target is given: add -p target:=[x, y], or drive on a map that has one.")
-        return Course.open(Path(world), models, (target[0], target[1]), radius)
+        return Course.open(
+            Path(world),
+            models,
+            (target[0], target[1]),
+            radius,
+            charges=Path(charges) if charges else None,
+        )
 
     def _on_odometry(self, name: str, message: Odometry) -> None:
         if self.course is None:

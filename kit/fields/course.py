@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.fields.derived import derive, differences
 from kit.fields.floor import Floor, open_floor
-from kit.fields.layout import Layout, derived_layout, layout_of
+from kit.fields.layout import Layout, derived_layout, layout_of, read_layout
 from kit.fields.minima import Flow
 from kit.fields.planner import Size, Ways
 from kit.fields.ride import Comfort, Ride, plan_ride
@@ -61,13 +61,18 @@ class Course:
         target_radius: float = 0.25,
         *,
         derived: bool = False,
+        charges: Path | None = None,
     ) -> Course:
         """For the first two of ``models``, the left one first. ``derived``: do not use the charges drawn by hand.
+        ``charges``: a charge file to use instead of the world's own.
 
         Raises WorldError for a wrong file, ValueError for a world without walls, LookupError for a missing model.
         """
         world, floor = open_floor(world_file)
-        layout = derived_layout(floor) if derived else layout_of(world_file, floor)
+        if charges is not None:
+            layout = read_layout(charges, floor)
+        else:
+            layout = derived_layout(floor) if derived else layout_of(world_file, floor)
         robots = tuple(_robot(_model(world, name)) for name in models[:2])
         return cls(floor, layout, robots, target, target_radius)
 

@@ -80,7 +80,7 @@ class Child:
         self._waited = 0.0
         self._output = Output(limits.output)
         self._folder = tempfile.mkdtemp(prefix="kit-")
-        cage = Cage(level, limits, self._folder, readable_paths(self._file))
+        cage = Cage(level, limits, self._folder, [*readable_paths(self._file), *_packages(installed)])
         for folder in (cage.scratch, cage.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
@@ -344,6 +344,13 @@ def environment(scratch: str) -> dict[str, str]:
 def libraries() -> list[str]:
     """The folders of installed packages, without what ``.pth`` files add, such as a checkout."""
     return [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
+
+
+def _packages(installed: Installed | None) -> list[str]:
+    """What a program of a package may read besides: the package, and what it imports from."""
+    return (
+        [] if installed is None else [str(path.absolute()) for path in (installed.folder, *installed.imports)]
+    )
 
 
 def readable_paths(file: Path) -> list[str]:

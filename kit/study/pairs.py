@@ -131,7 +131,9 @@ def try_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> Outc
     if place.case is None:
         raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
     case = place.case
-    course = Course.open(place.world.file, place.partners, case.target, case.target_radius)
+    course = Course.open(
+        place.world.file, place.partners, case.target, case.target_radius, charges=place.charges
+    )
     with Session(place, seed=seed, watched=True) as session:
         log = _Log(place)
         session.runner.observers.append(log)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -77,8 +78,11 @@ class FieldsScreen(PlayScreen):
         runs: Path,
         seed: int = 0,
         derived: bool = False,
+        charges: Path | None = None,
     ) -> None:
         super().__init__(look, place, controller, case=case, folder=folder, runs=runs, seed=seed)
+        if charges is not None:
+            self._find = partial(_with_charges, self._find, charges)
         self._derived = derived
         self._opened: _Opened | None = None
         self._traps: tuple[Trap, ...] = ()
@@ -153,6 +157,7 @@ class FieldsScreen(PlayScreen):
                 place.case.target,
                 place.case.target_radius,
                 derived=self._derived,
+                charges=place.charges,
             )
         except (WorldError, LookupError, ValueError) as error:
             self.behind.listen(None)
@@ -221,3 +226,7 @@ class FieldsScreen(PlayScreen):
         if self.view is not None and self.view.score.reached_s is not None:
             rows.append(row(("target reached", "good")))
         return rows
+
+
+def _with_charges(find: Callable[[], Place], charges: Path) -> Place:
+    return replace(find(), charges=charges)

@@ -1,0 +1,344 @@
+"""A charge file: judged by the field it makes, and by driving in it as the kit's controller ``fields`` does.
+
+The sheet has trials, as for a controller. The file is data: it is read strictly, no program runs. ::
+
+    trials:
+      - {name: there, place: turn, case: turn_a_to_b, time: 60, seeds: [1], shift: [0.02, 0.02, 0.05]}
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from grader.assignment import Assignment, Criterion, Seeds, Trial
+from grader.checks.contract import Check, NoParams, check
+from grader.checks.drives import CHECKS as DRIVES
+from grader.drive import Drive
+from grader.episodes import Bumps, shifted
+from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
+from grader.kinds.controller import read as read_trials
+from kit.fields import adjacency
+from kit.fields.course import Course
+from kit.fields.derived import derive
+from kit.fields.layout import Layout, read_layout
+from kit.fields.minima import Flow
+from kit.fields.pair import decide
+from kit.geometry import Pose
+from kit.headless import Fingerprint
+from kit.host.failure import Failure, FailureKind
+from kit.host.wire import printable
+from kit.msg.geometry_msgs import Twist, Vector3
+from kit.places import Place
+from kit.recording import Recorder, Recording
+from kit.runner import Observer
+from kit.sim.simulation import Simulation
+from kit.trip import Score, Trip
+from kit.world.problems import WorldError
+
+if TYPE_CHECKING:
+    from grader.grading import Evidence, Gatherer
+
+STEP: Final = 0.01
+"""s"""
+LOOK_EVERY: Final = 10
+"""Ticks between two decisions: as often as odometry comes."""
+MOST_BYTES: Final = 64 * 1024
+MOST_CHARGES: Final = 200
+MOST_NUMBER: Final = 1e6
+"""No intensity may be larger, either way."""
+
+
+@dataclass(frozen=True, eq=False)
+class FieldDrive(Drive):
+    """One drive in the student's field."""
+
+    course: Course | None = None
+    all_reached_s: float | None = None
+    """When every robot was within the target's radius."""
+
+    @property
+    def outcome(self) -> str:
+        end = f"reached after {self.all_reached_s:.1f} s" if self.all_reached_s is not None else "not reached"
+        return end + (f", {self.score.bumps} bumps" if self.score.bumps else "")
+
+    @cached_property
+    def flow(self) -> Flow:
+        assert self.course is not None
+        return self.course.flow
+
+    @property
+    def partners(self) -> Sequence[np.ndarray[Any, np.dtype[np.float64]]]:
+        """(ticks, 3) of each robot."""
+        return [self.recording.track(name) for name in self.place.partners]
+
+    def remark(self, check: str, params: Any = None) -> str:
+        """Where the field leads, if not to the target."""
+        if check not in ("arrive", "free_of_traps") or self.secret:
+            return ""
+        trap = next(iter(self.flow.traps()), None)
+        if trap is None:
+            return ""
+        return (
+            f"There is a trap at ({trap.x:.2f}, {trap.y:.2f}), where walls push as strongly as the target pulls; "
+            f"{trap.share:.0%} of the floor leads there."
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    within: float = 0.05
+    """m, of the wall's ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class At:
+    x: float = 0.0
+    y: float = 0.0
+    """m"""
+    fx: float = 0.0
+    fy: float = 0.0
+    """N: what the charges should make there, the target's too."""
+
+
+@check(none=0, full=1, words=("not reached", "reached"))
+def arrive(drive: FieldDrive, params: NoParams) -> float:
+    """All robots reached the target in {passed} of {count} drives. Look at {where}."""
+    return float(drive.all_reached_s is not None)
+
+
+@check(none=60, full=40, unit="s")
+def soon(drive: FieldDrive, params: NoParams) -> float:
+    """The slowest drive ({where}) took {actual}; {full} earn all points."""
+    return math.inf if drive.all_reached_s is None else drive.all_reached_s
+
+
+@check(none=0.2, full=0.6, unit="%")
+def side_by_side(drive: FieldDrive, params: NoParams) -> float:
+    """The two drove side by side for {actual} of their time ({where}); {full} earns all points."""
+    tracks = drive.partners
+    if len(tracks) != 2 or not len(tracks[0]):
+        return math.nan
+    return float(np.mean(adjacency.by_geometry(tracks[0][::LOOK_EVERY], tracks[1][::LOOK_EVERY])))
+
+
+@check(none=0.3, full=0.01, unit="%")
+def free_of_traps(drive: FieldDrive, params: NoParams) -> float:
+    """From {actual} of the floor the forces do not lead to the target; {full} is allowed."""
+    return float(sum(trap.share for trap in drive.flow.traps()))
+
+
+@check(none=0.5, full=1, unit="%", params=Near)
+def covers(drive: FieldDrive, params: Near) -> float:
+    """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
+    assert drive.course is not None
+    own = _lines(drive.course.layout.charges)
+    wanted = _lines(derive(drive.course.floor))
+    lengths = [math.dist(*each) for each in wanted]
+    covered = [
+        length
+        for each, length in zip(wanted, lengths, strict=True)
+        if any(_alike(each, other, params.within) for other in own)
+    ]
+    return math.fsum(covered) / math.fsum(lengths) if lengths else math.nan
+
+
+@check(none=0.5, full=0.02, unit="%", params=At)
+def force_at(drive: FieldDrive, params: At) -> float:
+    """At one of the places that are looked at, the force is off by {actual} of what it should be."""
+    assert drive.course is not None
+    course = drive.course
+    fx, fy = (float(each) for each in course.layout.forces((params.x, params.y), course.target))
+    return math.hypot(fx - params.fx, fy - params.fy) / max(1e-9, math.hypot(params.fx, params.fy))
+
+
+Segment = tuple[tuple[float, float], tuple[float, float]]
+
+
+def _lines(charges: Sequence[Any]) -> list[Segment]:
+    from kit.fields.charges import LineCharge, members
+
+    return [each.ends for each in members(charges) if isinstance(each, LineCharge)]
+
+
+def _alike(one: Segment, other: Segment, within: float) -> bool:
+    return any(
+        max(math.dist(one[0], end), math.dist(one[1], start)) <= within
+        for end, start in (other, (other[1], other[0]))
+    )
+
+
+CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
+    {
+        **{name: DRIVES[name] for name in ("bumps", "clearance", "smooth")},
+        **{each.name: each for each in (arrive, soon, side_by_side, free_of_traps, covers, force_at)},
+    }
+)
+
+
+def read(sheet: Sheet) -> Task:
+    """The trials."""
+    return read_trials(sheet)
+
+
+class _Gathered:
+    """The drives in one charge file, each when a criterion first needs it."""
+
+    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
+        self.level = conditions.level
+        self._assignment = assignment
+        self._file = file
+        self._secret = conditions.secret
+        self._seen: dict[tuple[str, bool, int], Evidence] = {}
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        found = []
+        for name in criterion.trials:
+            trial = self._assignment.trial(name)
+            if criterion.seeds is not Seeds.SECRET:
+                found += [
+                    self._drive(trial, seed, f"{name}, seed {seed}", secret=False) for seed in trial.seeds
+                ]
+            if criterion.seeds is not Seeds.PUBLIC and self._secret:
+                found += [
+                    self._drive(trial, seed, f"{name}, secret seed {number}", secret=True)
+                    for number, seed in enumerate(trial.secret_seeds, 1)
+                ]
+        return found
+
+    def all(self) -> Sequence[Evidence]:
+        return list(self._seen.values())
+
+    def _drive(self, trial: Trial, seed: int, label: str, *, secret: bool) -> Evidence:
+        key = trial.name, secret, seed
+        if key not in self._seen:
+            try:
+                self._seen[key] = driven(trial, self._file, seed, label, secret=secret)
+            except (WorldError, LookupError, ValueError, OSError) as error:
+                message = printable(str(error).replace(f"{self._file.parent}/", ""))
+                self._seen[key] = Look(
+                    failure=Failure(FailureKind.IMPORT, message), label=label, secret=secret
+                )
+        return self._seen[key]
+
+
+def driven(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> FieldDrive:
+    """One drive, to its end. Raises WorldError for a wrong file."""
+    if file.stat().st_size > MOST_BYTES:
+        raise ValueError(f"{file.name} is larger than {MOST_BYTES // 1024} KiB.")
+    place = _placed(trial, seed)
+    case = place.case
+    if case is None:
+        raise LookupError(f"{place.name} has no target.")
+    course = Course.open(place.world.file, place.partners, case.target, case.target_radius, derived=True)
+    course = replace(course, layout=_bounded(read_layout(file, course.floor)))
+    simulation = Simulation(place.world, seed=seed, step_size=STEP, wanted=lambda topic: False)
+    ride = _Ride(place, course, simulation)
+    ride.go(trial)
+    return FieldDrive(
+        trial=trial.name,
+        label=label,
+        seed=seed,
+        secret=secret,
+        place=place,
+        limit_s=trial.time_s,
+        recording=ride.recording(),
+        score=ride.score(),
+        failure=None,
+        talk={},
+        refused=(),
+        printed=(),
+        fingerprint=ride.fingerprint.text,
+        level=0,
+        bumped=ride.bumps[0].ticks,
+        course=course,
+        all_reached_s=ride.reached_s,
+    )
+
+
+def _bounded(layout: Layout) -> Layout:
+    """ValueError for what would only take time or make no sense."""
+    numbers = [getattr(layout.intensities, name) for name in ("walls", "target", "robot", "tension")]
+    if len(layout.field.stretches) > MOST_CHARGES:
+        raise ValueError(f"more than {MOST_CHARGES} charges; a map has as many as it has walls and corners")
+    values = [*numbers, *layout.field.stretches.ravel().tolist()]
+    if any(math.isnan(each) for each in values) or max(map(abs, numbers)) > MOST_NUMBER:
+        raise ValueError(f"an intensity of more than {MOST_NUMBER:g}")
+    return layout
+
+
+def _placed(trial: Trial, seed: int) -> Place:
+    """The place with its robots moved together, as the seed says."""
+    place, home, start = trial.place, trial.home(), shifted(trial, seed)
+    moved = {
+        model.name: start.compose(home.relative(model.pose))
+        for model in place.world.models
+        if model.name in place.partners
+    }
+    models = tuple(replace(each, pose=moved.get(each.name, each.pose)) for each in place.world.models)
+    return replace(place, world=replace(place.world, models=models))
+
+
+class _Ride:
+    """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
+
+    def __init__(self, place: Place, course: Course, simulation: Simulation) -> None:
+        self._place = place
+        self._course = course
+        self._simulation = simulation
+        self._recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
+        self._trip = Trip(place.driven, place.case)
+        self.bumps = [Bumps(name) for name in place.partners]
+        self.fingerprint = Fingerprint()
+        self._observers: list[Observer] = [self._recorder, self._trip, self.fingerprint, *self.bumps]
+        self.reached_s: float | None = None
+
+    def go(self, trial: Trial) -> None:
+        for tick in range(round(trial.time_s / STEP)):
+            if tick % LOOK_EVERY == 0:
+                self._decide()
+            self._simulation.step()
+            for observer in self._observers:
+                observer.ticked(self._simulation)
+            if self._are_there():
+                self.reached_s = self._simulation.time_ns / 1e9
+                break
+
+    def recording(self) -> Recording:
+        return self._recorder.recording()
+
+    def score(self) -> Score:
+        """The first robot's, with everybody's bumps."""
+        return replace(self._trip.score, bumps=sum(len(each.ticks) for each in self.bumps))
+
+    def _decide(self) -> None:
+        poses = [Pose(*self._simulation.pose(name)) for name in self._place.partners]
+        stands = any(each.ticks for each in self.bumps)
+        commands = decide(poses, self._course.target, self._course.layout).commands
+        for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
+            fine = math.isfinite(forward) and math.isfinite(turn) and not stands
+            command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if fine else Twist()
+            self._recorder.accepted(robot.commands, command)
+            self._simulation.accept(robot.commands, command)
+
+    def _are_there(self) -> bool:
+        course = self._course
+        return all(
+            self._simulation.hull_distance(name, course.target) <= course.target_radius
+            for name in self._place.partners
+        )
+
+
+def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+    return nullcontext(_Gathered(assignment, file, conditions))
+
+
+SORT: Final = Sort((".yaml", ".yml"), CHECKS, read, gather)

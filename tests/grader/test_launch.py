@@ -1,0 +1,118 @@
+"""Launch files that are handed in: what is looked at, and what a hostile one can and cannot do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grader.assignment import Assignment
+from grader.reading import read
+from grader.result import Result, Status, Verdict
+from grader.session import Terms, grade
+from grader.submission import Submission
+from kit.host.confine import Level
+from kit.world.problems import WorldError
+from tests.grader.conftest import LOCKS
+
+LESSON = Path(__file__).parents[2] / "lessons" / "04-launch-files" / "driver"
+SOLUTION = (
+    Path(__file__).parents[1] / "solutions" / "04-launch-files" / "driver" / "solution.py"
+).read_text()
+DESK = Terms(Level.LIMITED, secret=True)
+
+HEAD = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import *
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        %s
+    ])
+"""
+WORLD = """Node(package='flatland_server', executable='flatland_server', name='flatland_server',
+    parameters=[{'world_path': %r}]),"""
+
+
+@pytest.fixture(scope="module")
+def assignment() -> Assignment:
+    return read(LESSON)
+
+
+def handed_in(assignment: Assignment, text: str, terms: Terms = DESK) -> Result:
+    name = assignment.submit
+    return grade(assignment, Submission("ada", name, {name: text.encode()}), terms)
+
+
+def test_a_right_one_earns_everything(assignment: Assignment) -> None:
+    assert handed_in(assignment, SOLUTION).verdict is Verdict.PASS
+
+
+@LOCKS
+def test_a_right_one_earns_everything_locked_in(assignment: Assignment) -> None:
+    result = handed_in(assignment, SOLUTION, Terms(Level.FILTERED, secret=True))
+    assert [test.rationale for test in result.tests if test.status is not Status.PASS] == []
+
+
+def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignment) -> None:
+    result = handed_in(assignment, SOLUTION.replace('name="driver"', 'name="pilot"'))
+    assert "/pilot" in result.tests[0].rationale
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("def generate_launch_description(:\n", "SyntaxError"),
+        ("x = 1\n", "generate_launch_description"),
+        ("import nothing_like_that\n", "nothing_like_that"),
+        (HEAD % "1 / 0", "ZeroDivisionError"),
+        (HEAD % "Node(package='convoy', executable='nobody')", "nobody"),
+        (HEAD % "Node(package='nowhere', executable='cruise')", "nowhere"),
+        (HEAD % "ExecuteProcess(cmd=['touch', '/tmp/was_here'])", "not started here"),
+        (HEAD % "ExecuteProcess(cmd=['python3', 'world/x.py'])", "not started here"),
+        (HEAD % "ExecuteProcess(cmd=['ros2', 'topic', 'list'], shell=True)", "not started here"),
+        (HEAD % (WORLD % "/etc/passwd"), "one of the package's"),
+        (HEAD % (WORLD % "../../../etc/hosts"), "one of the package's"),
+        (
+            HEAD % "*[Node(package='convoy', executable='cruise', name=f'n{i}') for i in range(40)]",
+            "more than 12",
+        ),
+    ],
+    ids=[
+        *("syntax", "empty", "import", "raises", "program", "package", "command", "python", "shell"),
+        *("world", "outside", "many"),
+    ],
+)
+def test_a_wrong_or_hostile_one_is_told_why(assignment: Assignment, text: str, word: str) -> None:
+    result = handed_in(assignment, text)
+    assert result.points == 0
+    assert result.tests[0].status is Status.STUDENT_ERROR
+    assert word in result.tests[0].rationale
+    assert "/launch-" not in result.tests[0].rationale
+
+
+def test_one_that_never_ends_is_ended(assignment: Assignment) -> None:
+    quick = replace(assignment, limits=replace(assignment.limits, start_s=3.0))
+    result = handed_in(quick, "while True:\n    pass\n")
+    assert result.tests[0].status is Status.TIMEOUT
+
+
+def test_a_package_outside_the_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "inside").mkdir()
+    sheet = (LESSON / "assignment.yaml").read_text().replace("package: starter", "package: ../outside")
+    (tmp_path / "inside" / "assignment.yaml").write_text(sheet)
+    with pytest.raises(WorldError, match=r"package\.xml"):
+        read(tmp_path / "inside")
+
+
+@LOCKS
+def test_a_launch_file_cannot_read_what_is_not_its_own(assignment: Assignment, tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("42")
+    text = HEAD % f"LogInfo(msg=open({str(secret)!r}).read())"
+    result = handed_in(assignment, text, Terms(Level.FILTERED, secret=True))
+    assert result.points == 0
+    assert "PermissionError" in result.tests[0].rationale
