@@ -48,11 +48,15 @@ def command(
         with Progress(desk.folder) as progress:
             if progress.notice:
                 click.echo(progress.notice, err=True)
+            terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if name is None:
+                if not terminal.plain.value:
+                    from kit.cli.lesson_screen import show_list
+
+                    show_list(desk, terminal)
                 _list(progress)
                 return
             lesson = find_lesson(name)
-            terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if not terminal.plain.value:
                 from kit.cli.lesson_screen import show_on_screen
 

@@ -1,4 +1,4 @@
-"""The full screen of ``kit lesson``, opened on one lesson."""
+"""The full screen of ``kit lesson``: all lessons, or one of them."""
 
 from __future__ import annotations
 
@@ -24,4 +24,20 @@ def show_on_screen(
     app = KitApp(terminal)
     app.begin(LessonScreen(app.look, Visit(lesson, progress, desk), desk))
     app.run()
+    raise SystemExit(app.return_code or 0)
+
+
+def show_list(desk: Workspace, terminal: TerminalDecision) -> NoReturn:
+    """All lessons on a full screen; ends the verb when that is left."""
+    os.environ.update(terminal.environment())
+    from kit.tui.app import KitApp
+    from kit.tui.overview import School
+    from kit.tui.screens.lessons import LessonsScreen
+
+    app, school = KitApp(terminal), School(desk)
+    try:
+        app.begin(LessonsScreen(app.look, school, school.look()))
+        app.run()
+    finally:
+        school.close()
     raise SystemExit(app.return_code or 0)
