@@ -1,9 +1,10 @@
-"""Teleop for two: the arrow keys drive two robots side by side as if they were one.
+"""Teleop for two: the arrow keys drive two robots side by side as if they were one; one alone as it is.
 
 Listens to the same keystroke messages as ``teleop``. What is steered is the point between the two: the outer robot of
 a bend drives faster, the inner one slower, and both turn at the same rate, so that they stay abreast.
 """
 
+import json
 import math
 
 import rclpy
@@ -18,17 +19,21 @@ class TeleopPair(Node):
         super().__init__("teleop_pair")
         self.speed = self.declare_parameter("speed", 0.4).value  # m/s
         self.turn_rate = self.declare_parameter("turn_rate", 0.8).value  # rad/s
-        self.models = self.declare_parameter("pair", ["left", "right"]).value
+        models = json.loads(self.declare_parameter("models", '["left", "right"]').value)
+        # Two robots have namespaces of their own names; one alone has ours.
+        self.models = {name: f"/{name}/" if len(models) > 1 else "" for name in models}
         self.held: set[str] = set()
         self.strength = 1.0
         self.poses: dict[str, tuple[float, float, float]] = {}
-        self.drives = {name: self.create_publisher(Twist, f"/{name}/cmd_vel", 10) for name in self.models}
+        self.drives = {
+            name: self.create_publisher(Twist, f"{space}cmd_vel", 10) for name, space in self.models.items()
+        }
         self.create_subscription(String, "/teleopkeys", self.on_key, 10)
         self.create_subscription(Float32, "/teleopkeys/strength", self.on_strength, 10)
-        for name in self.models:
+        for name, space in self.models.items():
             self.create_subscription(
                 Odometry,
-                f"/{name}/odom",
+                f"{space}odom",
                 lambda message, name=name: self.on_odometry(name, message),
                 10,
             )
