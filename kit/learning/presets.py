@@ -173,7 +173,7 @@ KIT_PPO_HALLWAY = Preset(
     steps=4_000_000,  # with three a door or a curve is not always learned well; most runs are sure before half of it
     worlds=240,  # sixteen of each case
     learning_rate=Falling(1e-3, 3e-5),  # the end of training is for precision
-    activation="relu",  # as good as tanh here; tanh alone takes a quarter of the time
+    activation="relu",  # no worse than tanh in the few seeds compared, and tanh takes a fifth of the time
 )
 KIT_PPO_WHEELCHAIRS = Preset(
     Rollouts(

@@ -11,12 +11,13 @@ import fcntl
 import io
 import json
 import re
+import time
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import IO, Any, Literal, get_args
 
 from kit.learning.choice import TaskChoice
 from kit.learning.events import Ended, Event, EventReader, Examined, Progress, Started
@@ -28,6 +29,22 @@ Order = Literal["go", "pause", "stop"]
 """What a face may ask of a learner."""
 PresetName = Literal["kit", "seed"]
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
+LOOK_S = 0.2
+"""Whoever looks whether a run is alive holds its lock for a moment: a learner waits so long."""
+
+
+def _taken(lock: IO[bytes]) -> bool:
+    """Locks the file for this process alone; False if another one keeps it."""
+    until = time.monotonic() + LOOK_S
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            if time.monotonic() >= until:
+                return False
+            time.sleep(LOOK_S / 20)
+        else:
+            return True
 
 
 class RunError(Exception):
@@ -165,12 +182,8 @@ class Run:
         RunError if somebody is at it.
         """
         with (self.folder / "lock").open("ab") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise RunError(
-                    f"{self.name} is being trained already. `kit watch {self.name}` shows it."
-                ) from None
+            if not _taken(lock):
+                raise RunError(f"{self.name} is being trained already. `kit watch {self.name}` shows it.")
             yield
 
     @property

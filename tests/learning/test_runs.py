@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import errno
+import fcntl
 import multiprocessing
+import threading
 import zipfile
 from pathlib import Path
 
@@ -153,6 +155,15 @@ def test_two_cannot_train_one_run(tmp_path: Path) -> None:
         with pytest.raises(RunError, match="already"), run.held():
             pass
     assert not run.alive
+
+
+def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    with (tmp_path / "lock").open("ab") as look:
+        fcntl.flock(look, fcntl.LOCK_SH)
+        threading.Timer(0.05, fcntl.flock, (look, fcntl.LOCK_UN)).start()
+        with run.held():
+            assert run.alive
 
 
 def test_the_older_checkpoint_stands_in_for_a_damaged_one(tmp_path: Path) -> None:
