@@ -4,7 +4,6 @@ Listens to the same keystroke messages as ``teleop``. What is steered is the poi
 a bend drives faster, the inner one slower, and both turn at the same rate, so that they stay abreast.
 """
 
-import json
 import math
 
 import rclpy
@@ -19,7 +18,7 @@ class TeleopPair(Node):
         super().__init__("teleop_pair")
         self.speed = self.declare_parameter("speed", 0.4).value  # m/s
         self.turn_rate = self.declare_parameter("turn_rate", 0.8).value  # rad/s
-        models = json.loads(self.declare_parameter("models", '["left", "right"]').value)
+        models = self.declare_parameter("models", ["left", "right"]).value
         # Two robots have namespaces of their own names; one alone has ours.
         self.models = {name: f"/{name}/" if len(models) > 1 else "" for name in models}
         self.held: set[str] = set()
