@@ -10,6 +10,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
+    from kit.cli.waiting import Intake
     from kit.school.lessons.records import Lesson, Scene
     from kit.school.progress import Progress
     from kit.workspace import Workspace
@@ -35,6 +36,7 @@ def command(
     Progress is kept as you go; leave at any time and come back.
     """
     from kit.cli.lesson_plain import PlainLesson
+    from kit.cli.waiting import Intake
     from kit.desk import open_desk
     from kit.school.lessons.reading import UnknownLesson, find_lesson
     from kit.school.lessons.visit import Visit
@@ -62,10 +64,12 @@ def command(
 
                 show_on_screen(lesson, progress, desk, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
+            intake = Intake()
             PlainLesson(
                 Visit(lesson, progress, desk),
                 watch=_watch,
-                drive=lambda scene, file: _drive(scene, file, desk),
+                drive=lambda scene, file: _drive(scene, file, desk, intake),
+                intake=intake,
             ).run()
     except (UnknownLesson, WorkspaceError, ProgressError, WorkError, WorldError, FileNotFoundError) as error:
         options.fail(str(error))
@@ -114,7 +118,7 @@ def _watch(scene: Scene) -> None:
         click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
 
 
-def _drive(scene: Scene, file: str, desk: Workspace) -> None:
+def _drive(scene: Scene, file: str, desk: Workspace, intake: Intake) -> None:
     """The student drives line by line; the recording is kept in ``file``."""
     from kit.cli.plain import Plain, play_plainly
     from kit.controllers import find
@@ -131,5 +135,6 @@ def _drive(scene: Scene, file: str, desk: Workspace) -> None:
             seed=scene.seed,
             folder=desk.controllers,
             record=Path(file),
+            intake=intake,
         )
     )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import select
 import sys
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import click
 
+from kit.cli.waiting import Intake, Lines
 from kit.host.reload import FileWatch
 from kit.school.lessons.checking import Report, handed_in
 from kit.school.lessons.markup import parsed, plain, rows
@@ -39,12 +38,19 @@ class PlainLesson:
     """One lesson, driven by lines of text."""
 
     def __init__(
-        self, visit: Visit, *, watch: Callable[[Scene], None], drive: Callable[[Scene, str], None]
+        self,
+        visit: Visit,
+        *,
+        watch: Callable[[Scene], None],
+        drive: Callable[[Scene, str], None],
+        intake: Intake | None = None,
     ) -> None:
-        """``watch``: shows a scene in words; ``drive``: has the student drive it and keep the recording."""
+        """``watch``: shows a scene in words; ``drive``: has the student drive it and keep the recording, with the
+        lines of the same ``intake``."""
         self._visit = visit
         self._watch = watch
         self._drive = drive
+        self._lines = Lines(_nobody_looks_in, intake)
         self._file: FileWatch | None = None
         self.step = visit.first_step
         self.is_over = False
@@ -57,11 +63,14 @@ class PlainLesson:
         if done:
             click.echo(f"{done} of {len(lesson.steps)} steps are done; going on at step {self.step.number}.")
         self.show()
-        while not self.is_over:
-            line = self._line()
-            if line is None:
-                break
-            self.obey(line)
+        try:
+            while not self.is_over:
+                line = self._line()
+                if line is None:
+                    break
+                self.obey(line)
+        finally:
+            self._lines.close()
 
     def obey(self, line: str) -> None:
         """Does what one line says. Mistakes are told, and change nothing."""
@@ -136,8 +145,12 @@ class PlainLesson:
         """Has the exercise checked, and says what came of it."""
         exercise = self._exercise()
         click.echo("Checking...")
-        with self._visit.check(exercise) as running:
-            report = running.wait()
+        try:
+            with self._visit.check(exercise) as running:
+                report = running.wait()
+        except KeyboardInterrupt:
+            click.echo("\nStopped; it does not count. r checks again, q leaves.")
+            return
         self._visit.take(exercise, report)
         for line in said(report):
             click.echo(line)
@@ -169,7 +182,9 @@ class PlainLesson:
 
     def printed(self) -> None:
         report = self._visit.report(self._exercise())
-        logs = [each.log for each in report.criteria if each.log] if report is not None else []
+        if report is None:
+            raise Mistake("there is something to see when a check (r) has run it")
+        logs = [each.log for each in report.criteria if each.log]
         click.echo(logs[0] if logs else "It printed nothing.")
 
     def begin_again(self, answer: str) -> None:
@@ -267,19 +282,17 @@ class PlainLesson:
 
     def _line(self) -> str | None:
         """The next line; None at the end of input. Meanwhile a saved file is checked."""
-        if sys.stdin is None:
-            return None
-        if sys.stdin.isatty():
-            click.echo("> ", nl=False)
-        while self._file is not None and not _has_input():
-            time.sleep(LOOK_S)
+        self._prompt()
+        while self._file is not None and not self._lines.await_line(LOOK_S):
             if self._file.has_changed():
                 click.echo("\nSaved.")
                 self.check()
-                if sys.stdin.isatty():
-                    click.echo("> ", nl=False)
-        line = sys.stdin.readline()
-        return line or None
+                self._prompt()
+        return self._lines.next()
+
+    def _prompt(self) -> None:
+        if sys.stdin is not None and sys.stdin.isatty():
+            click.echo("> ", nl=False)
 
 
 def said(report: Report) -> list[str]:
@@ -307,8 +320,8 @@ def _wrapped(text: str, indent: str = "") -> str:
     return "\n".join(textwrap.wrap(text, WIDTH, subsequent_indent=indent)) or text
 
 
-def _has_input() -> bool:
-    return bool(select.select([sys.stdin], [], [], 0)[0])
+def _nobody_looks_in() -> None:
+    """There is no world to look into between two lines of a lesson."""
 
 
 def _always(lesson: PlainLesson) -> bool:

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import click
 
-from kit.cli.waiting import Lines
+from kit.cli.waiting import Intake, Lines
 from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.inspection.door import Door, open_door
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -57,9 +57,11 @@ class Plain:
         root: Path | None = None,
         doors: Path | None = None,
         record: Path | None = None,
+        intake: Intake | None = None,
     ) -> None:
         """``root``: the folder that the world files named later may read; by default each its own. ``doors``: where
-        other terminals find the world. ``record``: where the drive is kept at the end."""
+        other terminals find the world. ``record``: where the drive is kept at the end. ``intake``: of who read lines
+        before, and reads on afterwards."""
         self._seed = seed
         self._folder = folder
         self._root = root
@@ -67,7 +69,7 @@ class Plain:
         self._door: Door | None = None
         self._record = record
         self._controller = controller
-        self.lines = Lines(self.attend)
+        self.lines = Lines(self.attend, intake)
         self._session = self._open(place)
         self.is_over = False
 
