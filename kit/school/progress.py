@@ -11,7 +11,7 @@ import json
 import os
 import sqlite3
 import uuid
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -40,6 +40,10 @@ CREATE TABLE IF NOT EXISTS events (
     content TEXT NOT NULL
 )
 """
+
+
+_ALL: Final = "SELECT uid, at, kind, subject, content FROM events"
+_Row = tuple[str, str, str, str, str]
 
 
 class ProgressError(Exception):
@@ -123,8 +127,7 @@ class Progress:
         """All events in the order of their time, or those of one kind, or about one subject."""
         wanted = [("kind", kind), ("subject", subject)]
         conditions = " AND ".join(f"{column} = ?" for column, value in wanted if value is not None)
-        query = "SELECT uid, at, kind, subject, content FROM events"
-        query += f" WHERE {conditions}" if conditions else ""
+        query = f"{_ALL} WHERE {conditions}" if conditions else _ALL
         try:
             rows = self._connection.execute(
                 f"{query} ORDER BY at, number", [str(value) for _, value in wanted if value is not None]
@@ -163,41 +166,35 @@ class Progress:
         return self._write(events)
 
     def _write(self, events: Iterable[Event]) -> int:
-        rows = [
-            (
-                each.uid,
-                each.at,
-                each.kind.value,
-                each.subject,
-                json.dumps(dict(each.content), ensure_ascii=False),
-            )
-            for each in events
-        ]
+        rows = [_row_of(each) for each in events]
         too_long = next((row for row in rows if len(row[4]) > LONGEST), None)
         if too_long is not None:
             raise ProgressError(f"{too_long[3]}: {len(too_long[4])} characters are too many; {LONGEST} fit.")
         try:
-            with self._connection:
-                before = self._connection.total_changes
-                self._connection.executemany(
-                    "INSERT OR IGNORE INTO events (uid, at, kind, subject, content) VALUES (?, ?, ?, ?, ?)",
-                    rows,
-                )
-            return self._connection.total_changes - before
+            try:
+                return _insert(self._connection, rows)
+            except sqlite3.OperationalError:
+                if not self._has_moved():
+                    raise
+                self._bring_back()
+                return _insert(self._connection, rows)
         except sqlite3.Error as error:
             raise self._unusable(error) from None
 
+    def _has_moved(self) -> bool:
+        """Whether somebody has taken away the file that was opened, or put another in its place."""
+        return _identity(self._file) != self._opened
+
+    def _bring_back(self) -> None:
+        """What was confirmed is in the file that was taken away, which lives for as long as it is open."""
+        rows = self._connection.execute(_ALL).fetchall()
+        self._connection.close()
+        self._connection = self._connect()
+        _insert(self._connection, rows)
+
     def _connect(self) -> sqlite3.Connection:
-        # Other threads of one face may ask; SQLite serialises them itself.
-        connection = sqlite3.connect(self._file, timeout=WAIT_S, check_same_thread=False)
-        try:
-            # Not the write-ahead log: it needs shared memory, which network homes do not have.
-            connection.execute("PRAGMA synchronous = FULL")
-            connection.execute(_SCHEMA)
-            connection.commit()
-        except sqlite3.Error:
-            connection.close()
-            raise
+        connection = _connected(self._file)
+        self._opened = _identity(self._file)
         return connection
 
     def _check(self) -> None:
@@ -207,31 +204,88 @@ class Progress:
             raise sqlite3.DatabaseError("damaged")
 
     def _set_aside(self) -> None:
-        """Keeps the damaged file under another name and begins a new one with what can be read of it."""
+        """Keeps the damaged file under another name and goes on with what can be read of it.
+
+        At every instant the file in its place is the damaged one or the whole new one, so that a kill loses nothing.
+        """
         with suppress(AttributeError):
             self._connection.close()
         stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S-%f")
         aside = self._file.with_name(f"{self._file.stem}.damaged-{stamp}{self._file.suffix}")
-        saved = list(_salvaged(self._file))
+        fresh = self._file.with_name(f".{self._file.name}.{stamp}")
         try:
-            for ending in ("-journal", "-wal", "-shm"):
-                with suppress(FileNotFoundError):
-                    os.replace(f"{self._file}{ending}", f"{aside}{ending}")  # noqa: PTH105
-            self._file.replace(aside)
+            found = _identity(self._file)
+            saved = [_row_of(event) for event in _salvaged(self._file)]
+            with closing(_connected(fresh)) as connection:
+                _insert(connection, saved)
+            if _identity(self._file) == found:  # else another process has mended it meanwhile
+                _keep_as(self._file, aside)
+                fresh.replace(self._file)
             self._connection = self._connect()
         except (OSError, sqlite3.Error) as error:
             raise self._unusable(error) from None
-        self._write(saved)
+        finally:
+            for left in (fresh, Path(f"{fresh}-journal")):
+                with suppress(OSError):
+                    left.unlink()
         self.notice = (
             f"{self._file.name} was damaged. It was kept as {aside.name}; "
             f"{len(saved)} entries could be read of it and were taken over."
         )
 
     def _unusable(self, error: Exception) -> ProgressError:
+        if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError):
+            return ProgressError(
+                f"{self._file}: was damaged just now ({error}). Begin again: what can be read of it is taken over then."
+            )
         return ProgressError(
             f"{self._file}: progress cannot be kept there ({error}). "
             "Is the disk full, or the folder another user's? `--workspace FOLDER` names another."
         )
+
+
+def _connected(file: Path) -> sqlite3.Connection:
+    # Other threads of one face may ask; SQLite serialises them itself.
+    connection = sqlite3.connect(file, timeout=WAIT_S, check_same_thread=False)
+    try:
+        # Not the write-ahead log: it needs shared memory, which network homes do not have.
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.execute(_SCHEMA)
+        connection.commit()
+    except sqlite3.Error:
+        connection.close()
+        raise
+    return connection
+
+
+def _insert(connection: sqlite3.Connection, rows: Sequence[_Row]) -> int:
+    """Adds rows, all or none. Returns how many are new."""
+    with connection:
+        before = connection.total_changes
+        connection.executemany(
+            "INSERT OR IGNORE INTO events (uid, at, kind, subject, content) VALUES (?, ?, ?, ?, ?)", rows
+        )
+    return connection.total_changes - before
+
+
+def _identity(file: Path) -> tuple[int, int] | None:
+    """Which file is there now, whatever it holds."""
+    try:
+        status = file.stat()
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
+
+
+def _keep_as(file: Path, aside: Path) -> None:
+    """Another name for the file, with what SQLite keeps beside it; the first name stays where links can be made."""
+    try:
+        os.link(file, aside)
+    except OSError:
+        file.replace(aside)
+    for ending in ("-journal", "-wal", "-shm"):
+        with suppress(FileNotFoundError):
+            os.replace(f"{file}{ending}", f"{aside}{ending}")  # noqa: PTH105
 
 
 def read_export(file: Path) -> list[Event]:
@@ -240,7 +294,7 @@ def read_export(file: Path) -> list[Event]:
         content = json.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ProgressError(f"{file}: is not an export of progress, or is cut off ({error}).") from None
     if (
         not isinstance(content, dict)
@@ -259,25 +313,38 @@ def _of_export(content: Any, index: int, file: Path) -> Event:
     try:
         event = Event(
             str(content["uid"]),
-            str(content["at"]),
+            _utc(str(content["at"])),
             Kind(content["kind"]),
             str(content["subject"]),
             dict(content["content"]),
         )
-        if event.time.tzinfo is None:
-            raise ValueError("a time without its zone")
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise ProgressError(f"{file}: entry {index} cannot be understood ({error!r}).") from None
     return event
 
 
-def _of_row(row: tuple[str, str, str, str, str]) -> Event | None:
+def _utc(at: str) -> str:
+    """A time as the journal writes it, so that times are in the order of their texts."""
+    time = datetime.fromisoformat(at)
+    if time.tzinfo is None:
+        raise ValueError("a time without its zone")
+    return time.astimezone(UTC).isoformat(timespec="microseconds")
+
+
+def _row_of(event: Event) -> _Row:
+    content = json.dumps(dict(event.content), ensure_ascii=False)
+    return event.uid, event.at, event.kind.value, event.subject, content
+
+
+def _of_row(row: _Row) -> Event | None:
     """The event of a row; None for one of a newer kit, which is kept and not understood."""
     uid, at, kind, subject, content = row
     try:
-        return Event(uid, at, Kind(kind), subject, json.loads(content))
-    except ValueError:
+        event = Event(uid, at, Kind(kind), subject, json.loads(content))
+        is_whole = isinstance(event.content, dict) and event.time.tzinfo is not None
+    except (TypeError, ValueError, RecursionError):
         return None
+    return event if is_whole else None
 
 
 def _salvaged(file: Path) -> Iterator[Event]:
@@ -292,7 +359,6 @@ def _salvaged(file: Path) -> Iterator[Event]:
                     if number in seen:
                         break
                     seen.add(number)
-                    with suppress(TypeError, ValueError):
-                        event = _of_row(tuple(row))
-                        if event is not None:
-                            yield event
+                    event = _of_row(tuple(row))
+                    if event is not None:
+                        yield event

@@ -94,6 +94,100 @@ def test_a_damaged_journal_is_set_aside_and_what_can_be_read_is_kept(tmp_path: P
         assert progress.notice == ""
 
 
+def _damaged(folder: Path, count: int = 2000) -> None:
+    with Progress(folder) as progress:
+        progress.take_over(
+            Event(
+                f"{number:032x}", "2026-01-01T00:00:00+00:00", Kind.STEP, f"lesson/{number}", {"x": "y" * 40}
+            )
+            for number in range(count)
+        )
+    content = bytearray((folder / FILE).read_bytes())
+    middle = len(content) // 2 // 4096 * 4096
+    content[middle : middle + 8192] = b"\xff" * 8192
+    (folder / FILE).write_bytes(content)
+
+
+@pytest.mark.parametrize("moment", ["os.link", "pathlib.Path.replace"])
+def test_a_kill_while_it_is_set_aside_loses_nothing(
+    tmp_path: Path, moment: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def killed(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    _damaged(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr(moment, killed)
+        with pytest.raises(KeyboardInterrupt):
+            Progress(tmp_path)
+    with Progress(tmp_path) as progress:
+        assert "damaged" in progress.notice
+        assert len(progress.events()) > 500
+
+
+def test_a_full_disk_while_it_is_set_aside_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise sqlite3.OperationalError("database or disk is full")
+
+    _damaged(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr("kit.school.progress._insert", full)
+        with pytest.raises(ProgressError, match="full"):
+            Progress(tmp_path)
+    with Progress(tmp_path) as progress:
+        assert len(progress.events()) > 500
+
+
+@pytest.mark.parametrize("other", [False, True], ids=["taken away", "another in its place"])
+def test_a_file_taken_away_while_it_is_open_loses_nothing(tmp_path: Path, other: bool) -> None:
+    with Progress(tmp_path) as progress:
+        first = progress.add(Kind.STEP, "01/1")
+        (tmp_path / FILE).unlink()
+        if other:
+            with Progress(tmp_path) as second:
+                second.add(Kind.STEP, "01/9")
+        progress.add(Kind.STEP, "01/2")
+        known = [each.subject for each in progress.events()]
+    assert sorted(known) == sorted(["01/1", "01/2", *(["01/9"] if other else [])])
+    with Progress(tmp_path) as progress:
+        assert first in progress.events()
+        assert [each.subject for each in progress.events()] == known
+
+
+ODD = {
+    "time": ("yesterday", "{}"),
+    "zone": ("2026-01-01T00:00:00", "{}"),
+    "list": ("2026-01-01T00:00:00+00:00", "[]"),
+    "nonsense": ("2026-01-01T00:00:00+00:00", "{"),
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_a_row_that_somebody_wrote_is_left_alone(tmp_path: Path, name: str) -> None:
+    with Progress(tmp_path) as progress:
+        mine = progress.add(Kind.STEP, "01/1")
+    with sqlite3.connect(tmp_path / FILE) as other:
+        other.execute(
+            "INSERT INTO events (uid, at, kind, subject, content) VALUES ('u', ?, 'step', 's', ?)", ODD[name]
+        )
+    other.close()
+    with Progress(tmp_path) as progress:
+        assert progress.events() == [mine]
+
+
+def test_times_of_another_zone_come_in_order(tmp_path: Path) -> None:
+    file = tmp_path / "ada.json"
+    with Progress(tmp_path) as progress:
+        progress.add(Kind.STEP, "later", now=datetime(2026, 1, 1, 8, tzinfo=UTC))
+        progress.export(file)
+        exported = file.read_text().replace("2026-01-01T08:00:00.000000+00:00", "2026-01-01T09:00:00+02:00")
+        file.write_text(exported.replace(progress.events()[0].uid, "another").replace("later", "earlier"))
+        progress.take_over(read_export(file))
+        assert [each.subject for each in progress.events()] == ["earlier", "later"]
+
+
 @pytest.mark.parametrize("content", [b"nonsense" * 200, b""], ids=["nonsense", "empty"])
 def test_what_is_no_database_is_set_aside_or_begun(tmp_path: Path, content: bytes) -> None:
     (tmp_path / FILE).write_bytes(content)
