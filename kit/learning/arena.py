@@ -20,6 +20,7 @@ from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
 from kit.world.catalogue import MapCard
 from kit.world.records import Body, Layer, Model, Polygon, World
+from kit.world.touching import contains
 
 FEW_WALLS = 64
 """So many are looked at one by one: to sort out those out of sight costs more. Measured."""
@@ -183,7 +184,9 @@ def _robot(model: Model, watcher: Model) -> Robot:
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose() or laser.sight.origin != Pose():
         raise Unsupported(f"{body.place}: the batch engine wants a dynamic body with its lidar at the origin")
-    if any(footprint.category & laser.sight.bits for footprint in body.footprints):
+    # A lidar does not see the hull in which it stands.
+    watched = (footprint for footprint in body.footprints if footprint.category & laser.sight.bits)
+    if not all(contains(footprint, laser.sight.origin) for footprint in watched):
         raise Unsupported(f"{body.place}: the batch engine wants a robot whose lidar does not see itself")
     drives = [plugin for plugin in model.plugins if isinstance(plugin.params, DiffDriveParams)]
     for plugin in model.plugins:

@@ -14,6 +14,8 @@ from tests.sim.workshop import Workshop
 
 Mapped = Mapping[str, Any]
 SQUARE = [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]]
+BESIDE = [[0.3, 0.1], [0.1, 0.1], [0.1, -0.1], [0.3, -0.1]]
+"""Not around the lidar."""
 LASER = {"type": "Laser", "name": "lidar", "body": "base", "range": 10, "layers": ["seen"]} | {
     "angle": {"min": -1, "max": 1, "increment": 0.5}
 }
@@ -51,6 +53,8 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
     assert len(taken.walls) == 4
     assert len(taken.robot.directions) == 5
     assert (taken.robot.reach, taken.robot.noise) == (10.0, 0.0)
+    around = robot(plugins=[DRIVE, LASER | {"layers": ["all"]}])
+    assert len(ground(workshop, {"robot": around, "post": post}).walls) == 4  # it stands inside its hull
     (hull,) = taken.robot.hull
     assert sorted(hull) == sorted((x, y) for x in (-0.1, 0.1) for y in (-0.1, 0.1))
 
@@ -59,7 +63,10 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
     ("models", "reason"),
     [
         ({"robot": robot(bodies=[body(footprints=[ROUND])])}, "round footprint"),
-        ({"robot": robot(plugins=[DRIVE, LASER | {"layers": ["all"]}])}, "does not see itself"),
+        (
+            {"robot": robot(bodies=[body(footprints=[footprint(layers=["wall", "seen"], points=BESIDE)])])},
+            "does not see itself",
+        ),
         ({"robot": robot(bodies=[body(), body("arm")])}, "joints"),
         ({"robot": robot(bodies=[body(pose=[1, 0, 0])])}, "at the origin"),
         ({"robot": robot(bodies=[body(type="kinematic")])}, "dynamic"),
