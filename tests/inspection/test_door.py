@@ -193,7 +193,7 @@ def test_a_visitor_that_talks_nonsense_is_shown_out(nonsense: bytes, begin: Call
     world = begin()
     connection = connect(world.door.path)
     connection.sendall(nonsense)
-    connection.settimeout(5)
+    connection.settimeout(30)
     with suppress(ConnectionResetError):  # it need not have read all we said
         while connection.recv(1 << 16):
             pass
