@@ -216,7 +216,9 @@ def shown(value: Value) -> str:
     """An answer as it is told."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return "blank" if value is None else str(value)
+    from kit.world.problems import displayable
+
+    return "blank" if value is None else "".join(sign if displayable(sign) else "?" for sign in str(value))
 
 
 def _count(number: int) -> str:

@@ -233,7 +233,7 @@ def _policy(agent: str, desk: Workspace) -> Policy:
 def _called(progress: Progress) -> str:
     from kit.school.progress import Kind
 
-    names = [str(event.content.get("value", "")) for event in progress.events(Kind.ABOUT, "name")]
+    names = [name for event in progress.events(Kind.ABOUT, "name") if (name := event.text("value"))]
     return names[-1] if names else ""
 
 

@@ -8,6 +8,7 @@ later instant does not lose it. A damaged file is set aside, never overwritten, 
 from __future__ import annotations
 
 import json
+import math
 import os
 import sqlite3
 import uuid
@@ -81,6 +82,22 @@ class Event:
     @property
     def time(self) -> datetime:
         return datetime.fromisoformat(self.at)
+
+    def number(self, key: str) -> float | None:
+        """A finite number of the content; None for anything else, for who wrote an imported file is not known."""
+        value = self.content.get(key)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return None
+        try:
+            number = float(value)
+        except OverflowError:
+            return None
+        return number if math.isfinite(number) else None
+
+    def text(self, key: str) -> str:
+        """A text of the content that a terminal just shows; empty for anything else."""
+        value = self.content.get(key)
+        return value if isinstance(value, str) and value.isprintable() else ""
 
 
 class Progress:

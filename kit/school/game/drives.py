@@ -54,7 +54,7 @@ def _tell_the_hall(progress: Progress) -> None:
     if not fame.has_joined(folder):
         return
     mine = next((each.name for each in fame.entries(folder) if each.is_mine), "")
-    named = [str(event.content.get("value", "")) for event in progress.events(Kind.ABOUT, "name")]
+    named = [said for event in progress.events(Kind.ABOUT, "name") if (said := event.text("value"))]
     name = mine or (named[-1] if named else "somebody")
     try:
         fame.publish(folder, name, standings(all_levels(), progress.events(Kind.FINISH)))

@@ -32,12 +32,11 @@ class LevelStanding:
 
 def finish_of(event: Event) -> tuple[Driver, Finish] | None:
     """What a ``finish`` event says; None where it cannot be understood."""
-    content = event.content
-    try:
-        driver = Driver(content["driver"])
-        return driver, Finish(bool(content["reached"]), float(content["seconds"]), int(content["bumps"]))
-    except (KeyError, TypeError, ValueError):
+    seconds, bumps = event.number("seconds"), event.number("bumps")
+    driver = next((each for each in Driver if each.value == event.content.get("driver")), None)
+    if driver is None or seconds is None or bumps is None or seconds <= 0.0 or bumps < 0.0:
         return None
+    return driver, Finish(event.content.get("reached") is True, seconds, int(bumps))
 
 
 def standings(levels: Sequence[Level], events: Sequence[Event]) -> tuple[LevelStanding, ...]:

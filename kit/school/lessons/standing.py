@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from kit.school.lessons.records import Exercise, Lesson, Step
 from kit.school.progress import Event, Kind
+
+LONGEST_NUMBER: Final = 4
+"""Digits of a step's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,16 +83,16 @@ def standing(lesson: Lesson, events: Sequence[Event]) -> Standing:
             case Kind.STEP:
                 steps.add(_number(rest))
             case Kind.PREDICTION:
-                predictions.setdefault(_number(rest), int(content.get("chosen", -1)))
+                predictions.setdefault(_number(rest), _whole(event, "chosen", -1))
             case Kind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
                 attempts[rest] = attempts.get(rest, 0) + 1
-                most = float(content.get("max_points") or 0.0)
-                share = float(content.get("points") or 0.0) / most if most > 0 else 0.0
-                best[rest] = max(best.get(rest, 0.0), share)
+                most = event.number("max_points") or 0.0
+                share = (event.number("points") or 0.0) / most if most > 0 else 0.0
+                best[rest] = max(best.get(rest, 0.0), min(share, 1.0))
                 if content["verdict"] == "pass":
                     passed.add(rest)
             case Kind.HINT:
-                hints[rest] = max(hints.get(rest, 0), int(content.get("step", 0)))
+                hints[rest] = max(hints.get(rest, 0), _whole(event, "step", 0))
             case Kind.SOLUTION:
                 solutions.add(rest)
             case _:
@@ -109,4 +112,9 @@ def standing(lesson: Lesson, events: Sequence[Event]) -> Standing:
 
 
 def _number(text: str) -> int:
-    return int(text) if text.isdecimal() else 0
+    return int(text) if text.isdecimal() and len(text) <= LONGEST_NUMBER else 0
+
+
+def _whole(event: Event, key: str, otherwise: int) -> int:
+    value = event.number(key)
+    return otherwise if value is None else int(value)

@@ -89,7 +89,11 @@ def answer_of(event: Event) -> Answer | None:
     else:
         return None
     return Answer(
-        event.subject, event.time, outcome, confidence if confidence in SURENESS else None, occasion
+        event.subject,
+        event.time,
+        outcome,
+        confidence if isinstance(confidence, int) and confidence in SURENESS else None,
+        occasion,
     )
 
 

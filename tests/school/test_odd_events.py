@@ -1,0 +1,86 @@
+"""Entries that no kit wrote, such as those of an imported file that somebody edited: they are passed over, and
+everything that is folded from the journal goes on working."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+from itertools import count
+
+import pytest
+
+from kit.school.cohort.work import work_of
+from kit.school.game.levels import Level, all_levels
+from kit.school.game.standing import standings
+from kit.school.lessons.reading import find_lesson
+from kit.school.lessons.standing import standing
+from kit.school.progress import Event, Kind
+from kit.school.quiz.answers import answers_of
+from kit.school.quiz.items import Bank
+from kit.school.quiz.reading import read_bank
+from kit.school.quiz.schedule import schedule_of
+from kit.school.survey.answering import Answers
+from kit.school.survey.reading import read_form
+
+ODD = {
+    "none": None,
+    "text": "x",
+    "escape": "\x1b[2J",
+    "list": [1],
+    "mapping": {"a": 1},
+    "infinite": math.inf,
+    "not a number": math.nan,
+    "negative": -5,
+    "true": True,
+    "vast": 10**400,
+}
+
+
+@pytest.fixture(scope="module")
+def bank() -> Bank:
+    return read_bank()
+
+
+@pytest.fixture(scope="module")
+def levels() -> tuple[Level, ...]:
+    return all_levels()
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_nobody_could_have_done_is_passed_over(bank: Bank, levels: tuple[Level, ...], name: str) -> None:
+    odd = ODD[name]
+    numbers = count()
+    item = bank.items[0].id
+
+    def event(kind: Kind, subject: str, **content: object) -> Event:
+        return Event(f"{next(numbers)}", "2026-01-01T00:00:00.000000+00:00", kind, subject, content)
+
+    events = [
+        event(Kind.STEP, "01-drive/²"),
+        event(Kind.STEP, "01-drive/" + "9" * 6000),
+        event(Kind.STEP, "\x1b[2J/1"),
+        event(Kind.PREDICTION, "01-drive/1", chosen=odd, right=odd),
+        event(Kind.ATTEMPT, "01-drive/flag", points=odd, max_points=odd, verdict="fail", lost=odd),
+        event(Kind.ATTEMPT, "01-drive/flag", points=odd, max_points=5.0, verdict="fail", seconds=odd),
+        event(Kind.ATTEMPT, "01-drive/readout", points=1.0, max_points=5.0, verdict=odd),
+        event(Kind.HINT, "01-drive/flag/reached", step=odd),
+        event(Kind.FINISH, "first-drive", driver="keys", reached=True, seconds=odd, bumps=0),
+        event(Kind.FINISH, "first-drive", driver="keys", reached=True, seconds=1.0, bumps=odd),
+        event(Kind.FINISH, "first-drive", driver=odd, reached=True, seconds=1.0, bumps=0),
+        event(Kind.ANSWER, item, chosen=odd, not_sure=odd, right=odd, confidence=odd, occasion="quiz"),
+        event(Kind.ANSWER, item, chosen=1, right=True, confidence=odd, occasion="spaced", topic=odd),
+        event(Kind.ANSWER, item, chosen=1, right=True, confidence=1, occasion=odd),
+        event(Kind.FORM, "experience.ros1", phase="before", value=odd),
+        event(Kind.FORM, "experience.ros1", phase=odd, value=3),
+        event(Kind.ABOUT, "name", value=odd),
+    ]
+    lesson = standing(find_lesson("1"), events)
+    assert not lesson.is_done
+    assert all(0.0 <= share <= 1.0 for share in lesson.best.values())
+    assert work_of(events)["01-drive"].passed == 0
+    for level in standings(levels, events):
+        assert all(0.0 < seconds < math.inf for seconds in level.best.values())
+    answers_of(events)
+    schedule_of(bank, events, datetime(2026, 1, 9, tzinfo=UTC))
+    Answers.of(read_form(), events)
+    assert events[-1].text("value") in ("", "x")
