@@ -139,7 +139,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @command.command("fame")
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
-    """Show who was quickest on this machine, of those who joined."""
+    """Show who was quickest on this machine, of those who joined. Each time is what that player's own kit noted."""
     from kit.school.game.fame import entries, hall, has_joined
     from kit.school.game.levels import all_levels
 

@@ -168,7 +168,11 @@ class PlainLesson:
             return
         opened = self._visit.hints(exercise)
         if not opened:
-            raise Mistake("there is a hint when a check (r) has shown what is missing")
+            raise Mistake(
+                "no hint was written for what is missing"
+                if (report := self._visit.report(exercise)) is not None and report.lost
+                else "there is a hint when a check (r) has shown what is missing"
+            )
         click.echo("These are all hints for it:")
         for each in opened:
             click.echo(_wrapped(f"- {each.text}"))

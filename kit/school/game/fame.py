@@ -1,7 +1,9 @@
 """The hall of fame of one machine: a folder in which each user who joins has one file of their own.
 
 Nobody is in it who did not ask to be. A file counts only where its owner is the user it is named for, so nobody can
-write for another; nothing but names and times stands in it, and leaving takes the file away.
+write for another; nothing but names and times stands in it, and leaving takes the file away. Times are what each
+player's own kit has noted: whoever edits their own journal or their own file can claim what they like, but only for
+themselves, so the hall is for friends and no mark is made of it.
 """
 
 from __future__ import annotations
@@ -47,8 +49,11 @@ def hall() -> Path:
 
 
 def has_joined(folder: Path) -> bool:
-    """Whether this user is in it."""
-    return _own(folder).is_file()
+    """Whether this user is in it, by a file of their own: anybody can write one of that name before them."""
+    try:
+        return _own(folder).lstat().st_uid == os.getuid()
+    except OSError:
+        return False
 
 
 def publish(folder: Path, name: str, standings: Sequence[LevelStanding]) -> None:
@@ -84,7 +89,9 @@ def entries(folder: Path) -> list[Entry]:
     found: list[Entry] = []
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
-            with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+            with suppress(
+                OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
+            ):
                 found.extend(_entries(file))
     return sorted(found, key=lambda each: (each.level, each.seconds, each.name))
 

@@ -102,6 +102,12 @@ class Check:
         if not file.exists():
             self._report = _without(f"{file} is not there. `x` lays the exercise out anew.", "fail")
             return
+        if not file.is_file():
+            self._report = _without(
+                f"{file} is no file. Save your work under that name; `x` lays the exercise out anew and keeps what is there.",
+                "fail",
+            )
+            return
         if replay is not None:
             replay.unlink(missing_ok=True)
         command = [sys.executable, "-m", "grader", "check", str(handed_in(exercise, file))]

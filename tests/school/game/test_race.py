@@ -176,7 +176,14 @@ def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "content",
-    ["", "[]", "{}", json.dumps({"name": "x", "levels": {"a": {"stars": 1, "best": {"keys": "inf"}}}})],
+    [
+        "",
+        "[]",
+        "{}",
+        "[" * 100_000,
+        '{"name": "x", "levels": {"a": {"stars": 1e999, "best": {"keys": 1}}}}',
+        json.dumps({"name": "x", "levels": {"a": {"stars": 1, "best": {"keys": "inf"}}}}),
+    ],
 )
 def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
     (tmp_path / f"{os.getuid()}.json").write_text(content)
