@@ -71,7 +71,7 @@ def test_a_killed_verb_has_kept_what_it_confirmed(name: str, tmp_path: Path) -> 
             assert progress.notice == ""
             events = progress.events()
         assert case.kept(events) >= case.confirmed(said)
-        partly += 0 < case.confirmed(said)
+        partly += case.confirmed(said) > 0
         exported = folder / "export.json"
         if exported.exists():
             assert len(read_export(exported)) == ENTRIES
