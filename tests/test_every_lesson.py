@@ -44,8 +44,9 @@ def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
     return lesson, next(each for each in lesson.exercises if each.name == exercise)
 
 
-def test_there_are_thirteen() -> None:
-    assert [name[:2] for name in NAMES] == [f"{number:02}" for number in range(1, 14)]
+def test_there_are_at_least_thirteen_in_order() -> None:
+    assert len(NAMES) >= 13
+    assert [name[:2] for name in NAMES] == [f"{number:02}" for number in range(1, len(NAMES) + 1)]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -11,7 +11,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.cli.waiting import Intake
-    from kit.school.lessons.records import Lesson, Scene
+    from kit.school.lessons.records import Scene
     from kit.school.progress import Progress
     from kit.workspace import Workspace
 
@@ -78,15 +78,16 @@ def command(
 
 
 def _list(progress: Progress) -> None:
-    from kit.school.lessons.reading import find_lesson, lesson_names
-    from kit.school.lessons.standing import standing
+    from kit.school.lessons.shelf import entries
 
-    events = progress.events()
-    lessons: list[Lesson] = [find_lesson(name) for name in lesson_names()]
-    for lesson in lessons:
-        stand = standing(lesson, events)
-        mark = "done" if stand.is_done else f"{stand.done}/{len(lesson.steps)}" if stand.is_begun else ""
-        number = lesson.name.partition("-")[0]
+    for each in entries(progress.events()):
+        stand = each.standing
+        if stand is None:
+            click.echo(f"{each.name}: cannot be read.\n    {each.problem}")
+            continue
+        lesson = stand.lesson
+        mark = "done" if each.is_done else f"{stand.done}/{len(lesson.steps)}" if each.is_begun else ""
+        number = each.name.partition("-")[0]
         click.echo(f"{number}  {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
         click.echo(f"    {lesson.summary}")
     click.echo("\n`kit lesson NUMBER` opens one.")

@@ -86,20 +86,23 @@ def name_yourself(workspace: Path | None, name: str) -> None:
 
 
 def _show(progress: Progress) -> None:
-    from kit.school.lessons.reading import find_lesson, lesson_names
-    from kit.school.lessons.standing import standing
+    from kit.school.lessons.shelf import entries
 
     events = progress.events()
     if not events:
         click.echo("Nothing yet. `kit lesson 1` is a good begin.")
         return
-    finished = 0
-    for name in lesson_names():
-        lesson = find_lesson(name)
-        stand = standing(lesson, events)
-        finished += stand.is_done
-        bar = "".join("#" if stand.is_step_done(step) else "." for step in lesson.steps)
+    shelf = entries(events)
+    for each in shelf:
+        stand = each.standing
+        if stand is None:
+            click.echo(f"{each.name:<28} cannot be read; `kit lesson {each.number}` says why")
+            continue
+        exercises = stand.lesson.exercises
+        passed = sum(exercise.name in stand.passed for exercise in exercises)
+        bar = "".join("#" if stand.is_step_done(step) else "." for step in stand.lesson.steps)
         tries = sum(stand.attempts.values())
         checks = f"{tries} checks" if tries else ""
-        click.echo(f"{name:<28} {bar:<12} {len(stand.passed)}/{len(lesson.exercises)} exercises  {checks}")
+        click.echo(f"{each.name:<28} {bar:<12} {passed}/{len(exercises)} exercises  {checks}")
+    finished = sum(each.is_done for each in shelf)
     click.echo(f"\n{finished} lessons done. `kit quiz --scores` shows the quiz, `kit game` the levels.")

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.school.lessons.reading import lessons_folder
 from kit.school.progress import Kind, Progress
 
 LINES = "g 4\nd\ndrive 0.3 0 2\nquit\ng 3\nq\n"
@@ -28,3 +34,23 @@ def test_lines_that_come_at_once_are_all_heeded(tmp_path: Path) -> None:
     with Progress(tmp_path) as progress:
         (attempt,) = progress.events(Kind.ATTEMPT)
     assert attempt.content["points"] > 0
+
+
+@pytest.mark.parametrize("words", [["lesson"], ["progress"]])
+def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lessons = tmp_path / "lessons"
+    shutil.copytree(lessons_folder() / "01-drive", lessons / "01-drive")
+    shutil.copy(lessons_folder() / "outcomes.yaml", lessons)
+    (lessons / "02-braking").mkdir()
+    (lessons / "02-braking" / "lesson.yaml").write_text("title: Braking\nminuts: 3\n")
+    monkeypatch.setattr("kit.school.lessons.shelf.lessons_folder", lambda: lessons)
+    desk = tmp_path / "desk"
+    desk.mkdir()
+    with Progress(desk) as progress:
+        progress.add(Kind.STEP, "01-drive/1")
+    done = CliRunner().invoke(main, [*words, "--workspace", str(desk)])
+    assert done.exit_code == 0, done.output
+    assert "02-braking" in done.output
+    assert "1/8" in done.output or "#......." in done.output
