@@ -13,9 +13,11 @@ from hypothesis import settings
 settings.register_profile("kit", deadline=None, derandomize=True)
 settings.load_profile("kit")
 
-# A shell's background job is started deaf to Ctrl-C, and so would be every program that a test starts.
+# A shell's background job is started deaf to Ctrl-C, what `nohup` starts deaf to the end of its terminal, and so would
+# be every program that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGQUIT, signal.SIG_DFL)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.fixture(autouse=True)
