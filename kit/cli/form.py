@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
@@ -25,7 +26,7 @@ BACK, LEAVE, BLANK = "b", "q", "-"
 
 
 @click.command()
-@click.argument("phase", required=False, type=click.Choice(["before", "after"]))
+@click.argument("phase", required=False, type=click.Choice(["before", "after", "quizzed"]))
 @click.option("--again", is_flag=True, help="Ask everything again; what you change counts from then on.")
 @click.option("--show", is_flag=True, help="Show what you answered, and ask nothing.")
 @options.workspace
@@ -34,7 +35,8 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 
     \b
     kit form before      a few minutes, before the first lesson
-    kit form after       when you are through; about ten minutes
+    kit form after       when you are through, and before the quiz; about ten minutes
+    kit form quizzed     after the quiz: what you say of what you learned, once more
 
     Without a word it goes on where you stopped. Each answer is kept at once; leave whenever you like. Enter leaves
     a question blank, and blank it stays: nobody counts it as anything else. What you say goes to your teacher only
@@ -60,11 +62,19 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 
 
 def _phase_now(form: Form, answers: Answers, progress: Progress) -> Phase:
-    """Before, until that is done or a lesson was begun without it; then after."""
+    """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import Kind
+    from kit.school.quiz.answers import Occasion, answers_of
     from kit.school.survey.answering import still_open
     from kit.school.survey.questions import Phase
 
+    if answers.started(Phase.AFTER) and not still_open(form, answers, Phase.AFTER):
+        last = max(
+            each.at for each in progress.events(Kind.FORM) if each.content.get("phase") == Phase.AFTER.value
+        )
+        quiz = [each for each in answers_of(progress.events(Kind.ANSWER)) if each.occasion is Occasion.QUIZ]
+        if any(each.time > datetime.fromisoformat(last) for each in quiz):
+            return Phase.QUIZZED
     if answers.started(Phase.AFTER) or not still_open(form, answers, Phase.BEFORE):
         return Phase.AFTER
     begun = answers.started(Phase.BEFORE) or not progress.events(Kind.ATTEMPT)
@@ -109,7 +119,7 @@ def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> No
         progress.add(Kind.FORM, question.id, {"phase": phase.value, "value": reply.value})
         done.append(question)
     click.echo(
-        "Thank you, that was all."
+        f"Thank you, that was all.{_NEXT.get(phase.value, '')}"
         if introduced
         else f"Everything of the form '{phase.value}' is answered. `kit form {phase.value} --again` asks again, "
         "`kit form --show` shows it."
@@ -169,8 +179,12 @@ def _line() -> str:
 _HINTS: Final = {"scale": "1-7", "choice": "number", "yes_no": "y/n", "text": "your words"}
 
 
+_NEXT: Final = {"after": " Now the quiz: `kit quiz`; then `kit form quizzed`, which is short."}
+_WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "quizzed": "after the quiz"}
+
+
 def _introduce(form: Form, phase: Phase, count: int) -> None:
-    click.echo(f"{form.title} ({phase.value} the lessons): {_count(count)}.")
+    click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count(count)}.")
     click.echo("Enter leaves one blank, b goes back, q leaves; each answer is kept at once.")
 
 

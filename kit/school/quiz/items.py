@@ -115,7 +115,7 @@ class Bank:
             number, _, name = lesson.partition("-")
             if said in (lesson, number, number.lstrip("0"), name):
                 return lesson
-        raise UnknownLesson(f"there is no lesson {quoted(said)}: {suggestion(said, self.lessons)}")
+        raise UnknownLesson(f"no lesson {quoted(said)} has questions: {suggestion(said, self.lessons)}")
 
 
 def lesson_title(lesson: str) -> str:

@@ -49,10 +49,9 @@ class Answers:
         return self.given.get((phase, question))
 
     def latest(self, question: str, phase: Phase) -> Value:
-        """What was said in this phase; else in the other one."""
-        other = Phase.BEFORE if phase is Phase.AFTER else Phase.AFTER
-        where = phase if self.has(question, phase) else other
-        return self.value(question, where)
+        """What was said in this phase; else in the last other one in which it was."""
+        where = (phase, *(each for each in reversed(Phase) if each is not phase))
+        return next((self.value(question, each) for each in where if self.has(question, each)), None)
 
     def has(self, question: str, phase: Phase) -> bool:
         """Whether it was answered or left blank on purpose."""

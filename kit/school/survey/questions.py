@@ -28,7 +28,11 @@ class Phase(StrEnum):
     """When a question is asked."""
 
     BEFORE = "before"
+    """The lessons."""
     AFTER = "after"
+    """The lessons."""
+    QUIZZED = "quizzed"
+    """After the quiz, which shows what one knows: what one says of oneself is asked once more."""
 
 
 class Purpose(StrEnum):

@@ -127,8 +127,9 @@ def test_every_question_of_the_kits_form_can_be_reached() -> None:
     """Whoever says yes to everything, and knows much, is asked everything."""
     form = read_form()
     yes = {Shape.SCALE: 7, Shape.YES_NO: True, Shape.TEXT: "words"}
+    events = []
     for phase in Phase:
-        events = [
+        events += [
             said(each.id, yes.get(each.shape, each.options[:1] and each.options[0]), phase.value)
             for each in form.in_phase(phase)
         ]

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.school.progress import Kind, Progress
 from kit.school.survey.answering import Answers
-from kit.school.survey.questions import Phase
+from kit.school.survey.questions import Phase, Purpose, Shape
 from kit.school.survey.reading import read_form
 
 
@@ -62,6 +62,23 @@ def test_the_whole_form_before_and_after(tmp_path: Path) -> None:
     shown = answer(tmp_path, "--show")
     assert "Robotics: 4" in shown
     assert "fine" in shown
+
+
+def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> None:
+    form = read_form()
+    twice = {each.id for each in form.in_phase(Phase.QUIZZED)}
+    assert twice == {each.id for each in (*form.of(Purpose.GAINED), *form.of(Purpose.OUTCOME))}
+    with Progress(tmp_path) as progress:
+        for each in form.in_phase(Phase.AFTER):
+            value = {Shape.SCALE: 5, Shape.YES_NO: True}.get(each.shape)
+            progress.add(Kind.FORM, each.id, {"phase": "after", "value": value})
+    assert "is answered" in answer(tmp_path), "before the quiz nothing more is asked"
+    with Progress(tmp_path) as progress:
+        progress.add(Kind.ANSWER, "item", {"chosen": 1, "right": False, "occasion": "quiz"})
+    assert "Thank you" in answer(tmp_path, lines="3\n" * len(twice))
+    answers = kept(tmp_path)
+    assert {answers.value(each, Phase.AFTER) for each in twice} == {5}
+    assert {answers.value(each, Phase.QUIZZED) for each in twice} == {3}
 
 
 def test_again_keeps_or_blanks(tmp_path: Path) -> None:

@@ -30,6 +30,7 @@ def people(setting: Setting, files: int) -> Chapter:
         ("students", len(data.names)),
         ("form before", _answered(setting, Phase.BEFORE)),
         ("form after", _answered(setting, Phase.AFTER)),
+        ("form quizzed", _answered(setting, Phase.QUIZZED)),
         ("quiz", len(quiz)),
         ("lessons", sum(bool(work) for work in data.work)),
     )

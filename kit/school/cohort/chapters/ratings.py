@@ -39,17 +39,61 @@ def knowledge(setting: Setting) -> Chapter | None:
         rows = (*gained, Measure("all", "All of it", everything))
         blocks.append(means_table("gained", "Learned, by their own account, 1 to 7", rows, setting))
         blocks.append(means_bars("gained-bars", "Learned, by their own account", gained, setting))
-    blocks += _change(setting)
+    blocks += _change(setting, _EXPERIENCE)
+    if gained:
+        blocks += _change(setting, _GAINED)
     return Chapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
 
 
-def _change(setting: Setting) -> Iterator[Block]:
-    """The same rating before and after, of those who gave both."""
+class _Twice(NamedTuple):
+    """A rating that is asked twice."""
+
+    id: str
+    title: str
+    purpose: Purpose
+    first: Phase
+    second: Phase
+    heads: tuple[str, str]
+    nobody: str
+
+
+_EXPERIENCE: Final = _Twice(
+    "change",
+    "Experience before and after, rated the same way",
+    Purpose.EXPERIENCE,
+    Phase.BEFORE,
+    Phase.AFTER,
+    ("before", "after"),
+    "Nobody rated their experience both before and after: no change can be told.",
+)
+_QUIZZED: Final = ("then", "quizzed")
+_GAINED: Final = _Twice(
+    "gained-quizzed",
+    "What they learned, before the quiz and once more after it",
+    Purpose.GAINED,
+    Phase.AFTER,
+    Phase.QUIZZED,
+    _QUIZZED,
+    "Nobody rated what they learned once more after the quiz (`kit form quizzed`).",
+)
+_OUTCOME: Final = _Twice(
+    "outcomes-quizzed",
+    "Outcomes, before the quiz and once more after it",
+    Purpose.OUTCOME,
+    Phase.AFTER,
+    Phase.QUIZZED,
+    _QUIZZED,
+    "Nobody rated the outcomes once more after the quiz (`kit form quizzed`).",
+)
+
+
+def _change(setting: Setting, asked: _Twice) -> Iterator[Block]:
+    """The same rating at two times, of those who gave both."""
     ratings = setting.data.ratings
-    after = {each.id: each for each in ratings.measures(Purpose.EXPERIENCE, Phase.AFTER)}
+    after = {each.id: each for each in ratings.measures(asked.purpose, asked.second)}
     pairs = [
         (each.label, each.values, after[each.id].values)
-        for each in ratings.measures(Purpose.EXPERIENCE, Phase.BEFORE)
+        for each in ratings.measures(asked.purpose, asked.first)
         if each.id in after
     ]
     rows: list[tuple[Cell, ...]] = []
@@ -71,17 +115,18 @@ def _change(setting: Setting) -> Iterator[Block]:
                 chance.p,
             )
         )
+    if not rows and any((asked.second, each.id) in ratings.values for each in ratings.questions):
+        yield Caution(asked.nobody)  # the form does ask it twice
     if not rows:
-        yield Caution("Nobody rated their experience both before and after: no change can be told.")
         return
     yield Table(
-        "change",
-        "Experience before and after, rated the same way",
+        asked.id,
+        asked.title,
         (
             Column("", Style.TEXT),
             Column("n"),
-            Column("before"),
-            Column("after"),
+            Column(asked.heads[0]),
+            Column(asked.heads[1]),
             Column("change"),
             Column("95% of change"),
             Column("p", Style.CHANCE, 3),
@@ -104,6 +149,8 @@ def outcomes(setting: Setting) -> Chapter | None:
             )
         )
         blocks.append(means_bars(f"outcomes-{slug(topic)}-bars", f"Outcomes, {name}", measures, setting))
+    if blocks:
+        blocks += _change(setting, _OUTCOME)
     return Chapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
 
 
