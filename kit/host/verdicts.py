@@ -77,7 +77,7 @@ def cannot_confine(level: Level, reason: str) -> Failure:
 
 def unreadable(file: Path, reason: str) -> Failure:
     """The file cannot be read, so there is nothing to run."""
-    return Failure(FailureKind.IMPORT, f"{file}: cannot be read ({reason}).")
+    return Failure(FailureKind.IMPORT, f"cannot be read ({reason}).", file.name)
 
 
 def _at(kind: FailureKind, message: str, where: Position | None) -> Failure:

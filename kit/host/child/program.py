@@ -78,6 +78,12 @@ def explain(problem: BaseException, program: Program) -> Failure:
     if isinstance(problem, SyntaxError) and program.relative(problem.filename):
         file, line = program.relative(problem.filename), problem.lineno
         return Failure(FailureKind.SYNTAX, f"{type(problem).__name__}: {problem.msg}", file, line or None)
+    if (
+        isinstance(problem, SyntaxError) and problem.filename is None
+    ):  # null bytes, say: no line was ever read
+        return Failure(
+            FailureKind.SYNTAX, f"{type(problem).__name__}: {problem.msg}", program.relative(program.file)
+        )
     frames = program.frames(problem.__traceback__)
     if isinstance(problem, SystemExit):
         text = f"the program left by sys.exit({_text(problem)}). Let the callback or main() return instead."
