@@ -80,6 +80,13 @@ def test_a_screen_opens_and_is_left_with_ctrl_c(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     name, step, command = SCREENS[line]
+    for before in step.commands[: step.commands.index(command)]:
+        if before.how is How.ALONE:
+            subprocess.run(
+                [sys.executable, "-m", "kit", *_filled(name, step, before.line)],
+                check=True,
+                capture_output=True,
+            )
     with _screen(*_filled(name, step, command.line)) as user:
         for _ in range(40):
             user.pump(0.05)
@@ -99,7 +106,7 @@ def test_a_question_to_a_world_beside_is_answered(
     arguments = _filled(name, step, command.line)
     place = shlex.split(_with_files(name, step, command.place))
     with _screen("play", *place) as user:
-        user.until(lambda: "speed" in user.text, "the world", 90.0)
+        user.until(lambda: "heading" in user.text, "the world", 90.0)
         asking = subprocess.Popen(
             [sys.executable, "-m", "kit", *arguments],
             stdin=subprocess.DEVNULL,
