@@ -44,8 +44,14 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "compare": ("kit.cli.compare", "Test several policies on the same episodes, side by side."),
     "crosstable": ("kit.cli.crosstable", "Train on each group of cases, test on all: a table, resumable."),
     "form": ("kit.cli.form", "The evaluation form: what you knew, what you learned, how the kit served you."),
-    "class": ("kit.cli.class_", "A class's report from its students' exported progress; the dissertation's beside ours."),
-    "quiz": ("kit.cli.quiz", "Find out what you know: twelve ideas, a lesson's questions, what is due today."),
+    "class": (
+        "kit.cli.class_",
+        "A class's report from its students' exported progress; the dissertation's beside ours.",
+    ),
+    "quiz": (
+        "kit.cli.quiz",
+        "Find out what you know: twelve ideas, a lesson's questions, what is due today.",
+    ),
     "progress": ("kit.cli.progress", "What you have done so far; everything in one file, and back."),
     "keys": ("kit.cli.keys", "Press keys and see what this terminal sends."),
     "doctor": ("kit.cli.doctor", "Say what the kit found on this machine and terminal, and what it decided."),

@@ -30,6 +30,7 @@ def drive_by_lines(level: Level, desk: Workspace) -> tuple[Finish, Recording]:
                 seed=SEED,
                 folder=desk.controllers,
                 record=file,
+                says_where=False,
             )
         )
         try:

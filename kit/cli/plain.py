@@ -68,6 +68,7 @@ class Plain:
         self._doors = doors
         self._door: Door | None = None
         self._record = record
+        self._says_where = says_where
         self._controller = controller
         self.lines = Lines(self.attend, intake)
         self._session = self._open(place)
@@ -150,7 +151,8 @@ class Plain:
         self._leave()
         if self._record is not None and self._recorder is not None:
             save(self._recorder.recording(), self._record)
-            click.echo(f"The drive is kept in {self._record}.")
+            if self._says_where:
+                click.echo(f"The drive is kept in {self._record}.")
 
     def _open(self, place: Place) -> Session:
         session = Session(place, seed=self._seed, watched=True, on_message=_say)
