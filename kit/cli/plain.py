@@ -58,10 +58,11 @@ class Plain:
         doors: Path | None = None,
         record: Path | None = None,
         intake: Intake | None = None,
+        says_where: bool = True,
     ) -> None:
         """``root``: the folder that the world files named later may read; by default each its own. ``doors``: where
         other terminals find the world. ``record``: where the drive is kept at the end. ``intake``: of who read lines
-        before, and reads on afterwards."""
+        before, and reads on afterwards. ``says_where``: whether to say where the drive is kept."""
         self._seed = seed
         self._folder = folder
         self._root = root
