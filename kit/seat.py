@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from kit.controllers import ControllerFile
+from kit.host.confine import DESK_LEVEL, Level
 from kit.host.failure import Failure, GuestError
 from kit.host.guest import Guest
 from kit.host.limits import Limits
@@ -32,6 +33,7 @@ class Seat:
         *,
         seed: int,
         limits: Limits,
+        level: Level = DESK_LEVEL,
         on_empty: Callable[[], object] = lambda: None,
         on_print: Callable[[str], object] = lambda line: None,
     ) -> None:
@@ -42,6 +44,7 @@ class Seat:
         self._arguments: Final = tuple(arguments)
         self._seed = seed
         self._limits = limits
+        self._level = level
         self._guest: Guest | None = None
         self._coming: _Coming | None = None
         self._failure: Failure | None = None
@@ -113,6 +116,7 @@ class Seat:
                 args=self._arguments,
                 seed=self._seed,
                 limits=self._limits,
+                level=self._level,
             )
         except GuestError as error:
             self._failure = error.failure

@@ -15,6 +15,7 @@ from typing import Final, Self
 
 from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
+from kit.host.confine import DESK_LEVEL, Level
 from kit.host.failure import Failure
 from kit.host.limits import DESK, Limits
 from kit.msg.geometry_msgs import Twist
@@ -36,7 +37,7 @@ LOG_LINE: Final = re.compile(
 class Session:
     """Everything of one drive. Close it when done, or use it as a context manager.
 
-    ``watched``: somebody looks, so the robot's lasers look too, whether a node listens or not. ``on_message`` is
+    ``level``: how far controllers are locked in. ``watched``: somebody looks, so the robot's lasers look too, whether a node listens or not. ``on_message`` is
     told each message as it comes. ``graph``: one that others are in already; without it the session makes its own.
     """
 
@@ -47,6 +48,7 @@ class Session:
         seed: int = 0,
         step_size: float = 0.01,
         limits: Limits = DESK,
+        level: Level = DESK_LEVEL,
         watched: bool = False,
         on_message: Callable[[LogRecord], object] = lambda record: None,
         graph: Graph | None = None,
@@ -70,6 +72,7 @@ class Session:
             self._arguments(),
             seed=seed,
             limits=limits,
+            level=level,
             on_empty=self.stop_robot,
             on_print=self._print,
         )

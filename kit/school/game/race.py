@@ -10,8 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from kit.controllers import ControllerFile, find
+from kit.controllers import ControllerFile, find, shipped
+from kit.host.confine import DESK_LEVEL
+from kit.host.confine import Level as Confinement
 from kit.host.failure import Failure
+from kit.host.ladder import highest
 from kit.places import Place
 from kit.recording import Recorder, Recording
 from kit.school.game.guide import Guide
@@ -149,7 +152,9 @@ def race(
         session.drive_with(controller)
         session.wait_until_driven()
 
-    return _run(level, level.find(), sit, on_second)
+    # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
+    cage = min(highest(), Confinement.FILTERED) if controller not in shipped() else DESK_LEVEL
+    return _run(level, level.find(), sit, on_second, cage)
 
 
 def race_agent(
@@ -186,8 +191,9 @@ def _run(
     place: Place,
     sit: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
+    cage: Confinement = DESK_LEVEL,
 ) -> tuple[Finish, Recording]:
-    with Session(place, seed=SEED) as session:
+    with Session(place, seed=SEED, level=cage) as session:
         simulation = session.runner.simulation
         judge, recorder = Judge(place), Recorder(place.name, level.case, simulation)
         session.runner.observers += [judge, recorder]

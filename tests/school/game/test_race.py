@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find
+from kit.host.confine import Level as Confinement
+from kit.host.ladder import highest
 from kit.school.game import fame
 from kit.school.game.drives import note
 from kit.school.game.ghosts import ghosts, reference_ghost
@@ -106,6 +108,30 @@ def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
     finish, _ = race(replace(FIRST, par=1.0), find(str(file)))
     assert finish.foul
     assert finish.stars(10.0) == (False, False, False)
+
+
+WRITER = """
+import pathlib
+
+for place in {places!r}:
+    try:
+        pathlib.Path(place).write_text("three stars")
+    except OSError:
+        pass
+""" + FORWARD.format(speed=0.4)
+
+
+@pytest.mark.skipif(highest() < Confinement.FILTERED, reason="this machine cannot lock programs in")
+def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
+    desk = tmp_path / "desk"
+    (desk / "controllers").mkdir(parents=True)
+    file = desk / "controllers" / "mine.py"
+    places = [str(desk / "progress.db"), str(desk / "levels.npz")]
+    file.write_text(WRITER.replace("{places!r}", repr(places)))
+    finish, _ = race(replace(FIRST, par=2.0), find(str(file)))
+    assert finish.failure is None
+    assert finish.reached
+    assert not any(Path(place).exists() for place in places)
 
 
 def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
