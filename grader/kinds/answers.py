@@ -22,13 +22,9 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import check
-from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task
-from kit.host.failure import Failure, FailureKind
-from kit.host.wire import printable
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError, quoted, suggestion
-from kit.world.records import Place
+from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task, from_yaml
+from kit.host.failure import Failure
+from kit.world.problems import quoted, suggestion
 from kit.world.section import Section
 
 if TYPE_CHECKING:
@@ -156,17 +152,9 @@ def gather(assignment: Assignment, file: Path, conditions: Conditions) -> Abstra
 
 
 def _look(task: Questions, file: Path) -> Look:
-    problems = Problems()
-    try:
-        section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
-        problems.raise_if_any()
-        assert section is not None  # None is noted as a problem
-        found = Answered(_given(section, task.questions), task)
-        problems.raise_if_any()
-    except (WorldError, OSError) as error:
-        # Where the snapshot lies is nothing to tell.
-        message = str(error).replace(f"{file.parent}/", "")
-        return Look(failure=Failure(FailureKind.IMPORT, printable(message)))
+    found = from_yaml(file, lambda section: Answered(_given(section, task.questions), task))
+    if isinstance(found, Failure):
+        return Look(failure=found)
     return Look(found, remarks=lambda check, params: found.first_wrong(params.keys or tuple(task.keys)))
 
 

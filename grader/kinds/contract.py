@@ -8,16 +8,23 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from grader.checks.contract import Check
 from kit.host.confine import Level
-from kit.host.failure import Failure
+from kit.host.failure import Failure, FailureKind
+from kit.host.wire import printable
+from kit.world.documents import Documents
+from kit.world.files import Enclosure
+from kit.world.problems import Problems, WorldError
+from kit.world.records import Place
 from kit.world.section import Section
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment, Criterion, Trial
     from grader.grading import Evidence, Gatherer
+
+Made = TypeVar("Made")
 
 PACKAGE: Final = "grader.kinds"
 NOT_KINDS: Final = ("contract",)
@@ -117,6 +124,21 @@ class Looks:
 
     def all(self) -> Sequence[Evidence]:
         return self._looks
+
+
+def from_yaml(file: Path, make: Callable[[Section], Made]) -> Made | Failure:
+    """What a handed-in YAML file says; or all its mistakes, each with its place, as one failure."""
+    problems = Problems()
+    try:
+        section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+        problems.raise_if_any()
+        assert section is not None  # None is noted as a problem
+        made = make(section)
+        problems.raise_if_any()
+    except (WorldError, OSError) as error:
+        # Where the snapshot lies is nothing to tell.
+        return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
+    return made
 
 
 def once(

@@ -22,18 +22,14 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, once
-from kit.host.failure import Failure, FailureKind
-from kit.host.wire import printable
+from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, from_yaml, once
+from kit.host.failure import Failure
 from kit.layers.assignment import Assignment as Plan
 from kit.layers.assignment import Breach, NamedLayer, breaches
 from kit.layers.examples import EXAMPLES
 from kit.layers.reading import read_requirements
 from kit.layers.requirements import Case, Contact, Requirement, Sight, fit_together
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError, quoted, suggestion
-from kit.world.records import Place
+from kit.world.problems import WorldError, quoted, suggestion
 from kit.world.section import Section
 
 MOST: Final = 64
@@ -108,17 +104,9 @@ def read(sheet: Sheet) -> Task:
 def look(assignment: Assignment, file: Path, conditions: Conditions) -> Look:
     """Reads the plan."""
     case: Case = assignment.task
-    problems = Problems()
-    try:
-        section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
-        problems.raise_if_any()
-        assert section is not None  # None is noted as a problem
-        made = _made(section, case)
-        problems.raise_if_any()
-    except (WorldError, OSError) as error:
-        # Where the snapshot lies is nothing to tell.
-        message = printable(str(error).replace(f"{file.parent}/", ""))
-        return Look(failure=Failure(FailureKind.IMPORT, message))
+    made = from_yaml(file, lambda section: _made(section, case))
+    if isinstance(made, Failure):
+        return Look(failure=made)
     return Look(made, label="your plan", remarks=lambda name, params: _remark(made, name))
 
 

@@ -22,7 +22,7 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, once
+from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, from_yaml, once
 from grader.trainings import Budget, Order, Plan, Stop, Trainings, train
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
@@ -31,10 +31,7 @@ from kit.learning.choice import TaskChoice
 from kit.learning.extra import LearnerMissing
 from kit.learning.presets import Falling
 from kit.learning.tasks import UnknownTask
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError, quoted, suggestion
-from kit.world.records import Place
+from kit.world.problems import quoted, suggestion
 from kit.world.section import Section
 
 MOST_STEPS: Final = 5_000_000
@@ -126,17 +123,9 @@ def _seeds(section: Section) -> tuple[int, ...]:
 def look(assignment: Assignment, file: Path, conditions: Conditions) -> Look:
     """Trains as the file says, once for each seed."""
     budget: Budget = assignment.task
-    problems = Problems()
-    try:
-        section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
-        problems.raise_if_any()
-        assert section is not None  # None is noted as a problem
-        plan = _plan(section, budget)
-        problems.raise_if_any()
-    except (WorldError, OSError) as error:
-        # Where the snapshot lies is nothing to tell.
-        message = str(error).replace(f"{file.parent}/", "")
-        return _failed(message)
+    plan = from_yaml(file, lambda section: _plan(section, budget))
+    if isinstance(plan, Failure):
+        return Look(failure=plan)
     try:
         seeds = budget.secret_seeds if conditions.secret and budget.secret_seeds else budget.seeds
         found = train(plan, budget, seeds)
