@@ -168,7 +168,7 @@ def join(workspace: Path | None, name: str | None) -> None:
     from kit.school.game.fame import hall, publish
 
     with _opened(workspace) as (progress, _):
-        called = name or _called(progress)
+        called = name or progress.called
         if not called or not called.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
         publish(hall(), called, _standings(progress))
@@ -228,13 +228,6 @@ def _policy(agent: str, desk: Workspace) -> Policy:
 
     file = Path(agent)
     return load_policy(file) if file.is_file() else find_run(desk.runs, agent).policy()
-
-
-def _called(progress: Progress) -> str:
-    from kit.school.progress import Kind
-
-    names = [name for event in progress.events(Kind.ABOUT, "name") if (name := event.text("value"))]
-    return names[-1] if names else ""
 
 
 def _tell(seconds: float | None) -> None:

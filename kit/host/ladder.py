@@ -39,6 +39,14 @@ def highest() -> Level:
     return max(rung.level for rung in probe() if rung.is_available)
 
 
+def allows(level: Level) -> bool:
+    """Whether this machine can lock a program in so far; only this level is tried."""
+    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+        file = Path(folder, "empty.py")
+        file.write_text("")
+        return _try(level, file).is_available
+
+
 def _try(level: Level, file: Path) -> Rung:
     try:
         StudentFunctions(file, level=level).close()

@@ -140,6 +140,12 @@ class Progress:
         self._write([event])
         return event
 
+    @property
+    def called(self) -> str:
+        """What the student wants to be called, as last said; empty: nothing was."""
+        said = [name for event in self.events(Kind.ABOUT, "name") if (name := event.text("value"))]
+        return said[-1] if said else ""
+
     def events(self, kind: Kind | None = None, subject: str | None = None) -> list[Event]:
         """All events in the order of their time, or those of one kind, or about one subject."""
         wanted = [("kind", kind), ("subject", subject)]

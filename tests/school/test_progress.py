@@ -30,6 +30,14 @@ def test_events_come_back_in_the_order_of_their_time(tmp_path: Path) -> None:
         assert progress.notice == ""
 
 
+def test_the_last_name_said_is_the_one(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        assert progress.called == ""
+        progress.add(Kind.ABOUT, "name", {"value": "Ada"})
+        progress.add(Kind.ABOUT, "name", {"value": "Ada L"})
+        assert progress.called == "Ada L"
+
+
 def test_what_is_exported_comes_in_elsewhere_once(tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()

@@ -54,8 +54,7 @@ def _tell_the_hall(progress: Progress) -> None:
     if not fame.has_joined(folder):
         return
     mine = next((each.name for each in fame.entries(folder) if each.is_mine), "")
-    named = [said for event in progress.events(Kind.ABOUT, "name") if (said := event.text("value"))]
-    name = mine or (named[-1] if named else "somebody")
+    name = mine or progress.called or "somebody"
     try:
         fame.publish(folder, name, standings(all_levels(), progress.events(Kind.FINISH)))
     except fame.FameError:

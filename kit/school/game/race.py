@@ -14,7 +14,7 @@ from kit.controllers import ControllerFile, find, shipped
 from kit.host.confine import DESK_LEVEL
 from kit.host.confine import Level as Confinement
 from kit.host.failure import Failure
-from kit.host.ladder import highest
+from kit.host.ladder import allows
 from kit.places import Place
 from kit.recording import Recorder, Recording
 from kit.school.game.guide import Guide
@@ -153,7 +153,8 @@ def race(
         session.wait_until_driven()
 
     # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
-    cage = min(highest(), Confinement.FILTERED) if controller not in shipped() else DESK_LEVEL
+    is_stranger = controller not in shipped()
+    cage = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
     return _run(level, level.find(), sit, on_second, cage)
 
 
