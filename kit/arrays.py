@@ -14,7 +14,7 @@ Flags = NDArray[np.bool_]
 
 
 class Segments(NamedTuple):
-    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.blocks.in_blocks``."""
+    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.sight.in_blocks``."""
 
     ends: Floats
     """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
@@ -38,10 +38,36 @@ class Shapes(NamedTuple):
 
 
 class Beams(NamedTuple):
-    """The directions of a lidar's rays in its own frame, ``(rays,)`` each."""
+    """The directions of a lidar's rays in its own frame; made by ``kit.sight.beams``.
+
+    Rays in opposite directions lie on one line, and what a wall does to one of them is known from the other.
+    """
 
     cos: Singles
+    """(rays,)"""
     sin: Singles
+    """(rays,)"""
+    lines: Singles
+    """(2, lines): cos and sin of the lines. Whole vectors are faster: the last lines may point nowhere."""
+    runs: Integers
+    """(runs, 4): rays from ``first`` to before ``end`` lie along (0) or against (1) the lines from ``line`` on."""
+
+
+class Views(NamedTuple):
+    """Which walls can be seen from where: maps in square cells; made by ``kit.sight.views``."""
+
+    ends: Floats
+    """(n, 4) ``x1 y1 x2 y2``: the walls of each view, view after view."""
+    starts: Integers
+    """(views + 1): view k is ``ends[starts[k]:starts[k + 1]]``."""
+    of_cell: Integers
+    """(cells): the view that holds all that can be seen from anywhere in a cell."""
+    corners: Floats
+    """(maps, 2) ``x y`` of the first cell's lower left corner."""
+    grids: Integers
+    """(maps, 3): number of the first cell, columns, rows; cells go row by row. No rows: there is no view."""
+    cell: float
+    """Its side [m]."""
 
 
 class Fleet(NamedTuple):
@@ -51,6 +77,7 @@ class Fleet(NamedTuple):
     """Of all maps, one after the other."""
     blocks: Integers
     """(maps + 1): map m has the blocks ``blocks[m]:blocks[m + 1]``."""
+    views: Views
     hulls: Shapes
     """Polygons in their robots' own frames; those of robot k are on layer bit ``1 << k``."""
     sight: Integers
@@ -60,7 +87,6 @@ class Fleet(NamedTuple):
     radius: float
     """No hull reaches farther from its robot's origin [m]."""
     beams: Beams
-    """Whole vectors of rays are faster: those after the lidar's own point nowhere, and meet nothing."""
     reach: float
     """The lidars' [m]."""
     noise: float

@@ -20,10 +20,14 @@ from kit.arrays import Flags, Floats, Integers, Singles
 from kit.arrays import Fleet as Fleet
 from kit.arrays import Segments as Segments
 from kit.arrays import Shapes as Shapes
+from kit.arrays import Views as Views
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Single: TypeAlias = np.float32
 Bits: TypeAlias = np.uint64
+Half: TypeAlias = np.uint32
+# An index that is not plainly a loop's own is made unsigned: else a negative one would have to be taken from the
+# end, as in Python, and the loop would not vectorise.
 
 
 def jit(function: Function) -> Function:
@@ -72,27 +76,32 @@ def twist_step(
 
 
 # --- rays: how near is the nearest thing so far -----------------------------------------------------------
-# In single precision, relative to the sensor. Branch-free, so that the loops over rays vectorise. Nearness is
-# 1 / distance: a ray divides once at the end, instead of once for each segment.
+# In single precision, relative to the sensor. Branch-free, so that the loops over lines vectorise. Nearness is
+# 1 / distance: a ray divides once at the end, instead of once for each segment. What lies on a line behind the
+# sensor has a nearness below 0: so one line serves two rays.
 
 
 @jit
-def ray_segment(cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single) -> Single:
-    """How near to the origin the ray ``(cos, sin)`` meets the segment a-b: not above 0, or nan, where it does not.
+def ray_segment(
+    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, scale: Single
+) -> Single:
+    """How near to the origin the line ``(cos, sin)`` meets the segment a-b; below 0 against its direction. 0, or nan,
+    where it does not. ``scale``: 1 / cross(a, b).
 
     It crosses the segment where a and b lie on different sides of it: cross(ray, a) * cross(ray, b) <= 0.
-    Two segments that share an end share that product's factor, so no ray slips between them. A ray along
+    Two segments that share an end share that product's factor, so no ray slips between them. A line along
     the segment meets nothing (0 / 0), as in Box2D.
     """
     a = cos * ay - sin * ax
     b = cos * by - sin * bx
-    nearness = (b - a) * (Single(1) / (ax * by - ay * bx))
+    nearness = (b - a) * scale
     return nearness if a * b <= 0 else Single(0)
 
 
 @jit
 def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, near: Single) -> Single:
-    """The same for the circle about ``(x, y)``. A ray that starts inside does not meet it."""
+    """The greater of ``near`` and how near the ray meets the circle about ``(x, y)``. One that starts inside does
+    not meet it."""
     along = cos * x + sin * y
     across = cos * y - sin * x
     nearness = Single(1) / (along - np.sqrt(radius * radius - across * across))  # nan where it misses
@@ -190,100 +199,173 @@ def uniform(key: int, counter: int) -> float:
 
 
 @jit
-def normal(key: int, counter: int) -> Single:
-    """Standard normal, from one draw; never beyond 4.9.
+def bell(four: int) -> Single:
+    """Standard normal, of the sum of four 16-bit uniforms; never beyond 4.9.
 
-    The sum of four 16-bit uniforms, bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off
-    by less than 0.007 up to 3.5. Without logarithm and cosine, so that a loop over rays vectorises.
+    Bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off by less than 0.007 up to 3.5. Without
+    logarithm and cosine, so that a loop over rays vectorises.
     """
-    bits, low = random_bits(key, counter), Bits(0xFFFF)
-    four = (bits & low) + ((bits >> Bits(16)) & low) + ((bits >> Bits(32)) & low) + (bits >> Bits(48))
-    u = Single(np.int32(four) - np.int32(131070)) * Single(1.0 / 65536.0)
+    u = Single(np.int32(four)) * Single(1.0 / 65536.0) - Single(131070.0 / 65536.0)
     u2 = u * u
     bent = Single(0.08163078) + u2 * (Single(-0.02656002) + u2 * Single(0.01351341))
     return u * (Single(1.66182467) + u2 * bent)
 
 
-# --- what a lidar sees ------------------------------------------------------------------------------------
+@jit
+def normal(key: int, counter: int) -> Single:
+    """Standard normal, from one draw."""
+    bits, low = random_bits(key, counter), Bits(0xFFFF)
+    return bell((bits & low) + ((bits >> Bits(16)) & low) + ((bits >> Bits(32)) & low) + (bits >> Bits(48)))
 
 
 @jit
-def rays_meeting(
-    cos: Singles, sin: Singles, x: Single, y: Single, radius: Single, near: Singles
-) -> tuple[int, int]:
-    """The first and one past the last ray that meets a disc nearer than ``near``; (rays, 0) if there is none.
+def mixed(z: Half) -> Half:
+    """32 bits, well mixed, in as many lanes as a processor has: a finaliser of murmur's kind (Wellons 2018)."""
+    z = Half((z ^ (z >> Half(16))) * Half(0x21F0AAAD))
+    z = Half((z ^ (z >> Half(15))) * Half(0xD35A2D97))
+    return Half(z ^ (z >> Half(15)))
+
+
+# --- what a lidar sees ------------------------------------------------------------------------------------
+
+
+LANES = 8
+"""Lines are looked at in whole vectors of so many."""
+AIMED = 64
+"""Segments that are made ready at once."""
+
+
+@jit
+def lines_meeting(lines: Singles, x: Single, y: Single, radius: Single, near: Singles) -> tuple[int, int]:
+    """The first and one past the last line on which a disc lies nearer than ``near``, in whole vectors; the second is
+    0 if there is none.
 
     The disc is taken a little larger than it is, to make up for single precision.
     """
-    rays = np.int32(cos.shape[0])
-    first, end = rays, np.int32(0)
+    count = np.int32(lines.shape[1])
+    first, end = count, np.int32(0)
     radius += Single(1e-5) * (Single(1) + abs(x) + abs(y) + radius)
-    for i in range(rays):
-        along = cos[i] * x + sin[i] * y
-        across = cos[i] * y - sin[i] * x
-        meets = (abs(across) <= radius) & (along >= -radius) & ((along - radius) * near[i] < Single(1))
-        ray = np.int32(i)
-        first = min(first, ray if meets else rays)
-        end = max(end, ray + np.int32(1) if meets else np.int32(0))
-    return int(first), int(end)
+    for i in range(count):
+        along = lines[0, i] * x + lines[1, i] * y
+        across = lines[0, i] * y - lines[1, i] * x
+        ahead = (along >= -radius) & ((along - radius) * near[0, i] < Single(1))
+        behind = (along <= radius) & ((along + radius) * near[1, i] < Single(1))
+        meets = (abs(across) <= radius) & (ahead | behind)
+        line = np.int32(i)
+        first = min(first, line if meets else count)
+        end = max(end, line + np.int32(1) if meets else np.int32(0))
+    return int(first) // LANES * LANES, (int(end) + LANES - 1) // LANES * LANES
+
+
+@jit
+def aim(x: float, y: float, ends: Floats, first: int, end: int, aimed: Singles) -> int:
+    """Fills ``aimed`` (5, AIMED) with the segments ``ends[first:end]``, seen from ``(x, y)``, and their scales; how many
+    those are, in whole fours: what is missing is met nowhere."""
+    count = end - first
+    for j in range(count):
+        row = Bits(first + j)
+        aimed[0, j], aimed[1, j] = Single(ends[row, 0] - x), Single(ends[row, 1] - y)
+        aimed[2, j], aimed[3, j] = Single(ends[row, 2] - x), Single(ends[row, 3] - y)
+    for j in range(count):
+        aimed[4, j] = Single(1) / (aimed[0, j] * aimed[3, j] - aimed[1, j] * aimed[2, j])
+    fours = (count + 3) // 4 * 4
+    for j in range(count, fours):
+        for k in range(5):
+            aimed[k, j] = Single(0)
+    return int(fours)
 
 
 @inlined
 def meet_pair(
-    x: float, y: float, rays: Beams, ends: Floats, j: int, k: int, near: Singles, nearer: Singles
+    lines: Singles, aimed: Singles, j: int, near: Singles, nearer: Singles, line: int, last: int
 ) -> None:
-    """Fills ``nearer``: every ray of ``near`` as near as the segments j and k of ``ends``, seen from ``(x, y)``."""
-    ax, ay, bx, by = ends[j, 0] - x, ends[j, 1] - y, ends[j, 2] - x, ends[j, 3] - y
-    cx, cy, dx, dy = ends[k, 0] - x, ends[k, 1] - y, ends[k, 2] - x, ends[k, 3] - y
-    for i in range(near.shape[0]):  # in place, compilers store under a mask: very slow on some processors
-        one = ray_segment(rays.cos[i], rays.sin[i], Single(ax), Single(ay), Single(bx), Single(by))
-        other = ray_segment(rays.cos[i], rays.sin[i], Single(cx), Single(cy), Single(dx), Single(dy))
-        one = one if one > near[i] else near[i]
-        nearer[i] = other if other > one else one
+    """Fills ``nearer`` for the lines from ``line`` to before ``last``: as near as ``near`` and the segments j and j + 1."""
+    ax, ay, bx, by, one_scale = aimed[0, j], aimed[1, j], aimed[2, j], aimed[3, j], aimed[4, j]
+    cx, cy, dx, dy, other_scale = (
+        *(aimed[0, j + 1], aimed[1, j + 1], aimed[2, j + 1]),
+        *(aimed[3, j + 1], aimed[4, j + 1]),
+    )
+    for i in range(Bits(line), Bits(last)):  # in place, compilers store under a mask: very slow on some processors
+        one = ray_segment(lines[0, i], lines[1, i], ax, ay, bx, by, one_scale)
+        other = ray_segment(lines[0, i], lines[1, i], cx, cy, dx, dy, other_scale)
+        ahead, behind = near[0, i], near[1, i]
+        ahead = one if one > ahead else ahead
+        behind = one if one < behind else behind
+        nearer[0, i] = other if other > ahead else ahead
+        nearer[1, i] = other if other < behind else behind
 
 
-@inlined
+@jit
 def meet_segments(
-    x: float, y: float, rays: Beams, ends: Floats, first: int, end: int, near: Singles, room: Singles
+    x: float,
+    y: float,
+    lines: Singles,
+    ends: Floats,
+    first: int,
+    end: int,
+    near: Singles,
+    room: Singles,
+    aimed: Singles,
+    line: int,
+    last: int,
 ) -> None:
-    """Brings every ray as near as the nearest of ``ends[first:end]``; ``room``: as large as ``near``."""
-    for j in range(first, end, 4):
-        meet_pair(x, y, rays, ends, j, min(j + 1, end - 1), near, room)
-        meet_pair(x, y, rays, ends, min(j + 2, end - 1), min(j + 3, end - 1), room, near)
+    """Brings the lines from ``line`` to before ``last`` as near as the nearest of ``ends[first:end]``.
+
+    ``near`` (2, lines): along them, and against them, below 0. ``room``: as large.
+    """
+    for start in range(first, end, AIMED):
+        fours = aim(x, y, ends, start, min(start + AIMED, end), aimed)
+        for j in range(0, fours, 4):
+            meet_pair(lines, aimed, j, near, room, line, last)
+            meet_pair(lines, aimed, j + 2, room, near, line, last)
 
 
 @jit
 def meet_walls(
-    x: float, y: float, rays: Beams, walls: Segments, first: int, end: int, near: Singles, room: Singles
+    x: float,
+    y: float,
+    lines: Singles,
+    walls: Segments,
+    first: int,
+    end: int,
+    near: Singles,
+    room: Singles,
+    aimed: Singles,
 ) -> None:
-    """Brings every ray as near as the nearest wall of the blocks from ``first`` to before ``end``."""
-    if end - first == 1:  # no slices: they cost more than a wall
-        meet_segments(x, y, rays, walls.ends, walls.starts[first], walls.starts[end], near, room)
-        return
+    """Brings every line as near as the nearest wall of the blocks from ``first`` to before ``end``."""
     for k in range(first, end):
-        disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-        ray, last = rays_meeting(rays.cos, rays.sin, disc_x, disc_y, Single(walls.discs[k, 2]), near)
-        if ray < last:
-            few, begin, stop = (
-                Beams(rays.cos[ray:last], rays.sin[ray:last]),
-                walls.starts[k],
-                walls.starts[k + 1],
-            )
-            meet_segments(x, y, few, walls.ends, begin, stop, near[ray:last], room[ray:last])
+        line, last = 0, lines.shape[1]
+        if end - first > 1:
+            disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
+            line, last = lines_meeting(lines, disc_x, disc_y, Single(walls.discs[k, 2]), near)
+        if line < last:
+            begin, stop = walls.starts[k], walls.starts[k + 1]
+            meet_segments(x, y, lines, walls.ends, begin, stop, near, room, aimed, line, last)
 
 
 @jit
 def meet_shapes(
-    x: float, y: float, cos: Singles, sin: Singles, shapes: Shapes, bits: int, near: Singles
+    x: float,
+    y: float,
+    lines: Singles,
+    shapes: Shapes,
+    bits: int,
+    near: Singles,
+    room: Singles,
+    aimed: Singles,
+    line: int,
+    last: int,
 ) -> None:
-    """Brings every ray as near as the nearest shape on one of the layers ``bits``, but for those around the sensor."""
+    """Brings the lines from ``line`` to before ``last`` as near as the nearest shape on one of the layers ``bits``, but
+    for those around the sensor."""
     for k in range(shapes.circles.shape[0]):
         if shapes.circle_bits[k] & bits == 0:
             continue
         cx, cy = Single(shapes.circles[k, 0] - x), Single(shapes.circles[k, 1] - y)
         radius = Single(shapes.circles[k, 2])
-        for i in range(near.shape[0]):
-            near[i] = ray_circle(cos[i], sin[i], cx, cy, radius, near[i])
+        for i in range(Bits(line), Bits(last)):
+            near[0, i] = ray_circle(lines[0, i], lines[1, i], cx, cy, radius, near[0, i])
+            near[1, i] = -ray_circle(-lines[0, i], -lines[1, i], cx, cy, radius, -near[1, i])
     for k in range(shapes.polygon_bits.shape[0]):
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
@@ -291,16 +373,25 @@ def meet_shapes(
         rim = np.empty((corners.shape[0], 4))
         for j in range(corners.shape[0]):
             rim[j, :2], rim[j, 2:] = corners[j - 1], corners[j]
-        meet_segments(x, y, Beams(cos, sin), rim, 0, corners.shape[0], near, np.empty_like(near))
+        meet_segments(x, y, lines, rim, 0, corners.shape[0], near, room, aimed, line, last)
 
 
-@jit
-def turn_beams(theta: float, beams: Beams, cos: Singles, sin: Singles) -> None:
-    """Fills ``cos``, ``sin`` with the rays' directions in the world, for a sensor that points to ``theta``."""
-    turn_cos, turn_sin = Single(math.cos(theta)), Single(math.sin(theta))
-    for i in range(beams.cos.shape[0]):
-        cos[i] = turn_cos * beams.cos[i] - turn_sin * beams.sin[i]
-        sin[i] = turn_sin * beams.cos[i] + turn_cos * beams.sin[i]
+@inlined
+def turn_lines(theta: float, lines: Singles, turned: Singles) -> None:
+    """Fills ``turned`` with the lines' directions in the world, for a sensor that points to ``theta``."""
+    cos, sin = Single(math.cos(theta)), Single(math.sin(theta))
+    for i in range(lines.shape[1]):
+        turned[0, i] = cos * lines[0, i] - sin * lines[1, i]
+        turned[1, i] = sin * lines[0, i] + cos * lines[1, i]
+
+
+@inlined
+def spread(found: Singles, runs: Integers, ranges: Singles) -> None:
+    """Fills ``ranges`` (rays,) with what was found along and against the lines (2, lines)."""
+    for k in range(runs.shape[0]):
+        ray, side, line = runs[k, 0], runs[k, 2], runs[k, 3]
+        for i in range(runs[k, 1] - ray):
+            ranges[Bits(ray + i)] = found[side, Bits(line + i)]
 
 
 @jit
@@ -317,24 +408,31 @@ def scan(
 
     Exact: positions are subtracted in double precision, the rest is single precision (errors below a micrometre
     per metre). ``walls`` are all seen; ``shapes`` where their layer bits meet ``bits``; a shape around the
-    sensor is not seen. Rays are the inner loop, for there vector instructions take 4 to 16 at once.
+    sensor is not seen. Lines are the inner loop, for there vector instructions take 4 to 16 at once.
     """
     x, y, theta = pose
-    cos, sin = np.empty_like(ranges), np.empty_like(ranges)
-    turn_beams(theta, beams, cos, sin)
+    lines, near, room = np.empty_like(beams.lines), np.empty_like(beams.lines), np.empty_like(beams.lines)
+    aimed = np.empty((5, AIMED), dtype=np.float32)
+    turn_lines(theta, beams.lines, lines)
     least = Single(1.0 / reach)
-    ranges[:] = least
-    meet_walls(x, y, Beams(cos, sin), walls, 0, walls.discs.shape[0], ranges, np.empty_like(ranges))
-    meet_shapes(x, y, cos, sin, shapes, bits, ranges)
-    for i in range(ranges.shape[0]):
-        ranges[i] = Single(1) / ranges[i] if ranges[i] > least else Single(np.nan)
+    near[0], near[1] = least, -least
+    meet_walls(x, y, lines, walls, 0, walls.discs.shape[0], near, room, aimed)
+    meet_shapes(x, y, lines, shapes, bits, near, room, aimed, 0, lines.shape[1])
+    for i in range(lines.shape[1]):
+        room[0, i] = Single(1) / near[0, i] if near[0, i] > least else Single(np.nan)
+        room[1, i] = Single(-1) / near[1, i] if near[1, i] < -least else Single(np.nan)
+    spread(room, beams.runs, ranges)
 
 
 @jit
-def add_noise(ranges: Singles, deviation: float, key: int, first: int) -> None:
-    """Adds normal noise: ray i draws number ``first + i`` of ``key``. NaN stays NaN."""
+def add_noise(ranges: Singles, deviation: float, key: int, number: int) -> None:
+    """Adds normal noise: scan ``number`` of ``key``. A ray's depends on its place in the scan. NaN stays NaN."""
+    bits, low, half = random_bits(key, number), Half(0xFFFF), Half(16)
+    one, other = Half(bits), Half(bits >> Bits(32))
     for i in range(ranges.shape[0]):
-        ranges[i] += Single(deviation) * normal(key, first + i)
+        a, b = mixed(one), mixed(other)
+        ranges[i] += Single(deviation) * bell(Half(a & low) + Half(a >> half) + Half(b & low) + Half(b >> half))
+        one, other = Half(one + Half(0x9E3779B9)), Half(other + Half(0x85EBCA6B))
 
 
 @jit
@@ -473,34 +571,52 @@ def arrivals(
             inside[i, k] = away <= radius
 
 
+@inlined
+def view_from(views: Views, number: int, x: float, y: float) -> int:
+    """Which view of map ``number`` holds all that can be seen from ``(x, y)``; -1 if there is none."""
+    column = math.floor((x - views.corners[number, 0]) / views.cell)
+    row = math.floor((y - views.corners[number, 1]) / views.cell)
+    columns, rows = views.grids[number, 1], views.grids[number, 2]
+    if 0 <= column < columns and 0 <= row < rows:
+        return int(views.of_cell[views.grids[number, 0] + row * columns + column])
+    return -1
+
+
 @jit
 def look_worlds(
     fleet: Fleet, maps: Integers, poses: Floats, keys: Integers, drawn: Integers, ranges: Singles
 ) -> None:
-    """Scans of all robots, as ``scan`` and ``add_noise`` make them, (n, r, rays); the reach where nothing is seen.
+    """Scans of all robots, as ``scan`` and ``add_noise`` make them, (n, r, rays or more); the reach where nothing is seen.
 
-    The noise of world i is number ``drawn[i]`` and following of ``keys[i]``.
+    The noise of world i is that of the scans ``drawn[i]`` and following of ``keys[i]``.
     """
-    robots, rays = ranges.shape[1], ranges.shape[2]
-    cos, sin = np.empty_like(ranges[0, 0]), np.empty_like(ranges[0, 0])
-    near, room = np.empty_like(cos), np.empty_like(cos)
-    hulls = placed_hulls(fleet, fleet.sight)
+    robots, rays, fixed, views = ranges.shape[1], fleet.beams.cos.shape[0], fleet.beams.lines, fleet.views
+    lines, near, room = np.empty_like(fixed), np.empty_like(fixed), np.empty_like(fixed)
+    aimed, last = np.empty((5, AIMED), dtype=np.float32), fixed.shape[1]
+    hulls, least = placed_hulls(fleet, fleet.sight), Single(1.0 / fleet.reach)
     for i in range(ranges.shape[0]):
-        first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
         if robots > 1:
             place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
         for k in range(robots):
             x, y = poses[i, k, 0], poses[i, k, 1]
-            turn_beams(poses[i, k, 2], fleet.beams, cos, sin)
-            near[:] = Single(1.0 / fleet.reach)
-            meet_walls(x, y, Beams(cos, sin), fleet.walls, first, end, near, room)
+            turn_lines(poses[i, k, 2], fixed, lines)
+            near[0], near[1] = least, -least
+            view = view_from(views, maps[i], x, y)
+            if view >= 0:
+                first, end = views.starts[view], views.starts[view + 1]
+                meet_segments(x, y, lines, views.ends, first, end, near, room, aimed, 0, last)
+            else:
+                first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
+                meet_walls(x, y, lines, fleet.walls, first, end, near, room, aimed)
             if robots > 1:
                 dx, dy = Single(poses[i, 1 - k, 0] - x), Single(poses[i, 1 - k, 1] - y)
-                ray, last = rays_meeting(cos, sin, dx, dy, Single(fleet.radius), near)
-                meet_shapes(x, y, cos[ray:last], sin[ray:last], hulls, ~(1 << k), near[ray:last])
-            for j in range(rays):
-                ranges[i, k, j] = Single(1) / near[j]
-            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k * rays)
+                line, stop = lines_meeting(lines, dx, dy, Single(fleet.radius), near)
+                meet_shapes(x, y, lines, hulls, ~(1 << k), near, room, aimed, line, stop)
+            for j in range(last):
+                room[0, j], room[1, j] = Single(1) / near[0, j], Single(-1) / near[1, j]
+            spread(room, fleet.beams.runs, ranges[i, k])
+            ranges[i, k, rays:] = Single(fleet.reach)
+            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k)
 
 
 @jit
@@ -517,8 +633,8 @@ def sense_worlds(far: float, single: Integers, sectors: Integers, ranges: Single
                 ranges[i, k, j] = min(max(ranges[i, k, j], nothing), most)
             for m in range(sectors.shape[0]):
                 least = most
-                for j in range(sectors[m, 1], sectors[m, 2]):
-                    least = min(least, ranges[i, k, j])
+                for j in range(Bits(sectors[m, 1]), Bits(sectors[m, 2])):
+                    least = ranges[i, k, j] if ranges[i, k, j] < least else least
                 sensed[i, k, s + sectors[m, 0]] = min(sensed[i, k, s + sectors[m, 0]], least)
             for j in range(s):
                 sensed[i, k, j] = ranges[i, k, single[k, j]]
@@ -589,7 +705,8 @@ def warm() -> None:
     ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
     walls = Segments(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
     shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
-    beams = Beams(np.ones(2, dtype=np.float32), np.zeros(2, dtype=np.float32))
+    ones = np.ones(2, dtype=np.float32)
+    beams = Beams(ones, ones, np.zeros((2, LANES), dtype=np.float32), np.zeros((0, 4), dtype=np.int64))
     scan((0.0, 0.0, 0.0), beams, 2.0, walls, shapes, 1, ranges)
     add_noise(ranges, 0.0, 1, 0)
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kit import kernels, motors
-from kit.blocks import in_blocks
+from kit.sight import beams, in_blocks
 
 FAR = np.float32(0.1)
 """As rays count: 1 / distance."""
@@ -29,8 +29,6 @@ def singles(*values: float) -> list[np.float32]:
     return [np.float32(value) for value in values]
 
 
-def beams(*angles: float) -> kernels.Beams:
-    return kernels.Beams(np.cos(angles).astype(np.float32), np.sin(angles).astype(np.float32))
 
 
 # Motion
@@ -94,10 +92,15 @@ def test_limits_of_a_motor(
 
 
 def test_a_ray_and_a_segment() -> None:
-    hit = kernels.ray_segment(*singles(1, 0, 2, -1, 2, 3))
-    assert hit == 0.5
-    for miss in ((2, 1, 2, 3), (-2, -1, -2, 3), (2, 0, 5, 0)):  # beside, behind, along
-        assert not kernels.ray_segment(*singles(1, 0, *miss)) > 0.0
+    def nearness(*ends: float) -> float:
+        ax, ay, bx, by = singles(*ends)
+        return kernels.ray_segment(*singles(1, 0), ax, ay, bx, by, np.float32(1) / (ax * by - ay * bx))
+
+    assert nearness(2, -1, 2, 3) == nearness(2, 3, 2, -1) == 0.5
+    assert nearness(-4, -1, -4, 3) == -0.25
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for miss in ((2, 1, 2, 3), (-2, 1, -2, 3), (2, 0, 5, 0)):  # beside, behind and beside, along
+            assert not abs(nearness(*miss)) > 0  # 0, or nan
 
 
 @pytest.mark.parametrize("count", range(6))
@@ -107,8 +110,7 @@ def test_the_nearest_of_some_segments(count: int) -> None:
         np.zeros(9, dtype=np.float32),
         kernels.Segments(ends, np.array([0, count]), np.zeros((1, 3))),
     )
-    beams = kernels.Beams(np.ones(9, dtype=np.float32), np.zeros(9, dtype=np.float32))
-    kernels.scan((0.5, 0.0, 0.0), beams, 10.0, walls, NOTHING, 1, ranges)
+    kernels.scan((0.5, 0.0, 0.0), beams([0.0] * 9), 10.0, walls, NOTHING, 1, ranges)
     nearest = min(ends[:, 0], default=math.inf) - 0.5
     assert ranges == pytest.approx(nearest if nearest < 10 else math.nan, nan_ok=True)
 
@@ -122,7 +124,10 @@ def test_no_ray_slips_between_segments_that_share_an_end() -> None:
         left = np.float32(corner[0] - y), np.float32(corner[1] + x)
         right = np.float32(corner[0] + y), np.float32(corner[1] - x)
         found = [
-            kernels.ray_segment(cos, sin, *one, *other) for one, other in ((left, corner), (corner, right))
+            kernels.ray_segment(
+                *(cos, sin, *one, *other, np.float32(1) / (one[0] * other[1] - one[1] * other[0]))
+            )
+            for one, other in ((left, corner), (corner, right))
         ]
         assert max(found) == pytest.approx(1 / length, rel=1e-5)
 
@@ -212,9 +217,28 @@ def test_uniform_noise_fills_its_range() -> None:
 def test_noise_has_no_memory() -> None:
     forwards = [kernels.normal(5, i) for i in range(10)]
     assert [kernels.normal(5, i) for i in reversed(range(10))] == forwards[::-1]
-    ranges = np.full(10, 3, dtype=np.float32)
-    kernels.add_noise(ranges, 0.5, 5, 0)
-    assert ranges == pytest.approx(3 + 0.5 * np.array(forwards))
+    scans = np.full((3, 10), 3, dtype=np.float32)
+    for scan, number in zip(scans, (6, 7, 6), strict=True):
+        kernels.add_noise(scan, 0.5, 5, number)
+    assert scans[0].tobytes() == scans[2].tobytes() != scans[1].tobytes()
+    few = np.full(4, 3, dtype=np.float32)
+    kernels.add_noise(few, 0.5, 5, 6)
+    assert few.tobytes() == scans[0, :4].tobytes()
+
+
+def test_the_noise_of_scans_is_normal_and_independent() -> None:
+    scans = np.zeros((20_000, 12), dtype=np.float32)
+    for number, scan in enumerate(scans):
+        kernels.add_noise(scan, 1.0, 9, number)
+    assert np.abs(scans.mean(axis=0)).max() < 0.03
+    assert scans.std(axis=0) == pytest.approx(np.ones(12), abs=0.02)
+    assert (scans**4).mean() == pytest.approx(3, abs=0.05)
+    assert np.abs(np.corrcoef(scans.T) - np.eye(12)).max() < 0.03
+    assert abs(np.corrcoef(scans[1:, 0], scans[:-1, 0])[0, 1]) < 0.03
+    other = np.zeros((20_000, 12), dtype=np.float32)
+    for number, scan in enumerate(other):
+        kernels.add_noise(scan, 1.0, 10, number)
+    assert abs(np.corrcoef(scans.ravel(), other.ravel())[0, 1]) < 0.01
 
 
 def test_nothing_stays_nothing() -> None:
@@ -252,7 +276,7 @@ def test_a_scan_is_exact(count: int) -> None:
     ends = walls(count)
     angles = np.linspace(-3, 3, 37)
     ranges = np.empty(37, dtype=np.float32)
-    kernels.scan((0.5, -1.0, 0.7), beams(*angles), 6.0, in_blocks(ends), NOTHING, 1, ranges)
+    kernels.scan((0.5, -1.0, 0.7), beams(angles), 6.0, in_blocks(ends), NOTHING, 1, ranges)
     expected = [plainly(0.5, -1.0, 0.7 + angle, ends, 6.0) for angle in angles]
     assert ranges == pytest.approx(np.array(expected), abs=1e-5, nan_ok=True)
 
@@ -266,8 +290,8 @@ def test_blocks_never_change_what_is_seen() -> None:
         assert sorted(map(tuple, blocks.ends)) == sorted(map(tuple, ends))
         for x, y in np.random.default_rng(size).uniform(-9, 9, (50, 2)):
             one, other = np.empty((2, 181), dtype=np.float32)
-            kernels.scan((x, y, 0.1), beams(*angles), 20.0, whole, NOTHING, 1, one)
-            kernels.scan((x, y, 0.1), beams(*angles), 20.0, blocks, NOTHING, 1, other)
+            kernels.scan((x, y, 0.1), beams(angles), 20.0, whole, NOTHING, 1, one)
+            kernels.scan((x, y, 0.1), beams(angles), 20.0, blocks, NOTHING, 1, other)
             assert one.tobytes() == other.tobytes()
 
 
@@ -275,7 +299,7 @@ def test_far_from_the_origin_it_is_as_exact() -> None:
     """Single precision would be wrong by centimetres here."""
     ends = walls(50)
     near, far = np.empty((2, 19), dtype=np.float32)
-    rays = beams(*np.linspace(-3, 3, 19))
+    rays = beams(np.linspace(-3, 3, 19))
     kernels.scan((0.0, 0.0, 0.0), rays, 6.0, in_blocks(ends), NOTHING, 1, near)
     moved = in_blocks(ends + 1e6)
     kernels.scan((1e6, 1e6, 0.0), rays, 6.0, moved, NOTHING, 1, far)
@@ -294,7 +318,7 @@ def test_shapes_hide_walls_by_their_layers_but_not_around_the_sensor() -> None:
     seen = {}
     for bits in (1, 2, 3, 4):
         ranges = np.empty(2, dtype=np.float32)
-        kernels.scan((0.0, 0.0, 0.0), beams(0.0, math.pi / 2), 10.0, room, shapes, bits, ranges)
+        kernels.scan((0.0, 0.0, 0.0), beams([0.0, math.pi / 2]), 10.0, room, shapes, bits, ranges)
         seen[bits] = [round(float(r), 5) for r in ranges]
     assert seen == {1: [1.5, 5.0], 2: [5.0, 2.0], 3: [1.5, 2.0], 4: [5.0, 5.0]}
 

@@ -127,7 +127,7 @@ class Batch:
 
     def scan(self) -> NDArray[np.float32]:
         """(robots, rays), noise and all; the reach where nothing is seen."""
-        ranges = np.empty((1, self.poses.shape[1], len(self._fleet.beams.cos)), dtype=np.float32)
+        ranges = np.empty((1, self.poses.shape[1], 96), dtype=np.float32)
         nothing = np.zeros(1, dtype=np.int64)
         kernels.look_worlds(self._fleet, nothing, self.poses, nothing, nothing, ranges)
         return ranges[0]

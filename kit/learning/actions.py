@@ -28,6 +28,14 @@ DIRECTIONS = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1)
 """(7, 2): by which sign speed and turn rate count, move by move."""
 
 
+MIRRORED = {
+    Move.LEFT: Move.RIGHT,
+    Move.RIGHT: Move.LEFT,
+    Move.FORWARD_LEFT: Move.FORWARD_RIGHT,
+    Move.FORWARD_RIGHT: Move.FORWARD_LEFT,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Actions:
     """The moves to choose from, and how fast they are."""
@@ -60,6 +68,13 @@ class Actions:
         if choices.size and (choices.min() < 0 or choices.max() >= len(self.moves)):
             raise ValueError(f"an action is outside {self.space(robots)}: {actions}")
         return choices
+
+    def mirrored(self) -> Integers:
+        """(k,) which of the moves each one is in a mirror. Raises ValueError where that is none of them."""
+        other = [MIRRORED.get(move, move) for move in self.moves]
+        if not set(other) <= set(self.moves):
+            raise ValueError("the moves to the two sides are not alike")
+        return np.array([self.moves.index(move) for move in other], dtype=np.int64)
 
     @property
     def codes(self) -> Integers:

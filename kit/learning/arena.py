@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit import kernels
-from kit.blocks import in_blocks
 from kit.geometry import Pose
 from kit.learning.enclosure import within_reach
+from kit.sight import beams, in_blocks, views
 from kit.sim.keys import SpeedLimits
 from kit.sim.loading import load
 from kit.sim.plugins.bumper import BumperParams
@@ -24,9 +24,6 @@ from kit.world.touching import contains
 
 FEW_WALLS = 64
 """So many are looked at one by one: to sort out those out of sight costs more. Measured."""
-
-VECTOR = 32
-"""Single numbers that a processor takes at once, or several times as many."""
 
 Corners = tuple[tuple[float, float], ...]
 
@@ -117,24 +114,14 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
             np.concatenate([part.discs for part in parts]),
         ),
         blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
+        views=views(each.walls if len(each.walls) <= FEW_WALLS else None for each in grounds),
         hulls=hulls,
         sight=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
         robot_of=robot_of,
         radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
-        beams=_beams(first.robot.directions),
+        beams=beams(first.robot.directions),
         reach=first.robot.reach,
         noise=first.robot.noise if noise is None else noise,
-    )
-
-
-def _beams(directions: tuple[float, ...]) -> kernels.Beams:
-    """The rays, and as many more as make the number a multiple of VECTOR."""
-    missing = -len(directions) % VECTOR
-    return kernels.Beams(
-        *(
-            np.pad(each(directions), (0, missing), constant_values=np.nan).astype(np.float32)
-            for each in (np.cos, np.sin)
-        )
     )
 
 

@@ -28,7 +28,9 @@ FULL_TURN = 2.0 * np.pi
 EPISODE = 32
 """Every episode of a world has 2 to the power of this many random numbers to itself."""
 START = 1 << 31
-"""Those from here on are for its start, those before for the noise of its lidars."""
+"""Those from here on are for its start, those before for the noise of its scans."""
+ROOM = -(-RAYS // 32) * 32
+"""A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
 
 class RewardError(Exception):
@@ -109,7 +111,8 @@ class BatchEnv:
     """``n`` worlds of a task. World i depends on (task, seed, first + i) and its own actions alone: it is the same
     to the bit alone or among many.
 
-    Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round.
+    Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
+    every case gets equally many episodes; or, if ``stay``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``restart``: whether a world whose episode has ended begins its next one
     in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
     """
@@ -126,6 +129,7 @@ class BatchEnv:
         reward: RewardFunction | None = None,
         first: int = 0,
         restart: bool = True,
+        stay: bool = False,
     ) -> None:
         self.task = task
         self.n = n
@@ -138,6 +142,7 @@ class BatchEnv:
         self._codes, self._twists = task.actions.codes, task.actions.twists
         self._first = first
         self._restart = restart
+        self._stay = stay
         self._keys = self._sown(seed)
         self._state = State.of(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
@@ -176,7 +181,8 @@ class BatchEnv:
     def _start(self, which: Numbers, cases: Numbers | None = None) -> None:
         """Puts the worlds ``which`` at the start of their present episodes."""
         state, courses = self._state, self._courses
-        dealt = (self._first + which + state.episode[which]) % len(self.cases)
+        turn = 0 if self._stay else state.episode[which]
+        dealt = (self._first + which + turn) % len(self.cases)
         case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
         start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE) + START)
         state.case[which] = case
@@ -275,8 +281,8 @@ class BatchEnv:
         """(m, robots, rays) what the lidars of the worlds ``which`` read."""
         state, courses = self._state, self._courses
         maps, poses = courses.map_of[state.case[which]], state.pose[which]
-        ranges = np.empty((*poses.shape[:2], len(courses.fleet.beams.cos)), dtype=np.float32)
-        drawn = (state.episode[which] << EPISODE) + state.step[which] * (ranges.shape[1] * ranges.shape[2])
+        ranges = np.empty((*poses.shape[:2], ROOM), dtype=np.float32)
+        drawn = (state.episode[which] << EPISODE) + state.step[which] * ranges.shape[1]
         kernels.look_worlds(courses.fleet, maps, poses, self._keys[which], drawn, ranges)
         return ranges
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal
 
-from kit.learning.rewards import REWARDS
+from kit.learning.rewards import REWARDS, SCALE
 from kit.learning.tasks import Task, UnknownTask, find_task
 from kit.world.problems import quoted, suggestion
 
@@ -21,7 +21,7 @@ class TaskChoice:
     tells_target: bool | None = None
     tells_arrived: bool | None = None
     reward: str | None = None
-    """Another one of ``REWARDS``."""
+    """Another one of ``REWARDS``. It stays small where the task's own is small."""
     scale: float | None = None
     """Of the reward."""
     one_number: bool | None = None
@@ -39,7 +39,9 @@ class TaskChoice:
                 raise UnknownTask(
                     f"there is no reward {quoted(self.reward)}: {suggestion(self.reward, REWARDS)}"
                 )
-            reward = replace(REWARDS[self.reward], scale=reward.scale)
+            other = REWARDS[self.reward]
+            scale = 1.0 if other.small else SCALE if reward.small else reward.scale
+            reward = replace(other, scale=scale)
         if self.scale is not None:
             reward = replace(reward, scale=self.scale)
         if self.tells_target is not None:

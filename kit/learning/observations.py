@@ -53,6 +53,26 @@ class Observation:
         stretches = np.stack([sectors[starts], starts, ends], axis=1)
         return np.array(single, dtype=np.int64).reshape(robots, -1), stretches
 
+    def mirrored(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """(robots * size,) each: which number stands here in a mirror, and by what it is multiplied.
+
+        Raises ValueError where the two sides are not alike.
+        """
+        single, last = list(self.rays), RAYS - 1
+        sectors = [{ray for ray in range(RAYS) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)]
+        try:
+            places = [single.index(last - ray) for ray in single]
+            places += [len(places) + k for k in range(2 * self.side_rays)]
+            places += [len(places) + sectors.index({last - ray for ray in sector}) for sector in sectors]
+        except ValueError:
+            raise ValueError("what agents see is not the same on both sides") from None
+        order = np.array([*places, *range(len(places), self.size)], dtype=np.int64)
+        signs = np.ones(self.size, dtype=np.float32)
+        if self.target:
+            signs[self.size - self.arrived - 1] = -1.0
+        blocks = [order + self.size * k for k in reversed(range(robots))]
+        return np.concatenate(blocks), np.tile(signs, robots)
+
     def space(self, robots: int) -> spaces.Box:
         """Box (robots * size,) float32."""
         near, far = np.zeros(self.size), np.full(self.size, self.clip * self.scale)

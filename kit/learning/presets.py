@@ -96,6 +96,11 @@ class Preset:
     steps: int
     """At most."""
     worlds: int = 1
+    stay: bool = False
+    """Whether worlds stay with their cases, if there are enough: then a case that is over soon gets as many steps as
+    the others."""
+    mirrored: bool = False
+    """Whether half of the worlds are seen in a mirror."""
     learning_rate: Falling | None = None
     layers: tuple[int, ...] = (64, 64)
     """Sizes of the hidden layers."""

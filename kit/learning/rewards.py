@@ -217,6 +217,8 @@ class Reward:
     weights: tuple[Weight, ...]
     scale: float = 1.0
     """Of the whole sum."""
+    small: bool = False
+    """Whether an episode earns a few units as it stands; the dissertation's rewards come to hundreds."""
 
     def terms(self, transition: Transition) -> dict[str, Array]:
         """(...) each: what every term adds to the reward, weight and scale included."""
@@ -232,6 +234,8 @@ class Reward:
         return np.asarray(sum(self.terms(transition).values()))
 
 
+SCALE = 0.01
+"""What makes the dissertation's rewards small: a value network learns those at once."""
 ALL_STEPS = 300.0
 """What moving forward in every step of an episode earns: the dissertation's ``basic_reward`` is this, per step."""
 
@@ -288,9 +292,9 @@ ALGORITHM_3 = Reward(
 PROGRESS = Reward(
     "progress",
     (Weight("progress", 1.0), Weight("elapsed", -0.01), Weight("collided", -2.0), Weight("reached", 2.0)),
+    small=True,
 )
-"""Ours, for one robot: every metre counts, and an episode's rewards stay within a few units, which a value network
-learns at once. Nothing in it depends on a clock that the agent cannot see."""
+"""Ours, for one robot: every metre counts. Nothing in it depends on a clock that the agent cannot see."""
 
 SIDE_BY_SIDE = Reward(
     "side-by-side",
@@ -302,6 +306,7 @@ SIDE_BY_SIDE = Reward(
         Weight("collided", -2.0),
         Weight("reached", 2.0),
     ),
+    small=True,
 )
 """Ours, for two. Side by side a step costs nothing, but never earns anything: else the pair would stand still side by
 side to the end."""

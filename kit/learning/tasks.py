@@ -16,6 +16,7 @@ from kit.learning.rewards import (
     ALGORITHM_2,
     ALGORITHM_2_STOPPING,
     ALGORITHM_3,
+    SCALE,
     SIDE_BY_SIDE,
     Reward,
 )
@@ -122,7 +123,7 @@ TURN = Task(
     robots=1,
     actions=THREE,
     observation=NINE,
-    reward=replace(ALGORITHM_3, scale=0.01),
+    reward=replace(ALGORITHM_3, scale=SCALE),
     step_time=0.1,
     checks=1,
     target_radius=0.2,
@@ -143,7 +144,7 @@ HALLWAY = Task(
     robots=1,
     actions=SEVEN,
     observation=SEVENTEEN,
-    reward=replace(ALGORITHM_1, scale=0.01),
+    reward=replace(ALGORITHM_1, scale=SCALE),
 )
 HALLWAY_SEED = replace(HALLWAY, name="hallway-seed", reward=ALGORITHM_1, timeout_terminal=True)
 WHEELCHAIRS = Task(

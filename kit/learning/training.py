@@ -280,15 +280,18 @@ def make_learner(
     tensorboard: Path | None = None,
 ) -> Learner:
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on."""
+    stay = preset.stay and preset.worlds >= len(task.courses())
     if algorithm.family == "table":
-        batch = BatchEnv(task, preset.worlds, seed, reward=reward)
+        batch = BatchEnv(task, preset.worlds, seed, reward=reward, stay=stay)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.deep import DeepLearner
+    from kit.learning.mirror import HalfMirrored
     from kit.learning.vecenv import make_vec
 
-    venv = make_vec(task, preset.worlds, seed, reward)
-    return DeepLearner(algorithm, preset, choice, venv, seed, tensorboard)
+    venv = make_vec(task, preset.worlds, seed, reward, stay=stay)
+    shown = HalfMirrored(venv) if preset.mirrored else venv
+    return DeepLearner(algorithm, preset, choice, shown, seed, tensorboard)
 
 
 def _tensorboard(run: Run) -> Path | None:

@@ -91,6 +91,8 @@ class BatchVecEnv(VecEnv):
         return [None] * self.num_envs
 
 
-def make_vec(task: Task, n: int, seed: int = 0, reward: RewardFunction | None = None) -> BatchVecEnv:
-    """``n`` worlds of the task for stable-baselines3; ``reward``: instead of the task's own."""
-    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward))
+def make_vec(
+    task: Task, n: int, seed: int = 0, reward: RewardFunction | None = None, *, stay: bool = False
+) -> BatchVecEnv:
+    """``n`` worlds of the task for stable-baselines3; the rest as for ``BatchEnv``."""
+    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, stay=stay))

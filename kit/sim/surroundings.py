@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit import kernels
-from kit.blocks import in_blocks
 from kit.geometry import Pose
+from kit.sight import in_blocks
 from kit.sim.bodies import PhysicalBody, Rigid
 from kit.sim.physics import Physics
 from kit.world.records import Circle, Color

@@ -115,7 +115,8 @@ def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
         assert ours == {tuple(wall) for wall in each.walls.tolist()}
     assert fleet.blocks.tolist()[0] == 0
     assert fleet.radius == pytest.approx(np.hypot(0.1, 0.1))
-    assert len(fleet.beams.cos) == 32
+    assert len(fleet.beams.cos) == len(small.robot.directions)
+    assert fleet.views.grids[:, 2].astype(bool).tolist() == [True, False, True]
 
 
 def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:

@@ -112,6 +112,15 @@ def test_cases_are_dealt_in_turn() -> None:
     assert batch.state.case.tolist() == [i % 4 for i in range(17)]
 
 
+def test_a_world_may_stay_with_its_case() -> None:
+    batch = BatchEnv(HALLWAY, 17, seed=0, first=2, stay=True)
+    batch.reset()
+    for _ in range(300):
+        batch.step(np.ones(17, dtype=np.int64))
+    assert batch.state.episode.min() > 0
+    assert batch.state.case.tolist() == [(2 + i) % 15 for i in range(17)]
+
+
 def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
     batch = BatchEnv(TURN, 6, seed=0)
     batch.reset()

@@ -15,6 +15,7 @@ from kit.geometry import Pose
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
+from kit.sight import beams
 from kit.sim.clock import UpdateTimer
 from kit.sim.keys import read_rate, read_topic
 from kit.sim.messages import TF_TOPIC, transform, transforms
@@ -122,8 +123,7 @@ class Laser(Plugin):
         self._site = site
         self._body = site.bodies[params.sight.body]
         self._timer = UpdateTimer(params.rate, site.clock)
-        directions = np.array(params.directions)
-        self._beams = kernels.Beams(*(each(directions).astype(np.float32) for each in (np.cos, np.sin)))
+        self._beams = beams(params.directions)
         self._frame = site.model.frame(params.frame or site.name)
         self._scan = site.publisher(params.topic, LaserScan)
         self._tf = site.publisher(TF_TOPIC, TFMessage)
@@ -148,7 +148,7 @@ class Laser(Plugin):
         ranges = self._site.surroundings.scan(pose, self._beams, params.reach, params.sight.bits)
         intensities = self._intensities(pose, ranges) if params.reflecting else array("f")
         if params.noise:
-            kernels.add_noise(ranges, params.noise, self._stream, self._site.clock.tick * len(ranges))
+            kernels.add_noise(ranges, params.noise, self._stream, self._site.clock.tick)
         view = ScanView(self._site.model.name, self._site.name, pose, self._beams, ranges)
         self._site.surroundings.views[view.model, view.plugin] = view
         return LaserScan(
