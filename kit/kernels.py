@@ -199,7 +199,7 @@ def uniform(key: int, counter: int) -> float:
 
 
 @jit
-def bell(four: int) -> Single:
+def bell(four: Half | Bits) -> Single:
     """Standard normal, of the sum of four 16-bit uniforms; never beyond 4.9.
 
     Bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off by less than 0.007 up to 3.5. Without
@@ -285,7 +285,9 @@ def meet_pair(
         *(aimed[0, j + 1], aimed[1, j + 1], aimed[2, j + 1]),
         *(aimed[3, j + 1], aimed[4, j + 1]),
     )
-    for i in range(Bits(line), Bits(last)):  # in place, compilers store under a mask: very slow on some processors
+    for i in range(
+        Bits(line), Bits(last)
+    ):  # in place, compilers store under a mask: very slow on some processors
         one = ray_segment(lines[0, i], lines[1, i], ax, ay, bx, by, one_scale)
         other = ray_segment(lines[0, i], lines[1, i], cx, cy, dx, dy, other_scale)
         ahead, behind = near[0, i], near[1, i]
@@ -431,7 +433,9 @@ def add_noise(ranges: Singles, deviation: float, key: int, number: int) -> None:
     one, other = Half(bits), Half(bits >> Bits(32))
     for i in range(ranges.shape[0]):
         a, b = mixed(one), mixed(other)
-        ranges[i] += Single(deviation) * bell(Half(a & low) + Half(a >> half) + Half(b & low) + Half(b >> half))
+        ranges[i] += Single(deviation) * bell(
+            Half(a & low) + Half(a >> half) + Half(b & low) + Half(b >> half)
+        )
         one, other = Half(one + Half(0x9E3779B9)), Half(other + Half(0x85EBCA6B))
 
 

@@ -22,7 +22,9 @@ CELL = 0.25
 def beams(directions: Sequence[float]) -> Beams:
     """Rays in these directions [rad], in the lidar's own frame."""
     angles = np.asarray(directions, dtype=np.float64)
-    turns, folded = np.divmod(angles - angles[:1] + SAME, np.pi)  # half turns since the first ray, and what is left
+    turns, folded = np.divmod(
+        angles - angles[:1] + SAME, np.pi
+    )  # half turns since the first ray, and what is left
     inwards = np.argsort(folded, kind="stable")
     same = np.empty(len(angles), dtype=np.int64)
     same[inwards] = np.cumsum(np.diff(folded[inwards], prepend=folded[inwards[:1]]) > SAME)
@@ -36,15 +38,16 @@ def beams(directions: Sequence[float]) -> Beams:
     bounds = np.concatenate([[0], breaks, [len(line)]])
     starts, ends = bounds[:-1][: len(line)], bounds[1:][: len(line)]
     runs = np.stack([starts, ends, backwards[starts], line[starts]], axis=1).astype(np.int64)
-    single = [each.astype(np.float32) for each in (np.cos(angles), np.sin(angles), lines)]
-    return Beams(*single, runs)
+    cos, sin, drawn = (each.astype(np.float32) for each in (np.cos(angles), np.sin(angles), lines))
+    return Beams(cos, sin, drawn, runs)
 
 
 def views(maps: Iterable[Floats | None]) -> Views:
     """Views for maps, given by their walls ``(n, 4)`` [m]; None: no views for this one."""
-    ends, starts, of_cell, corners, grids = [np.zeros((0, 4))], [0], [], [], []
+    ends, of_cell = [np.zeros((0, 4))], [np.zeros(0, dtype=np.int64)]
+    starts, corners, grids = [0], [], []
     for walls in maps:
-        first = sum(map(len, of_cell))
+        first = sum(len(cells) for cells in of_cell)
         if walls is None or not len(walls):
             corners.append((0.0, 0.0))
             grids.append((first, 0, 0))
@@ -62,7 +65,7 @@ def views(maps: Iterable[Floats | None]) -> Views:
     return Views(
         ends=np.concatenate(ends),
         starts=np.array(starts, dtype=np.int64),
-        of_cell=np.concatenate([np.zeros(0), *of_cell]).astype(np.int64),
+        of_cell=np.concatenate(of_cell),
         corners=np.array(corners).reshape(-1, 2),
         grids=np.array(grids, dtype=np.int64).reshape(-1, 3),
         cell=CELL,

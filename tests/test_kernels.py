@@ -29,8 +29,6 @@ def singles(*values: float) -> list[np.float32]:
     return [np.float32(value) for value in values]
 
 
-
-
 # Motion
 
 

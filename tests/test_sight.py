@@ -36,7 +36,9 @@ def test_opposite_rays_share_a_line(directions: list[float], lines: int) -> None
         told[:, first:end] = (-1) ** against * made.lines[:, line : line + end - first]
     angles = np.array(directions)
     assert told == pytest.approx(np.array([np.cos(angles), np.sin(angles)]), abs=1e-7)
-    assert np.array([made.cos, made.sin]) == pytest.approx(np.array([np.cos(angles), np.sin(angles)]), abs=1e-7)
+    assert np.array([made.cos, made.sin]) == pytest.approx(
+        np.array([np.cos(angles), np.sin(angles)]), abs=1e-7
+    )
 
 
 def test_a_lidar_without_rays_has_no_lines() -> None:

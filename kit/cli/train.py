@@ -10,7 +10,6 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.choice import TaskChoice
     from kit.learning.events import EventReader
     from kit.learning.runs import Run, RunConfig
     from kit.tui.terminal import TerminalDecision
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
 )
 @click.option("--goal", type=click.FloatRange(0, 1), help="Stop at this success; by default the preset's.")
 @click.option("--keep-training", is_flag=True, help="To the last step, whatever tests say.")
+@click.option("--mirrored", is_flag=True, help="Half of the worlds are seen in a mirror: left helps right.")
 @click.option(
     "--measured-to", type=click.Choice(("hull", "axle")), help="What of the robot must be near the target."
 )
@@ -75,6 +75,7 @@ def command(
     learning_rate: float | None,
     goal: float | None,
     keep_training: bool,
+    mirrored: bool,
     measured_to: Literal["hull", "axle"] | None,
     tell_target: bool,
     tell_arrived: bool,
@@ -127,6 +128,7 @@ def command(
             choice,
             *(algo, preset, seed, steps, worlds, learning_rate, goal, keep_training),
             reward_file=None if reward_file is None else str(reward_file.absolute()),
+            mirrored=mirrored,
         )
         _begin(config, name, workspace, terminal)
 
@@ -140,7 +142,7 @@ def _begin(
     from kit.learning.runs import new_run
     from kit.learning.student import parameters_of
 
-    _check(config.choice)
+    _check(config)
     if find_algorithm(config.algorithm).neural:
         require_learner()
     if config.reward_file is not None:
@@ -148,10 +150,14 @@ def _begin(
     _start(new_run(learning_options.runs_folder(workspace), config, name), terminal)
 
 
-def _check(choice: TaskChoice) -> None:
+def _check(config: RunConfig) -> None:
     from kit.learning.courses import Courses
+    from kit.learning.mirror import Mirror
 
-    Courses(choice.resolve())
+    task = config.choice.resolve()
+    Courses(task)
+    if config.mirrored:
+        Mirror(task)
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:

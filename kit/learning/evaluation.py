@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from kit.learning.batch import BatchEnv
 from kit.learning.intervals import Interval, wilson
@@ -164,13 +165,14 @@ class Examiner:
         player = policy.player(n, None if greedy else np.random.default_rng(seed_for(seed, "moves")))
         left, sums = np.full(n, rounds), {case.name: _Sums() for case in self._cases}
         observations, fresh, tally = batch.reset(seed=seed), np.ones(n, dtype=np.bool_), Tally(batch)
-        while left.any():
-            step = batch.step(player.act(observations, fresh))
-            for episode in tally.add(step):
-                if left[episode.world]:
-                    left[episode.world] -= 1
-                    sums[episode.case].add(episode)
-            observations, fresh = step.observations, step.ended
+        with threadpool_limits(1, user_api="blas"):
+            while left.any():
+                step = batch.step(player.act(observations, fresh))
+                for episode in tally.add(step):
+                    if left[episode.world]:
+                        left[episode.world] -= 1
+                        sums[episode.case].add(episode)
+                observations, fresh = step.observations, step.ended
         pair = self.task.robots > 1
         return Result(
             self.task.name, greedy, tuple(sums[case.name].result(case, pair) for case in self._cases)

@@ -59,7 +59,9 @@ class Observation:
         Raises ValueError where the two sides are not alike.
         """
         single, last = list(self.rays), RAYS - 1
-        sectors = [{ray for ray in range(RAYS) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)]
+        sectors = [
+            {ray for ray in range(RAYS) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)
+        ]
         try:
             places = [single.index(last - ray) for ray in single]
             places += [len(places) + k for k in range(2 * self.side_rays)]

@@ -70,6 +70,8 @@ class RunConfig:
     """Use the dissertation's first strategy: to the last step, whatever tests say."""
     reward_file: str | None = None
     """A student's reward, instead of the task's."""
+    mirrored: bool = False
+    """Half of the worlds are seen in a mirror: what is learned on one side is known on the other."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""

@@ -18,6 +18,7 @@ from typing import Any
 
 from kit.host.failure import GuestError
 from kit.learning.algorithms import Algorithm, find_algorithm
+from kit.learning.arena import Unsupported
 from kit.learning.batch import BatchEnv, RewardError
 from kit.learning.choice import TaskChoice
 from kit.learning.evaluation import CaseResult, Examiner, Result, seed_for
@@ -53,6 +54,7 @@ def chosen_preset(config: RunConfig) -> Preset:
         strategy=strategy,
         steps=preset.steps if config.steps is None else config.steps,
         worlds=preset.worlds if config.worlds is None else config.worlds,
+        mirrored=preset.mirrored or config.mirrored,
         learning_rate=preset.learning_rate if rate is None else Falling(rate, rate),
     )
 
@@ -77,7 +79,7 @@ def train(run: Run, *, interrupted: Callable[[], bool] = lambda: False) -> Ended
             with _reward(run, config) as reward:
                 training = _Training(run, config, events, reward, interrupted)
                 ended = training.go()
-        except (GuestError, RewardError, RewardFileError) as error:
+        except (GuestError, RewardError, RewardFileError, Unsupported) as error:
             ended = _failed(run, str(error))
         events.write(ended)
     return ended
@@ -282,12 +284,13 @@ def make_learner(
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on."""
     stay = preset.stay and preset.worlds >= len(task.courses())
     if algorithm.family == "table":
+        if preset.mirrored:
+            raise Unsupported("a table is learned without a mirror: leave --mirrored out")
         batch = BatchEnv(task, preset.worlds, seed, reward=reward, stay=stay)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.deep import DeepLearner
-    from kit.learning.mirror import HalfMirrored
-    from kit.learning.vecenv import make_vec
+    from kit.learning.vecenv import HalfMirrored, make_vec
 
     venv = make_vec(task, preset.worlds, seed, reward, stay=stay)
     shown = HalfMirrored(venv) if preset.mirrored else venv

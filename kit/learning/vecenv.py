@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
 from kit.learning.batch import BatchEnv
+from kit.learning.mirror import Mirror
 from kit.learning.rewards import RewardFunction
 from kit.learning.tally import Episode, Outcome, Tally
 from kit.learning.tasks import Task
@@ -89,6 +90,35 @@ class BatchVecEnv(VecEnv):
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
         """A picture of every world."""
         return [None] * self.num_envs
+
+
+class HalfMirrored(VecEnvWrapper):
+    """Of every case, each second world is seen in a mirror, and driven so. The worlds themselves are as they were."""
+
+    def __init__(self, venv: BatchVecEnv) -> None:
+        super().__init__(venv)
+        self._mirror = Mirror(venv.batch.task)
+        self._which = np.flatnonzero(np.arange(venv.num_envs) // len(venv.batch.cases) % 2)
+
+    def _mirrored(self, observations: Any) -> NDArray[np.float32]:
+        seen: NDArray[np.float32] = observations.copy()
+        seen[self._which] = self._mirror.observations(seen[self._which])
+        return seen
+
+    def reset(self) -> VecEnvObs:
+        return self._mirrored(self.venv.reset())
+
+    def step_async(self, actions: NDArray[np.integer]) -> None:
+        driven = actions.copy()
+        driven[self._which] = self._mirror.actions(actions[self._which])
+        self.venv.step_async(driven)
+
+    def step_wait(self) -> VecEnvStepReturn:
+        observations, rewards, dones, infos = self.venv.step_wait()
+        for number in self._which[dones[self._which]]:
+            info = infos[number]
+            info["terminal_observation"] = self._mirror.observations(info["terminal_observation"])
+        return self._mirrored(observations), rewards, dones, infos
 
 
 def make_vec(

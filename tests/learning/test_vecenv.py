@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,3 +86,34 @@ def test_what_would_set_one_world_apart_is_refused() -> None:
         env.set_attr("n", 3)
     with pytest.raises(AttributeError, match="one"):
         env.env_method("reset")
+
+
+def test_half_of_every_case_is_seen_in_a_mirror() -> None:
+    from kit.learning.mirror import Mirror
+    from kit.learning.vecenv import HalfMirrored, make_vec
+
+    task = HALLWAY.on("left_door", "turn_left_90", "straight")
+    plainly, mirrored = make_vec(task, 12, 3, stay=True), HalfMirrored(make_vec(task, 12, 3, stay=True))
+    mirror, which = Mirror(task), np.array([3, 4, 5, 9, 10, 11])
+    others = np.setdiff1d(np.arange(12), which)
+    seen: Any = (plainly.reset(), mirrored.reset())
+    chance = np.random.default_rng(0)
+    over = 0
+    for _ in range(120):
+        assert (seen[1][which] == mirror.observations(seen[0][which])).all()
+        assert (seen[1][others] == seen[0][others]).all()
+        actions = chance.integers(0, 7, 12)
+        shown = actions.copy()
+        shown[which] = mirror.actions(actions[which])
+        (first, rewards, dones, infos), (second, rewards2, dones2, infos2) = (
+            plainly.step(actions),
+            mirrored.step(shown),
+        )
+        assert (rewards == rewards2).all()
+        assert (dones == dones2).all()
+        for number in np.flatnonzero(dones):
+            last, last2 = infos[number]["terminal_observation"], infos2[number]["terminal_observation"]
+            assert (last2 == (mirror.observations(last) if number in which else last)).all()
+            over += 1
+        seen = (first, second)
+    assert over
