@@ -56,6 +56,8 @@ def look(run: Run, terminal: TerminalDecision) -> None:
     screen = TrainingScreen(app.look, run)
     app.begin(screen)
     app.run()
+    if screen.state == "interrupted" and run.last_words:
+        click.echo(run.last_words)
     click.echo(screen.farewell)
     if app.return_code or screen.state == "failed":
         raise SystemExit(app.return_code or 1)
@@ -91,6 +93,8 @@ def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -
         return
     if ended is None:
         if not once or not run.alive:
+            if run.last_words:
+                click.echo(run.last_words)
             click.echo(
                 f"{run.name} was interrupted. `kit train --resume {run.name}` goes on from its last checkpoint."
             )

@@ -15,7 +15,7 @@ import time
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
@@ -141,6 +141,15 @@ class Run:
     def log(self) -> Path:
         return self.folder / "log.txt"
 
+    @property
+    def last_words(self) -> str:
+        """The last line that the newest process printed: why it ended, where it could not write that among the events."""
+        try:
+            lines = self.log.read_text(errors="replace").split("\n")
+        except FileNotFoundError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
     def config(self) -> RunConfig:
         """RunError if it is missing or damaged."""
         file = self.folder / "config.json"
@@ -207,7 +216,8 @@ class Run:
 
     def summary(self) -> Summary:
         """Where it stands."""
-        return summarise(self.events(), alive=self.alive, order=self.asked())
+        found = summarise(self.events(), alive=self.alive, order=self.asked())
+        return replace(found, reason=self.last_words) if found.state == "interrupted" else found
 
     # Checkpoints
 

@@ -58,8 +58,7 @@ def start(run: Run, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
     RunError, with what the process said, if it ends before it has begun. The caller need not wait for it.
     """
     run.ask("go")
-    before = run.log.stat().st_size if run.log.exists() else 0
-    with run.log.open("ab") as log:
+    with run.log.open("wb") as log:
         process = subprocess.Popen(
             [sys.executable, "-m", "kit.learning.worker", str(run.folder)],
             stdin=subprocess.DEVNULL,
@@ -72,7 +71,7 @@ def start(run: Run, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
     while process.poll() is None and not run.alive and time.monotonic() < until:
         time.sleep(0.02)
     if process.poll() not in (None, 0):
-        said = run.log.read_bytes()[before:].decode(errors="replace").strip()
+        said = run.log.read_text(errors="replace").strip()
         raise RunError(said or f"{run.name}: training could not start; see {run.log}.")
     return process
 

@@ -150,8 +150,10 @@ def test_a_full_disk_is_told_and_the_run_is_whole(tmp_path: Path, monkeypatch: p
         patch.setattr("kit.learning.runs.write_atomically", full)
         with pytest.raises(RunError, match=r"disk is full.*--resume"):
             train(run)
-    assert run.summary().state == "interrupted"
+    run.log.write_text("the disk is full\n")  # the worker's, where it prints what `train` raised
+    assert (run.summary().state, run.summary().reason) == ("interrupted", "the disk is full")
     assert train(run).how == "finished"
+    assert "full" not in run.summary().reason
 
 
 BAD_REWARDS = {
