@@ -474,15 +474,18 @@ def placed_hulls(fleet: Fleet, bits: Integers) -> Shapes:
     return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, bits)
 
 
-@jit
-def nearest_wall(pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats) -> tuple[float, bool]:
-    """A distance from a robot's origin within which there is no wall, and whether one meets its hull.
+@inlined
+def nearest_wall(
+    pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats, first: int, end: int
+) -> tuple[float, bool]:
+    """A distance from a robot's origin within which there is no wall, and whether one of ``walls[first:end]`` meets its hull.
 
     The hull: the polygons on the layer ``bit``, in the robot's frame, within ``radius`` of its origin. A wall counts
     as near as the upright rectangle around it: to be sure, that is enough.
     """
     x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
-    for j in range(walls.shape[0]):
+    for row in range(first, end):
+        j = Bits(row)
         ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
         dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
         nearest = min(nearest, dx * dx + dy * dy)
@@ -512,11 +515,11 @@ def hulls_meet(hulls: Shapes) -> bool:
     return False
 
 
-@jit
+@inlined
 def stop_robots(
-    fleet: Fleet, walls: Floats, before: Floats, room: Shapes, poses: Floats, free: Floats, hit: Flags
+    fleet: Fleet, number: int, before: Floats, room: Shapes, poses: Floats, free: Floats, hit: Flags
 ) -> None:
-    """Puts the robots of one world, among these walls, back where they meet something; they are hit.
+    """Puts the robots of one world, on map ``number``, back where they meet something; they are hit.
 
     ``before``: where they were. ``room``: for the hulls where they are now.
     """
@@ -526,7 +529,10 @@ def stop_robots(
     for k in range(poses.shape[0]):
         meets = together
         if free[k] <= fleet.radius:
-            free[k], meets = nearest_wall(poses[k], fleet.hulls, 1 << k, fleet.radius, walls)
+            walls = fleet.walls
+            first, end = walls.starts[fleet.blocks[number]], walls.starts[fleet.blocks[number + 1]]
+            hulls, bit = fleet.hulls, 1 << k
+            free[k], meets = nearest_wall(poses[k], hulls, bit, fleet.radius, walls.ends, first, end)
         if meets or together:
             poses[k], free[k], hit[k] = before[k], 0.0, True
 
@@ -552,9 +558,7 @@ def drive_worlds(
             near |= free[i, k] <= fleet.radius
             near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
         if near:
-            first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
-            walls = fleet.walls.ends[fleet.walls.starts[first] : fleet.walls.starts[end]]
-            stop_robots(fleet, walls, before, room, poses[i], free[i], hit[i])
+            stop_robots(fleet, maps[i], before, room, poses[i], free[i], hit[i])
 
 
 @jit
@@ -586,13 +590,43 @@ def view_from(views: Views, number: int, x: float, y: float) -> int:
     return -1
 
 
+@inlined
+def sense(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
+    """Limits ``ranges`` (rays,) to 0..``far``, and fills ``sensed`` (numbers,) with some rays and minima.
+
+    ``single`` (s,): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
+    """
+    nothing, most = Single(0), Single(far)
+    for i in range(ranges.shape[0]):
+        limited = ranges[i] if ranges[i] > nothing else nothing
+        ranges[i] = limited if limited < most else most
+    sensed[:] = most
+    for m in range(sectors.shape[0]):
+        number, least = single.shape[0] + sectors[m, 0], most
+        for i in range(Bits(sectors[m, 1]), Bits(sectors[m, 2])):
+            least = ranges[i] if ranges[i] < least else least
+        sensed[number] = least if least < sensed[number] else sensed[number]
+    for j in range(single.shape[0]):
+        sensed[j] = ranges[single[j]]
+
+
 @jit
 def look_worlds(
-    fleet: Fleet, maps: Integers, poses: Floats, keys: Integers, drawn: Integers, ranges: Singles
+    fleet: Fleet,
+    maps: Integers,
+    poses: Floats,
+    keys: Integers,
+    drawn: Integers,
+    far: float,
+    single: Integers,
+    sectors: Integers,
+    ranges: Singles,
+    sensed: Singles,
 ) -> None:
-    """Scans of all robots, as ``scan`` and ``add_noise`` make them, (n, r, rays or more); the reach where nothing is seen.
+    """Scans of all robots, as ``scan`` and ``add_noise`` make them and ``sense`` limits them, (n, r, rays or more), and
+    what they sense, (n, r, numbers).
 
-    The noise of world i is that of the scans ``drawn[i]`` and following of ``keys[i]``.
+    The noise of world i is that of the scans ``drawn[i]`` and following of ``keys[i]``. ``single`` (r, s).
     """
     robots, rays, fixed, views = ranges.shape[1], fleet.beams.cos.shape[0], fleet.beams.lines, fleet.views
     lines, near, room = np.empty_like(fixed), np.empty_like(fixed), np.empty_like(fixed)
@@ -621,27 +655,7 @@ def look_worlds(
             spread(room, fleet.beams.runs, ranges[i, k])
             ranges[i, k, rays:] = Single(fleet.reach)
             add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k)
-
-
-@jit
-def sense_worlds(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
-    """Limits ``ranges`` (n, r, rays) to 0..``far``, and fills ``sensed`` (n, r, numbers) with some rays and minima.
-
-    ``single`` (r, s): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
-    """
-    s, nothing, most = single.shape[1], Single(0), Single(far)
-    sensed[:] = most
-    for i in range(ranges.shape[0]):
-        for k in range(ranges.shape[1]):
-            for j in range(ranges.shape[2]):
-                ranges[i, k, j] = min(max(ranges[i, k, j], nothing), most)
-            for m in range(sectors.shape[0]):
-                least = most
-                for j in range(Bits(sectors[m, 1]), Bits(sectors[m, 2])):
-                    least = ranges[i, k, j] if ranges[i, k, j] < least else least
-                sensed[i, k, s + sectors[m, 0]] = min(sensed[i, k, s + sectors[m, 0]], least)
-            for j in range(s):
-                sensed[i, k, j] = ranges[i, k, single[k, j]]
+            sense(far, single[k], sectors, ranges[i, k], sensed[i, k])
 
 
 @jit

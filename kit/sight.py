@@ -11,6 +11,7 @@ from kit.arrays import Beams, Floats, Segments, Views
 
 LANES = 8
 """Lines come in whole vectors of so many (``kit.kernels.LANES``)."""
+SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 SAME = 3e-8
 """Directions that differ by no more are the same [rad]: less than what single precision tells apart."""
 SLACK = 1e-9
@@ -55,7 +56,9 @@ def views(maps: Iterable[Floats | None]) -> Views:
         points = walls.reshape(-1, 2)
         low = points.min(axis=0)
         columns, rows = (np.ptp(points, axis=0) // CELL + 1).astype(np.int64)
-        seen, number = np.unique(_seen_from(walls, low, columns, rows), axis=0, return_inverse=True)
+        y, x = np.divmod(np.arange(columns * rows), columns)
+        cells = low + CELL * (np.stack([x, y], axis=1)[:, None] + SQUARE)
+        seen, number = np.unique(_seen_from(walls, cells), axis=0, return_inverse=True)
         of_cell.append(number.reshape(-1) + len(starts) - 1)
         for each in seen:
             ends.append(walls[each])
@@ -72,16 +75,13 @@ def views(maps: Iterable[Floats | None]) -> Views:
     )
 
 
-def _seen_from(walls: Floats, low: Floats, columns: int, rows: int) -> NDArray[np.bool_]:
+def _seen_from(walls: Floats, cells: Floats) -> NDArray[np.bool_]:
     """(cells, n): which walls may be seen from somewhere in each cell.
 
     A wall is hidden from a cell by another one that every way from the cell to it crosses. Where both lie on different
     sides of that other one, the crossings of the ways from the cell's corners to the wall's ends tell: all the others
     lie between them, for a picture of straight things on a straight wall is straight.
     """
-    y, x = np.divmod(np.arange(columns * rows), columns)
-    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
-    cells = low + CELL * (np.stack([x, y], axis=1)[:, None] + square)  # (cells, 4, 2)
     points = walls.reshape(-1, 2, 2)
     seen = np.ones((len(cells), len(walls)), dtype=np.bool_)
     for a, b in points:

@@ -129,7 +129,11 @@ class Batch:
         """(robots, rays), noise and all; the reach where nothing is seen."""
         ranges = np.empty((1, self.poses.shape[1], 96), dtype=np.float32)
         nothing = np.zeros(1, dtype=np.int64)
-        kernels.look_worlds(self._fleet, nothing, self.poses, nothing, nothing, ranges)
+        robots, single = len(self.poses[0]), np.zeros((len(self.poses[0]), 0), dtype=np.int64)
+        sectors, sensed = np.zeros((0, 3), dtype=np.int64), np.zeros((1, robots, 0), dtype=np.float32)
+        kernels.look_worlds(
+            self._fleet, nothing, self.poses, nothing, nothing, 1e9, single, sectors, ranges, sensed
+        )
         return ranges[0]
 
 

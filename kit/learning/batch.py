@@ -171,7 +171,7 @@ class BatchEnv:
         else:
             self._state.episode += 1
         self._start(np.arange(self.n), cases)
-        return self._observed(EVERYONE, self._look(EVERYONE))
+        return self._look(EVERYONE)[1]
 
     def _sown(self, seed: int) -> Numbers:
         """(n,) where each world's randomness comes from."""
@@ -236,8 +236,7 @@ class BatchEnv:
             move=move,
             in_target=self._arrived(pose, old.target),
         )
-        ranges = self._look(EVERYONE)
-        seen = self._observed(EVERYONE, ranges)
+        ranges, seen = self._look(EVERYONE)
         transition = Transition(
             case=new.case,
             step=new.step,
@@ -264,7 +263,7 @@ class BatchEnv:
         self._state.episode[over] += 1
         self._start(over)
         observations = final.copy()
-        observations[over] = self._observed(over, self._look(over))
+        observations[over] = self._look(over)[1]
         return observations
 
     def _arrived(self, poses: Floats, targets: Floats) -> Flags:
@@ -277,20 +276,18 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _look(self, which: Numbers | slice) -> Singles:
-        """(m, robots, rays) what the lidars of the worlds ``which`` read."""
-        state, courses = self._state, self._courses
+    def _look(self, which: Numbers | slice) -> tuple[Singles, Singles]:
+        """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
+        see of it."""
+        seen, state, courses = self.task.observation, self._state, self._courses
         maps, poses = courses.map_of[state.case[which]], state.pose[which]
         ranges = np.empty((*poses.shape[:2], ROOM), dtype=np.float32)
+        sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE) + state.step[which] * ranges.shape[1]
-        kernels.look_worlds(courses.fleet, maps, poses, self._keys[which], drawn, ranges)
-        return ranges
-
-    def _observed(self, which: Numbers | slice, ranges: Singles) -> Singles:
-        """(m, size) observations of the worlds ``which``. Ranges are limited to what agents see, in place."""
-        seen, state = self.task.observation, self._state
-        sensed = np.empty((*ranges.shape[:2], seen.size), dtype=np.float32)
-        kernels.sense_worlds(seen.clip, self._single, self._sectors, ranges, sensed)
+        kernels.look_worlds(
+            *(courses.fleet, maps, poses, self._keys[which], drawn),
+            *(seen.clip, self._single, self._sectors, ranges, sensed),
+        )
         sensed *= np.float32(seen.scale)
         if seen.target:
             pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
@@ -298,7 +295,7 @@ class BatchEnv:
             sensed[:, :, first + 1] = bearing(pose, target) / np.pi
         if seen.arrived:
             sensed[:, :, -1] = state.in_target[which]
-        return sensed.reshape(len(sensed), -1)
+        return ranges, sensed.reshape(len(sensed), -1)
 
     def _rewarded(self, transition: Transition) -> tuple[Singles, dict[str, Array]]:
         """(n,) rewards, and what each term adds."""

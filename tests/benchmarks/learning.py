@@ -25,7 +25,7 @@ from kit.learning.choice import TaskChoice
 from kit.learning.crosstable import crosstable, groups_of, rows_of
 from kit.learning.evaluation import Examiner, Result
 from kit.learning.events import Ended, Examined
-from kit.learning.presets import KIT_PPO_TURN
+from kit.learning.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.runs import Run, RunConfig, new_run
 from kit.learning.student import StudentReward
 from kit.learning.tally import Episode
@@ -121,15 +121,18 @@ def _hallway(config: RunConfig, folder: Path, seeds: int) -> None:
 
 
 def left_out(folder: Path, seeds: int) -> None:
-    """Trained without three cases, tested on these three: still 0.9."""
+    """Trained to the end without three cases, tested on these three: still 0.9, where half of the worlds are seen in a
+    mirror. (Right door is then known as the mirror image of left door; two doors is not.) Without a mirror it depends
+    on the seed whether the robot ever looks to the right."""
     unseen = ("right_door", "two_doors", "curve_left_180")
     every = TaskChoice("hallway")
     seen = tuple(case.name for _, case in every.resolve().courses() if case.name not in unseen)
-    for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
-        config = RunConfig(replace(every, on=seen), seed=seed)
-        found = trained(config, folder, 500, test_on=replace(every, on=unseen))
-        print(f"  seed {seed}: {found.row}", flush=True)
-        print("\n".join(f"    {row}" for row in found.result.rows()))
+    for mirrored in (True, False):
+        for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
+            config = RunConfig(replace(every, on=seen), seed=seed, keep_training=True, mirrored=mirrored)
+            found = trained(config, folder, 500, test_on=replace(every, on=unseen))
+            print(f"  {'mirrored' if mirrored else 'plain'}, seed {seed}: {found.row}", flush=True)
+            print("\n".join(f"    {row}" for row in found.result.rows()))
 
 
 def table(folder: Path, seeds: int) -> None:
@@ -175,7 +178,10 @@ def _rate(reward: StudentReward | None = None) -> tuple[float, float]:
     """Steps a second of wall time, and of this process's CPU time."""
     choice = TaskChoice("turn")
     preset = replace(
-        KIT_PPO_TURN, worlds=256, settings=replace(KIT_PPO_TURN.settings, n_steps=32, batch_size=2048)
+        KIT_PPO_TURN,
+        worlds=256,
+        settings=replace(KIT_PPO_TURN.settings, n_steps=32, batch_size=2048),
+        activation=KIT_PPO_HALLWAY.activation,  # tanh takes a quarter of the time
     )
     learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=0, reward=reward)
     learner.learn(16_384, _Onlooker())
