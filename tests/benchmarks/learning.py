@@ -179,8 +179,8 @@ def _rate(reward: StudentReward | None = None) -> tuple[float, float]:
     choice = TaskChoice("turn")
     preset = replace(
         KIT_PPO_TURN,
-        worlds=256,
-        settings=replace(KIT_PPO_TURN.settings, n_steps=32, batch_size=2048),
+        worlds=1024,  # the more, the less each call of a small network costs
+        settings=replace(KIT_PPO_TURN.settings, n_steps=16, batch_size=2048),
         activation=KIT_PPO_HALLWAY.activation,  # tanh takes a quarter of the time
     )
     learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=0, reward=reward)

@@ -194,7 +194,7 @@ def shown(name: str, rate: float | None, base: float | None = None) -> None:
 def main() -> None:
     walls = ground(find_map(MAP)).walls
     print(f"{len(walls)} walls, {RAYS} rays, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n")
-    rates = {n: ours(SLALOM, n) for n in (1, 64, 256, 1024, 4096)}
+    rates = {n: ours(SLALOM, n) for n in (1, 64, 256, 1024, 4096, 16384)}
     for n, rate in rates.items():
         shown(f"batch of {n}: tutorial 2's robot", rate)
     engine = max(rates.values())
