@@ -279,15 +279,14 @@ def aim(x: float, y: float, ends: Floats, first: int, end: int, aimed: Singles) 
 def meet_pair(
     lines: Singles, aimed: Singles, j: int, near: Singles, nearer: Singles, line: int, last: int
 ) -> None:
-    """Fills ``nearer`` for the lines from ``line`` to before ``last``: as near as ``near`` and the segments j and j + 1."""
+    """Fills ``nearer`` for the lines from ``line`` to before ``last``: as near as ``near`` and the segments j and j + 1.
+
+    Not in place: compilers would store under a mask, which is very slow on some processors.
+    """
     ax, ay, bx, by, one_scale = aimed[0, j], aimed[1, j], aimed[2, j], aimed[3, j], aimed[4, j]
-    cx, cy, dx, dy, other_scale = (
-        *(aimed[0, j + 1], aimed[1, j + 1], aimed[2, j + 1]),
-        *(aimed[3, j + 1], aimed[4, j + 1]),
-    )
-    for i in range(
-        Bits(line), Bits(last)
-    ):  # in place, compilers store under a mask: very slow on some processors
+    k = j + 1
+    cx, cy, dx, dy, other_scale = aimed[0, k], aimed[1, k], aimed[2, k], aimed[3, k], aimed[4, k]
+    for i in range(Bits(line), Bits(last)):
         one = ray_segment(lines[0, i], lines[1, i], ax, ay, bx, by, one_scale)
         other = ray_segment(lines[0, i], lines[1, i], cx, cy, dx, dy, other_scale)
         ahead, behind = near[0, i], near[1, i]

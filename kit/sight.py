@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.arrays import Beams, Floats, Segments, Views
+from kit.kernels import LANES
 
-LANES = 8
-"""Lines come in whole vectors of so many (``kit.kernels.LANES``)."""
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 SAME = 3e-8
 """Directions that differ by no more are the same [rad]: less than what single precision tells apart."""
@@ -23,9 +22,7 @@ CELL = 0.25
 def beams(directions: Sequence[float]) -> Beams:
     """Rays in these directions [rad], in the lidar's own frame."""
     angles = np.asarray(directions, dtype=np.float64)
-    turns, folded = np.divmod(
-        angles - angles[:1] + SAME, np.pi
-    )  # half turns since the first ray, and what is left
+    turns, folded = np.divmod(angles - angles[:1] + SAME, np.pi)  # half turns since the first ray; the rest
     inwards = np.argsort(folded, kind="stable")
     same = np.empty(len(angles), dtype=np.int64)
     same[inwards] = np.cumsum(np.diff(folded[inwards], prepend=folded[inwards[:1]]) > SAME)
