@@ -173,9 +173,9 @@ KIT_PPO_HALLWAY = Preset(
         ent_coef=Falling(0.02, 0.002),  # at first it keeps trying both sides of a door, in the end it aims
     ),
     UntilSure(
-        every=245_760, goal=0.965, screening=40, confirming=600
+        every=307_200, goal=0.965, screening=40, confirming=500
     ),  # surely 0.965 is 0.985 and more measured
-    steps=3_700_000,  # with three a door is not always learned well; half of the runs are sure before two
+    steps=3_600_000,  # with three a door is not always learned well; half of the runs are sure before two
     worlds=480,  # thirty-two of each case; with twice as many and rollouts half as long, one seed in seven never learned
     stay=True,  # behind a door episodes are short: dealt by episodes, doors got half the steps of long curves
     learning_rate=Falling(1e-3, 3e-5),  # the end of training is for precision
