@@ -142,7 +142,7 @@ class BatchEnv:
         self._codes, self._twists = task.actions.codes, task.actions.twists
         self._first = first
         self._restart = restart
-        self._stay = stay
+        self._own: Numbers | None = (first + np.arange(n)) % len(self.cases) if stay else None
         self._keys = self._sown(seed)
         self._state = State.of(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
@@ -155,6 +155,27 @@ class BatchEnv:
     def place(self, case: int) -> tuple[MapCard, Ground]:
         """The map of a case, by its number."""
         return self._courses.places[case]
+
+    @property
+    def stays(self) -> bool:
+        """Whether worlds stay with their cases."""
+        return self._own is not None
+
+    def deal(self, shares: Floats) -> None:
+        """Shares out anew the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
+        change, each when its episode is over. ValueError where worlds do not stay."""
+        if self._own is None:
+            raise ValueError("worlds that take the cases in turn cannot be dealt")
+        exact = np.asarray(shares) * self.n
+        wanted = np.floor(exact).astype(np.int64)
+        wanted[np.argsort(wanted - exact, kind="stable")[: self.n - wanted.sum()]] += 1
+        own, free = self._own.copy(), []
+        for world, case in enumerate(own):
+            wanted[case] -= 1
+            if wanted[case] < 0:
+                free.append(world)
+        own[free] = np.repeat(np.arange(len(wanted)), np.maximum(wanted, 0))
+        self._own = own
 
     # Beginning
 
@@ -181,8 +202,8 @@ class BatchEnv:
     def _start(self, which: Numbers, cases: Numbers | None = None) -> None:
         """Puts the worlds ``which`` at the start of their present episodes."""
         state, courses = self._state, self._courses
-        turn = 0 if self._stay else state.episode[which]
-        dealt = (self._first + which + turn) % len(self.cases)
+        turns = (self._first + which + state.episode[which]) % len(self.cases)
+        dealt = turns if self._own is None else self._own[which]
         case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
         start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE) + START)
         state.case[which] = case

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
@@ -144,6 +145,11 @@ class DeepLearner:
             tb_log_name="training",
             **LEARN_OPTIONS.get(self._algorithm.name, {}),
         )
+
+    def deal(self, shares: NDArray[np.float64]) -> None:
+        batch = self._env.unwrapped.batch
+        if batch.stays:
+            batch.deal(shares)
 
     def policy(self) -> Policy:
         return Policy(

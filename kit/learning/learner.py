@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kit.learning.policies import Policy
 from kit.learning.tally import Episode
 
@@ -32,6 +35,10 @@ class Learner(Protocol):
 
     def learn(self, steps: int, watcher: Watcher) -> None:
         """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
+
+    def deal(self, shares: NDArray[np.float64]) -> None:
+        """Practises so large a part on each case, (cases,), from the next episodes on; as before where worlds take the
+        cases in turn."""
 
     def policy(self) -> Policy:
         """What it would do now."""

@@ -49,6 +49,10 @@ class TableLearner:
         self._steps = 0
         self._slower = 1.0
 
+    def deal(self, shares: Floats) -> None:
+        if self._batch.stays:
+            self._batch.deal(shares)
+
     # The lesson
 
     def learn(self, steps: int, watcher: Watcher) -> None:

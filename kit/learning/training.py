@@ -16,6 +16,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kit.host.failure import GuestError
 from kit.learning.algorithms import Algorithm, find_algorithm
 from kit.learning.arena import Unsupported
@@ -224,6 +227,8 @@ class _Training:
         self._write(_tested(steps, self._elapsed(), verdict, test))
         if verdict.go_back and self._known is not None and not last:
             self._learner.recall(self._known)
+        if self._preset.hard and not last:
+            self._learner.deal(shares_of_practice(verdict.counts, self._preset.hard))
         self._batch = _Batch(steps)
         if verdict.stop and not last:
             raise Halt(verdict.reason)
@@ -324,6 +329,16 @@ class _Test:
         self.looks += 1
         self.result = self._examiner.test(self._policy, each, seed, greedy=self._greedy)
         return {case.case: _count(case) for case in self.result.cases}
+
+
+def shares_of_practice(counts: Counts, hard: float) -> NDArray[np.float64]:
+    """(cases,) which part of the worlds each case gets: one part is shared out alike, the part ``hard`` as the cases went
+    wrong. A few episodes without a failure are no proof: half a failure is added (Jeffreys)."""
+    failed: NDArray[np.float64] = np.array(
+        [(count.episodes - count.reached + 0.5) / (count.episodes + 1) for count in counts.values()]
+    )
+    shares: NDArray[np.float64] = (1.0 - hard) / len(failed) + hard * failed / failed.sum()
+    return shares
 
 
 def _count(case: CaseResult) -> Count:

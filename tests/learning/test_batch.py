@@ -121,6 +121,21 @@ def test_a_world_may_stay_with_its_case() -> None:
     assert batch.state.case.tolist() == [(2 + i) % 15 for i in range(17)]
 
 
+def test_worlds_that_stay_are_dealt_anew_when_their_episodes_are_over() -> None:
+    task = replace(HALLWAY.on("straight", "left_door", "turn_left_90"), max_steps=5)
+    batch = BatchEnv(task, 20, seed=0, stay=True)
+    batch.reset()
+    batch.deal(np.array([0.1, 0.65, 0.25]))
+    assert np.bincount(batch.state.case).tolist() == [7, 7, 6]
+    for _ in range(6):
+        batch.step(np.zeros(20, dtype=np.int64))
+    assert np.bincount(batch.state.case).tolist() == [2, 13, 5]
+    kept = batch.state.case == np.arange(20) % 3
+    assert kept.sum() == 2 + 7 + 5
+    with pytest.raises(ValueError, match="in turn"):
+        BatchEnv(task, 20, seed=0).deal(np.array([0.1, 0.65, 0.25]))
+
+
 def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
     batch = BatchEnv(TURN, 6, seed=0)
     batch.reset()

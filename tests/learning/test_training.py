@@ -10,15 +10,18 @@ from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from kit.learning.algorithms import ALGORITHMS
 from kit.learning.choice import TaskChoice
 from kit.learning.events import Examined, Noted, Progress, Started
 from kit.learning.extra import LearnerMissing
+from kit.learning.presets import KIT_PPO_HALLWAY
 from kit.learning.runs import Run, RunConfig, RunError, new_run
-from kit.learning.strategies import TrainThenTest, UntilSure
-from kit.learning.training import chosen_preset, fitted, train
+from kit.learning.strategies import Count, TrainThenTest, UntilSure
+from kit.learning.tally import Episode
+from kit.learning.training import chosen_preset, fitted, make_learner, shares_of_practice, train
 from kit.learning.worker import start
 
 TABLE = RunConfig(TaskChoice("turn"), "q-learning", steps=20_000, keep_training=True)
@@ -224,3 +227,28 @@ def test_a_pair_s_moves_become_one_number_where_they_must() -> None:
     assert fitted(choice, ALGORITHMS["ppo"]) == choice
     assert fitted(choice, ALGORITHMS["dqn"]).resolve().actions.one_number
     assert fitted(TaskChoice("turn"), ALGORITHMS["dqn"]) == TaskChoice("turn")
+
+
+def test_what_went_wrong_is_practised_more() -> None:
+    counts = {"easy": Count(40, 40), "hard": Count(20, 40), "slippery": Count(39, 40)}
+    easy, hard, slippery = shares_of_practice(counts, 0.5)
+    assert easy + hard + slippery == pytest.approx(1)
+    assert 1 / 6 < easy < slippery < hard
+    assert shares_of_practice(counts, 0.0) == pytest.approx(np.full(3, 1 / 3))
+
+
+class Onlooker:
+    def between(self) -> None: ...
+
+    def saw(self, episode: Episode) -> None: ...
+
+
+@needs_learner
+def test_hard_cases_get_more_of_the_worlds() -> None:
+    choice = TaskChoice("hallway", ("straight", "center_door"))
+    preset = replace(KIT_PPO_HALLWAY, worlds=60)
+    learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=1)
+    learner.deal(np.array([0.25, 0.75]))
+    learner.learn(60 * 400, Onlooker())
+    batch = learner._env.unwrapped.batch  # type: ignore[attr-defined]
+    assert np.bincount(batch.state.case).tolist() == [15, 45]
