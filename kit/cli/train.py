@@ -151,6 +151,7 @@ def _begin(
 
 
 def _check(config: RunConfig) -> None:
+    from kit.learning.algorithms import find_algorithm
     from kit.learning.courses import Courses
     from kit.learning.mirror import Mirror
 
@@ -158,6 +159,8 @@ def _check(config: RunConfig) -> None:
     Courses(task)
     if config.mirrored:
         Mirror(task)
+        if find_algorithm(config.algorithm).family == "table":
+            options.fail("A table is learned without a mirror: leave --mirrored out.")
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:

@@ -290,7 +290,7 @@ def make_learner(
     stay = preset.stay and preset.worlds >= len(task.courses())
     if algorithm.family == "table":
         if preset.mirrored:
-            raise Unsupported("a table is learned without a mirror: leave --mirrored out")
+            raise Unsupported("a table is learned without a mirror")
         batch = BatchEnv(task, preset.worlds, seed, reward=reward, stay=stay)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner

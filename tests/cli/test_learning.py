@@ -45,6 +45,8 @@ def test_from_training_to_a_node(tmp_path: Path) -> None:
 
 MISTAKES = {
     "no task": (("train",), "kit train turn"),
+    "two sides not alike": (("train", "turn", "--mirrored"), "task turn has no mirror image"),
+    "a table in a mirror": (("train", "hallway", "--algo", "sarsa", "--mirrored"), "leave --mirrored out"),
     "unknown task": (("train", "trun"), "turn"),
     "unknown case": (("train", "hallway", "--on", "dors"), "doors"),
     "unknown algorithm": (("train", "turn", "--algo", "pppo"), "ppo"),
