@@ -60,6 +60,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     terminal.until(
         lambda: "paused" in terminal.text.splitlines()[0] and "p go on" in terminal.text, "the pause"
     )
+    run_on(terminal, 1.0)  # the update that was under way when the key came
     before = steps(terminal)
     run_on(terminal, 1.2)
     assert steps(terminal) == before
