@@ -53,6 +53,19 @@ class Beams(NamedTuple):
     """(runs, 4): rays from ``first`` to before ``end`` lie along (0) or against (1) the lines from ``line`` on."""
 
 
+class Gaze(NamedTuple):
+    """A scan in the making."""
+
+    lines: Singles
+    """(2, lines): cos and sin of the lines, in the world."""
+    near: Singles
+    """(2, lines): 1 / distance of the nearest thing so far along them, and, below 0, against them."""
+    room: Singles
+    """As large, to work in."""
+    aimed: Singles
+    """(5, AIMED): segments as they are seen from the sensor, and their scales."""
+
+
 class Views(NamedTuple):
     """Which walls can be seen from where: maps in square cells; made by ``kit.sight.views``."""
 

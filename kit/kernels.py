@@ -18,6 +18,7 @@ import numpy as np
 from kit.arrays import Beams as Beams
 from kit.arrays import Flags, Floats, Integers, Singles
 from kit.arrays import Fleet as Fleet
+from kit.arrays import Gaze as Gaze
 from kit.arrays import Segments as Segments
 from kit.arrays import Shapes as Shapes
 from kit.arrays import Views as Views
@@ -298,75 +299,42 @@ def meet_pair(
 
 @jit
 def meet_segments(
-    x: float,
-    y: float,
-    lines: Singles,
-    ends: Floats,
-    first: int,
-    end: int,
-    near: Singles,
-    room: Singles,
-    aimed: Singles,
-    line: int,
-    last: int,
+    x: float, y: float, gaze: Gaze, ends: Floats, first: int, end: int, line: int, last: int
 ) -> None:
-    """Brings the lines from ``line`` to before ``last`` as near as the nearest of ``ends[first:end]``.
-
-    ``near`` (2, lines): along them, and against them, below 0. ``room``: as large.
-    """
+    """Brings the lines from ``line`` to before ``last`` as near as the nearest of ``ends[first:end]``."""
+    near, room, aimed = gaze.near, gaze.room, gaze.aimed
     for start in range(first, end, AIMED):
         fours = aim(x, y, ends, start, min(start + AIMED, end), aimed)
         for j in range(0, fours, 4):
-            meet_pair(lines, aimed, j, near, room, line, last)
-            meet_pair(lines, aimed, j + 2, room, near, line, last)
+            meet_pair(gaze.lines, aimed, j, near, room, line, last)
+            meet_pair(gaze.lines, aimed, j + 2, room, near, line, last)
 
 
 @jit
-def meet_walls(
-    x: float,
-    y: float,
-    lines: Singles,
-    walls: Segments,
-    first: int,
-    end: int,
-    near: Singles,
-    room: Singles,
-    aimed: Singles,
-) -> None:
+def meet_walls(x: float, y: float, gaze: Gaze, walls: Segments, first: int, end: int) -> None:
     """Brings every line as near as the nearest wall of the blocks from ``first`` to before ``end``."""
     for k in range(first, end):
-        line, last = 0, lines.shape[1]
+        line, last = 0, gaze.lines.shape[1]
         if end - first > 1:
             disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-            line, last = lines_meeting(lines, disc_x, disc_y, Single(walls.discs[k, 2]), near)
+            line, last = lines_meeting(gaze.lines, disc_x, disc_y, Single(walls.discs[k, 2]), gaze.near)
         if line < last:
-            begin, stop = walls.starts[k], walls.starts[k + 1]
-            meet_segments(x, y, lines, walls.ends, begin, stop, near, room, aimed, line, last)
+            meet_segments(x, y, gaze, walls.ends, walls.starts[k], walls.starts[k + 1], line, last)
 
 
 @jit
-def meet_shapes(
-    x: float,
-    y: float,
-    lines: Singles,
-    shapes: Shapes,
-    bits: int,
-    near: Singles,
-    room: Singles,
-    aimed: Singles,
-    line: int,
-    last: int,
-) -> None:
+def meet_shapes(x: float, y: float, gaze: Gaze, shapes: Shapes, bits: int, line: int, last: int) -> None:
     """Brings the lines from ``line`` to before ``last`` as near as the nearest shape on one of the layers ``bits``, but
     for those around the sensor."""
+    cos, sin, near = gaze.lines[0], gaze.lines[1], gaze.near
     for k in range(shapes.circles.shape[0]):
         if shapes.circle_bits[k] & bits == 0:
             continue
         cx, cy = Single(shapes.circles[k, 0] - x), Single(shapes.circles[k, 1] - y)
         radius = Single(shapes.circles[k, 2])
         for i in range(Bits(line), Bits(last)):
-            near[0, i] = ray_circle(lines[0, i], lines[1, i], cx, cy, radius, near[0, i])
-            near[1, i] = -ray_circle(-lines[0, i], -lines[1, i], cx, cy, radius, -near[1, i])
+            near[0, i] = ray_circle(cos[i], sin[i], cx, cy, radius, near[0, i])
+            near[1, i] = -ray_circle(-cos[i], -sin[i], cx, cy, radius, -near[1, i])
     for k in range(shapes.polygon_bits.shape[0]):
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
@@ -374,7 +342,14 @@ def meet_shapes(
         rim = np.empty((corners.shape[0], 4))
         for j in range(corners.shape[0]):
             rim[j, :2], rim[j, 2:] = corners[j - 1], corners[j]
-        meet_segments(x, y, lines, rim, 0, corners.shape[0], near, room, aimed, line, last)
+        meet_segments(x, y, gaze, rim, 0, corners.shape[0], line, last)
+
+
+@jit
+def new_gaze(lines: Singles) -> Gaze:
+    """Room for scans along so many lines."""
+    aimed = np.empty((5, AIMED), dtype=np.float32)
+    return Gaze(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), aimed)
 
 
 @inlined
@@ -412,14 +387,13 @@ def scan(
     sensor is not seen. Lines are the inner loop, for there vector instructions take 4 to 16 at once.
     """
     x, y, theta = pose
-    lines, near, room = np.empty_like(beams.lines), np.empty_like(beams.lines), np.empty_like(beams.lines)
-    aimed = np.empty((5, AIMED), dtype=np.float32)
-    turn_lines(theta, beams.lines, lines)
-    least = Single(1.0 / reach)
+    gaze, least = new_gaze(beams.lines), Single(1.0 / reach)
+    near, room, last = gaze.near, gaze.room, beams.lines.shape[1]
+    turn_lines(theta, beams.lines, gaze.lines)
     near[0], near[1] = least, -least
-    meet_walls(x, y, lines, walls, 0, walls.discs.shape[0], near, room, aimed)
-    meet_shapes(x, y, lines, shapes, bits, near, room, aimed, 0, lines.shape[1])
-    for i in range(lines.shape[1]):
+    meet_walls(x, y, gaze, walls, 0, walls.discs.shape[0])
+    meet_shapes(x, y, gaze, shapes, bits, 0, last)
+    for i in range(last):
         room[0, i] = Single(1) / near[0, i] if near[0, i] > least else Single(np.nan)
         room[1, i] = Single(-1) / near[1, i] if near[1, i] < -least else Single(np.nan)
     spread(room, beams.runs, ranges)
@@ -628,27 +602,27 @@ def look_worlds(
     The noise of world i is that of the scans ``drawn[i]`` and following of ``keys[i]``. ``single`` (r, s).
     """
     robots, rays, fixed, views = ranges.shape[1], fleet.beams.cos.shape[0], fleet.beams.lines, fleet.views
-    lines, near, room = np.empty_like(fixed), np.empty_like(fixed), np.empty_like(fixed)
-    aimed, last = np.empty((5, AIMED), dtype=np.float32), fixed.shape[1]
+    gaze, last = new_gaze(fixed), fixed.shape[1]
+    near, room = gaze.near, gaze.room
     hulls, least = placed_hulls(fleet, fleet.sight), Single(1.0 / fleet.reach)
     for i in range(ranges.shape[0]):
         if robots > 1:
             place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
         for k in range(robots):
             x, y = poses[i, k, 0], poses[i, k, 1]
-            turn_lines(poses[i, k, 2], fixed, lines)
+            turn_lines(poses[i, k, 2], fixed, gaze.lines)
             near[0], near[1] = least, -least
             view = view_from(views, maps[i], x, y)
             if view >= 0:
                 first, end = views.starts[view], views.starts[view + 1]
-                meet_segments(x, y, lines, views.ends, first, end, near, room, aimed, 0, last)
+                meet_segments(x, y, gaze, views.ends, first, end, 0, last)
             else:
                 first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
-                meet_walls(x, y, lines, fleet.walls, first, end, near, room, aimed)
+                meet_walls(x, y, gaze, fleet.walls, first, end)
             if robots > 1:
                 dx, dy = Single(poses[i, 1 - k, 0] - x), Single(poses[i, 1 - k, 1] - y)
-                line, stop = lines_meeting(lines, dx, dy, Single(fleet.radius), near)
-                meet_shapes(x, y, lines, hulls, ~(1 << k), near, room, aimed, line, stop)
+                line, stop = lines_meeting(gaze.lines, dx, dy, Single(fleet.radius), near)
+                meet_shapes(x, y, gaze, hulls, ~(1 << k), line, stop)
             for j in range(last):
                 room[0, j], room[1, j] = Single(1) / near[0, j], Single(-1) / near[1, j]
             spread(room, fleet.beams.runs, ranges[i, k])

@@ -49,7 +49,8 @@ def ask_keyboard(input_fd: int, output_fd: int, limit: float = 1.0) -> KeyboardR
         tty.setcbreak(input_fd, termios.TCSANOW)  # no echo, and Ctrl-C still interrupts
         os.write(output_fd, (PUSH_ALL + ASK_FLAGS + POP + ASK_ATTRIBUTES).encode())
         while not answered and (left := started + limit - time.monotonic()) > 0:
-            if select.select([input_fd], [], [], left)[0]:
+            # In slices: a Ctrl-C just before the call does not end it, and Python acts on it only after.
+            if select.select([input_fd], [], [], min(left, 0.1))[0]:
                 received += os.read(input_fd, 1024)
                 answered = _ATTRIBUTES.search(received) is not None
         seconds = time.monotonic() - started
