@@ -103,7 +103,7 @@ def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) ->
             screen.send(str(right(step)).encode())
             wait_for(
                 lambda step=step: step.number in stand(desk, lesson).predictions, screen, "the prediction"
-            )  # type: ignore[misc]
+            )  # type: ignore[misc]  # mypy on lambdas
         if step.exercise is not None:
             solve(desk, lesson, step.exercise)
             screen.send(b"r")

@@ -236,7 +236,7 @@ def read(sheet: Sheet) -> Task:
 def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[Run]:
     for each in sections:
         given = each.section("arguments", None)
-        values = {} if given is None else {key: given.text(key) for key in given.keys()}  # noqa: SIM118
+        values = {} if given is None else {key: given.text(key) for key in given.keys()}  # noqa: SIM118 - no mapping
         if given is not None:
             given.finish()
         made = Run(

@@ -151,7 +151,13 @@ class Ends(Told):
 class WorldFacts(Told):
     """A world as it was read; or the problems that kept it from being read, and nothing else."""
 
-    PARTS = {"walls": Walls, "models": Model, "meetings": Meeting, "views": View, "ends": Ends}  # noqa: RUF012
+    PARTS = {  # noqa: RUF012  # read only
+        "walls": Walls,
+        "models": Model,
+        "meetings": Meeting,
+        "views": View,
+        "ends": Ends,
+    }
     problems: tuple[str, ...] = ()
     layers: tuple[str, ...] = ()
     """Every layer name."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -32,7 +33,7 @@ STATES_AT_MOST = 20_000
 SLOWER = 0.5
 
 
-class TableLearner:
+class TableLearner(ABC):
     """Learns with ``n`` worlds at once; with one world, line by line what the books say."""
 
     def __init__(
@@ -90,9 +91,9 @@ class TableLearner:
         ]  # worlds that did the same in the same state move its value by their mean
         np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error / alike)
 
+    @abstractmethod
     def future(self, state: Integers, action: Integers) -> Floats:
         """What the next state is worth, where ``action`` will be taken in it."""
-        raise NotImplementedError
 
     def _choose(self, state: Integers, steps: int) -> Integers:
         """The best action, or now and then any."""

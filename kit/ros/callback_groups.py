@@ -32,7 +32,7 @@ class CallbackGroup:
 
     def beginning_execution(self, entity: Item) -> bool:
         """Whether a callback of the entity begins now; if so, ``ending_execution`` must follow."""
-        raise NotImplementedError
+        raise NotImplementedError  # not abstract: ROS 2's own class can be made too
 
     def ending_execution(self, entity: Item) -> None:
         raise NotImplementedError

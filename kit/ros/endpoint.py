@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, Self
 
 from kit.ros.event_handler import QoSIncompatibility
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from kit.ros.qos import QoSPolicyKind
 
 
-class Destroyable:
+class Destroyable(ABC):
     """Something that a node made and that can be done away with; also as a context manager."""
 
     _handle: NodeHandle
@@ -46,9 +47,9 @@ class Destroyable:
                 self._leave()
                 self._handle.forget(self)
 
+    @abstractmethod
     def _leave(self) -> None:
         """Undoes what making it did outside its node."""
-        raise NotImplementedError
 
     def _must_exist(self) -> None:
         if self._destroyed:
@@ -64,13 +65,13 @@ class Entity(Destroyable):
         super().destroy()
         self.callback_group.entities.discard(self)
 
+    @abstractmethod
     def take(self) -> Any:
         """See ``agenda.Item``."""
-        raise NotImplementedError
 
+    @abstractmethod
     def run(self, taken: Any) -> Any:
         """See ``agenda.Item``."""
-        raise NotImplementedError
 
     def discard_queue(self) -> None:
         """Forgets the work that waits in it. With the graph's lock held."""

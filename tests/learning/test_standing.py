@@ -27,7 +27,7 @@ def stands(*events: Event, alive: bool = True) -> Standing:
 
 
 def batch(steps: int, **changes: object) -> Progress:
-    return replace(BATCH, steps=steps, seconds=steps / 1000, **changes)  # type: ignore[arg-type]
+    return replace(BATCH, steps=steps, seconds=steps / 1000, **changes)  # type: ignore[arg-type]  # by name
 
 
 def test_curves_and_cases() -> None:

@@ -250,5 +250,5 @@ def test_hard_cases_get_more_of_the_worlds() -> None:
     learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=1)
     learner.deal(np.array([0.25, 0.75]))
     learner.learn(60 * 400, Onlooker())
-    batch = learner._env.unwrapped.batch  # type: ignore[attr-defined]
+    batch = learner._env.unwrapped.batch  # type: ignore[attr-defined]  # not in the protocol
     assert np.bincount(batch.state.case).tolist() == [15, 45]

@@ -39,7 +39,7 @@ def face() -> Iterator[Face]:
 def test_one_world_takes_the_place_of_another(face: Face) -> None:
     for name in ("simple", "maze"):
         face.behind.open(lambda name=name: find_place(name), find("forward"))  # type: ignore[misc]  # mypy on lambdas
-        face.until(lambda name=name: face.views and face.views[-1].place == name)  # type: ignore[misc]
+        face.until(lambda name=name: face.views and face.views[-1].place == name)  # type: ignore[misc]  # same
     face.until(lambda: face.views[-1].time_s > 0.2)
     assert not face.troubles
 

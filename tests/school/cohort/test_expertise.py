@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from statistics import mean
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def test_without_a_topic_there_are_no_scores() -> None:
     assert scores([Measure("a", "robotics", np.ones(3))], {"a": "robotics"}) is None
 
 
-def division(way: str, *values: float):  # type: ignore[no-untyped-def]
+def division(way: str, *values: float) -> Any:
     return divide(np.array(values), way)
 
 

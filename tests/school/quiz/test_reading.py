@@ -54,7 +54,7 @@ def _set(key: str, value: object) -> Callable[[Mapped], None]:
 
 
 def _options(change: Callable[[list[Mapped]], object]) -> Callable[[Mapped], None]:
-    return lambda item: change(item["options"]) and None  # type: ignore[arg-type, func-returns-value]
+    return lambda item: change(item["options"]) and None  # type: ignore[arg-type, func-returns-value]  # a lambda
 
 
 @pytest.mark.parametrize(

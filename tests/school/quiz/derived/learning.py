@@ -188,7 +188,7 @@ def _updated(
     """The value of state 0, action 0, after one of the kit's own updates towards state 1, whose actions are worth 10
     and 4."""
     learner = kind.__new__(kind)  # without the worlds, which an update does not need
-    learner._settings = SimpleNamespace(gamma=0.9, rate=Falling(0.5, 0.5))  # type: ignore[assignment]
+    learner._settings = SimpleNamespace(gamma=0.9, rate=Falling(0.5, 0.5))  # type: ignore[assignment]  # all it reads
     learner._slower = 1.0
     learner._values = np.array([[2.0, 0.0], [10.0, 4.0]])
     step: Any = SimpleNamespace(
