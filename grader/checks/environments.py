@@ -171,7 +171,9 @@ def crash_facts(seen: Visit) -> Iterator[str]:
 
 def arrival_facts(seen: Visit) -> Iterator[str]:
     """Whether reaching the target terminates, and not too soon."""
-    episode, radius = seen.episodes["to the target"], seen.wish.place.case.target_radius  # type: ignore[union-attr]  # asked for only where there is one
+    case = seen.wish.place.case
+    assert case is not None  # drives to a target are only asked for where there is one
+    episode, radius = seen.episodes["to the target"], case.target_radius
     moments = episode.moments
     late = next((k for k, moment in enumerate(moments) if moment.target_m < radius - BAND), None)
     if moments and moments[-1].is_over and not moments[-1].touched:
