@@ -174,12 +174,13 @@ class WheelchairsEnv(TaskEnv):
     episode is on the next case.
 
     Observation: Box (38,) float32: 19 numbers of the left wheelchair, 19 of the right one. Each: the five rays of
-    ``RobotKit/Hallway-v0``, two rays to the side where the other one should be, the 12 sectors.
+    ``RobotKit/Hallway-v0``, two rays to the side where the other one should be, the 12 sectors; times 6, for a
+    centimetre decides whether two are side by side.
 
     Actions: MultiDiscrete (4, 4), each for 0.2 s: stop, forward 0.3 m/s, left, right 1.05 rad/s.
 
-    Reward: progress of both along the way [m], -0.05 for every step that is not side by side, -2 for a collision, +2
-    when both are in the target. Its terms are in ``info``, and so is whether the two are adjacent.
+    Reward: progress of both along the way [m], -0.07 for every step and up to as much back for being side by side, -2
+    for a collision, +2 when both are in the target. Its terms are in ``info``, and so is whether the two are adjacent.
 
     Start: side by side, 0.4 m apart, each within 0.05 m and 0.1 rad.
 

@@ -153,7 +153,7 @@ WHEELCHAIRS = Task(
     PAIRS,
     robots=2,
     actions=replace(FOUR, one_number=False),
-    observation=NINETEEN,
+    observation=replace(NINETEEN, scale=6.0),  # a centimetre decides whether two are side by side
     reward=SIDE_BY_SIDE,
     max_steps=300,
     start=Start(gap=0.4, noise=0.05, turned=0.1),
@@ -165,6 +165,7 @@ WHEELCHAIRS_SEED = replace(
     name="wheelchairs-seed",
     reward=ALGORITHM_2_STOPPING,
     actions=FOUR,
+    observation=NINETEEN,
     start=Start(gap=0.4),
     path_end=0.0,
     timeout_terminal=True,

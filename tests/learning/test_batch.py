@@ -350,7 +350,7 @@ def test_target_and_arrival_can_be_seen() -> None:
 def test_two_robots_see_each_other_beside_them() -> None:
     task = replace(short(WHEELCHAIRS, "pair_straight"), start=Start(gap=0.4), lidar_noise=0.0)
     batch = BatchEnv(task, 1, seed=0)
-    seen = batch.reset()[0].reshape(2, NINETEEN.size) / 0.5
+    seen = batch.reset()[0].reshape(2, NINETEEN.size) / WHEELCHAIRS.observation.scale
     hull = [(0.4 - 0.055) / math.cos(math.radians(degrees)) for degrees in (6, 10)]  # wheels are not seen
     assert seen[:, 5:7] == pytest.approx(np.array([hull] * 2), abs=1e-3)
     step = batch.step(np.zeros((1, 2), dtype=np.int64))

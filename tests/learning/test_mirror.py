@@ -41,8 +41,9 @@ def test_the_mirror_image_of_a_drive(task: Task, case: str, other: str) -> None:
     seen, looked_at = here.reset(), there.reset()
     space = here.action_space
     space.seed(4)
+    millimetre = 0.001 * task.observation.scale
     for _ in range(60):
-        assert mirror.observations(seen) == pytest.approx(looked_at, abs=5e-4)
+        assert mirror.observations(seen) == pytest.approx(looked_at, abs=millimetre)
         action: Any = np.array([space.sample()])
         if chance.random() < 0.6 and task.robots == 1:
             action[:] = list(Move).index(Move.FORWARD)
