@@ -62,11 +62,12 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_killed_verb_has_kept_what_it_confirmed(name: str, tmp_path: Path) -> None:
     case, chance = CASES[name], random.Random(8)
-    whole = _run(case, tmp_path / "whole", None)[1]
+    whole = max(_run(case, tmp_path / f"whole{number}", None)[1] for number in range(2))
     partly = 0
     for number in range(KILLS):
         folder = tmp_path / f"{number}"
-        said, _ = _run(case, folder, whole * chance.uniform(0.3, 1.0))
+        # Some moments lie behind the end, where the machine is no slower than before.
+        said, _ = _run(case, folder, whole * chance.uniform(0.3, 1.3))
         with Progress(folder) as progress:
             assert progress.notice == ""
             events = progress.events()
