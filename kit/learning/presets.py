@@ -159,9 +159,9 @@ KIT_PPO_TURN = Preset(
         n_steps=128,
         batch_size=1024,  # large minibatches keep one core busy: 20 times the steps per second of 64
         n_epochs=4,
-        ent_coef=Falling(
-            0.05, 0.0
-        ),  # without it a policy that always turns to one side stays at half of the episodes
+        # Without it a policy that always turns to one side stays at half of the episodes; with 0.05 one seed in twenty
+        # learns to turn on the spot until the time is up, before it has ever arrived.
+        ent_coef=Falling(0.2, 0.0),
     ),
     UntilSure(every=16_384, goal=0.95, screening=100, confirming=500),
     steps=500_000,
