@@ -109,7 +109,7 @@ def runner_for(workspace: Path) -> Callable[..., tuple[str, str, int]]:
     return run
 
 
-def until(condition: Callable[[], object], seconds: float = 20.0) -> None:
+def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
     """Waits for it, and fails if it does not come."""
     deadline = time.monotonic() + seconds
     while not condition():

@@ -158,7 +158,7 @@ class Terminal:
             elif match["question"] == b"6n":
                 self.send(b"\x1b[12;34R")
 
-    def until(self, condition: Callable[[], object], what: str, limit: float = 20.0) -> None:
+    def until(self, condition: Callable[[], object], what: str, limit: float = 60.0) -> None:
         end = time.monotonic() + limit
         while not condition():
             assert time.monotonic() < end, (

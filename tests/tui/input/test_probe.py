@@ -39,7 +39,7 @@ def test_a_silent_terminal_is_given_up(terminal: Run) -> None:
 
 
 def test_ctrl_c_while_it_waits(terminal: Run) -> None:
-    program = terminal("asks.py", "60", kitty=False, attributes=None)
+    program = terminal("asks.py", "600", kitty=False, attributes=None)
     program.until(lambda: program.output, "the question")
     program.send(b"\x03")
     assert program.wait() in {-signal.SIGINT, 1, 130}
