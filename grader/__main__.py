@@ -1,4 +1,4 @@
-"""``python -m grader``. Each verb is one module of ``grader.verbs``, imported only when it is used."""
+"""``python -m grader``. Each verb is one module of ``grader.cli``, imported only when it is used."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Final
 import click
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
-    "check": ("grader.verbs.check", "Judge one submission: a verdict per criterion, and what to do next."),
-    "new": ("grader.verbs.new", "Make an assignment's folder, to start from."),
-    "checks": ("grader.verbs.checks", "List what can be checked, by what is handed in."),
-    "self-test": ("grader.verbs.self_test", "Try an assignment out on its own solution and wrong solutions."),
-    "report": ("grader.verbs.report", "Write a result in another format."),
-    "ci": ("grader.verbs.ci", "Print a workflow file for GitHub or GitLab."),
-    "cohort": ("grader.verbs.cohort", "Grade a folder of submissions; go on where it was interrupted."),
-    "work": ("grader.verbs.work", "Work off a share of a cohort's queue, on another machine."),
-    "worker": ("grader.verbs.worker", ""),
-    "gradebook": ("grader.verbs.gradebook", "Print a cohort's gradebook: late rules, and what has changed."),
+    "check": ("grader.cli.check", "Judge one submission: a verdict per criterion, and what to do next."),
+    "new": ("grader.cli.new", "Make an assignment's folder, to start from."),
+    "checks": ("grader.cli.checks", "List what can be checked, by what is handed in."),
+    "self-test": ("grader.cli.self_test", "Try an assignment out on its own solution and wrong solutions."),
+    "report": ("grader.cli.report", "Write a result in another format."),
+    "ci": ("grader.cli.ci", "Print a workflow file for GitHub or GitLab."),
+    "cohort": ("grader.cli.cohort", "Grade a folder of submissions; go on where it was interrupted."),
+    "work": ("grader.cli.work", "Work off a share of a cohort's queue, on another machine."),
+    "worker": ("grader.cli.worker", ""),
+    "gradebook": ("grader.cli.gradebook", "Print a cohort's gradebook: late rules, and what has changed."),
 }
 """Every verb: the module that holds its ``command``, and its line in ``grader --help``; none if it is not for people."""
 

@@ -7,14 +7,14 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from grader.calls import Call
-from grader.own import OwnTest
+from grader.evidence.service_calls import Call
 from grader.result import Visibility
 from grader.scoring import Anchors
+from grader.teacher_tests import OwnTest
 from kit.geometry import Pose
-from kit.host.confine import Level
-from kit.host.limits import Limits
-from kit.places import Place
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import Limits
+from kit.run.scenario import Place
 
 
 class Seeds(Enum):
@@ -89,7 +89,7 @@ class Criterion:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """The small model of a task that a reward is planned on. See ``grader.model``."""
+    """The small model of a task that a reward is planned on. See ``grader.evidence.task_model``."""
 
     rows: tuple[str, ...]
     """``#`` wall, ``.`` floor, ``G`` target."""

@@ -13,13 +13,13 @@ from types import MappingProxyType
 from typing import Any, Final, Protocol
 
 from grader.assignment import Assignment, Criterion, Seeds
-from grader.edition import grader_version
 from grader.kinds.contract import sort_of
-from grader.own import judged
 from grader.result import Episode, Result, Status, Test, Timing
 from grader.submission import Submission
-from kit.host.confine import Level
+from grader.teacher_tests import judged
+from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
+from kit.host.sandbox.confinement import Level
 
 STATUS_OF: Final[Mapping[FailureKind, Status]] = MappingProxyType(
     {

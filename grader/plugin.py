@@ -5,7 +5,7 @@ another process runs. A criterion that fails is a failure; a grader that breaks 
 is judged only with secret seeds is skipped. Points stand in the items' properties, and so in a JUnit report.
 
 A teacher's own tests beside the assignment (``test_*.py``) get the fixture ``grading``: recordings the grader made. What
-they are worth says ``@pytest.mark.points(3)``; see ``grader.own``.
+they are worth says ``@pytest.mark.points(3)``; see ``grader.teacher_tests``.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ import pytest
 from grader.archives import Refused
 from grader.assignment import Assignment, Criterion
 from grader.grading import Grading
-from grader.own import MARK, MARK_HELP
 from grader.reading import SHEET, read
+from grader.reports.cleaning import plain
 from grader.result import Status, Test, amount
 from grader.session import LevelTooLow, Terms, opened
 from grader.submission import take
-from grader.writers.cleaning import plain
-from kit.host.confine import Level
+from grader.teacher_tests import MARK, MARK_HELP
+from kit.host.sandbox.confinement import Level
 from kit.world.problems import WorldError
 
 

@@ -15,16 +15,16 @@ from typing import Any, Final
 from grader.assignment import HINT_STEPS, Assignment, Criterion, Seeds, Trial
 from grader.checks.contract import Check
 from grader.kinds.contract import Sheet, kinds, sort_of
-from grader.own import OwnTest, declared
 from grader.result import Visibility
 from grader.scoring import Anchors
-from kit.host.confine import Level
-from kit.host.limits import GRADER, MIB, Limits
+from grader.teacher_tests import OwnTest, declared
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import GRADER, MIB, Limits
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, quoted, suggestion
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 SHEET: Final = "assignment.yaml"
 SECRET: Final = "secret.yaml"

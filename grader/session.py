@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from grader.assignment import Assignment
 from grader.grading import Grading
+from grader.hardening import hide
 from grader.kinds.contract import Conditions, sort_of
 from grader.result import Result
-from grader.shield import hide
 from grader.submission import Submission
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 
 
 class LevelTooLow(Exception):

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons.exercise_files import lay_out, solution
 from kit.school.lessons.reading import lesson_names, lessons_folder, read
 from kit.school.lessons.records import Command, How, Lesson, Step
-from kit.school.lessons.works import lay_out, solution
 from kit.workspace import open_workspace
 from tests.tui.test_play_pty import KIT, User
 

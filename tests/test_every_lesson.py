@@ -16,11 +16,11 @@ from grader.reading import read as read_assignment
 from grader.self_test import STARTER, prove
 from grader.session import Terms
 from kit.cli import VERBS
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 from kit.school.lessons.checking import check
+from kit.school.lessons.exercise_files import folder_of, lay_out, solution
 from kit.school.lessons.reading import lesson_names, lessons_folder, outcomes, read, solutions_folder
 from kit.school.lessons.records import Exercise, How, Lesson, StepKind
-from kit.school.lessons.works import folder_of, lay_out, solution
 from kit.workspace import Workspace, open_workspace
 
 NAMES = lesson_names()

@@ -13,12 +13,12 @@ import yaml
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.layers.tasks import open_task, solve_task
+from kit.layers.case_sources import open_task, solve_task
 from kit.sim.loading import load
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import Case, MapCard, all_maps, maps_folder
+from kit.world.collision_rules import Touch, Touching
 from kit.world.records import Circle, Model, Polygon, World
-from kit.world.touching import Touch, Touching
 
 MAPS = maps_folder()
 ROBOTS = MAPS / "robots"

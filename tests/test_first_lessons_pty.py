@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons.exercise_files import folder_of, lay_out
+from kit.school.lessons.lesson_progress import Standing, standing
 from kit.school.lessons.reading import lesson_names, lessons_folder, read, solutions_folder
 from kit.school.lessons.records import Exercise, Lesson, Step
-from kit.school.lessons.standing import Standing, standing
-from kit.school.lessons.works import folder_of, lay_out
 from kit.school.progress import Kind, Progress
 from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import KIT, User

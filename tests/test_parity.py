@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kit import kernels
 from kit.geometry import Pose
-from kit.learning.arena import Ground, Unsupported, fleet_of, ground_of
+from kit.kernels import kernels
+from kit.learning.environment.batch_map import Ground, Unsupported, fleet_of, ground_of
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.loading import load
 from kit.sim.plugins.laser import LaserParams

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from kit.controllers import find
-from kit.places import find_place
-from kit.session import Session
+from kit.run.scenario import find_place
+from kit.run.session import Session
 
 
 @pytest.mark.parametrize("turn", ["left", "right"])

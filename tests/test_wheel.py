@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons.exercise_files import folder_of
 from kit.school.lessons.reading import find_lesson, lesson_names
-from kit.school.lessons.works import folder_of
 from kit.workspace import open_workspace
 
 ROOT = Path(__file__).parent.parent

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find, in_folder
-from kit.desk import open_desk
+from kit.controllers.workspace_files import open_desk
 from kit.workspace import WorkspaceError, at_home, check_writable, open_workspace, write_atomically
 
 

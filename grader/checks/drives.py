@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.drive import LOOK_EVERY, Drive, Floats
+from grader.evidence.drive_record import LOOK_EVERY, Drive, Floats
 from kit.geometry import Pose
-from kit.recording import ACCEPT
+from kit.run.recording import ACCEPT
 
 
 @dataclass(frozen=True, slots=True)

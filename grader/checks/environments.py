@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.checks.contract import Check, NoParams, check
-from grader.environments import Episode, Visit, sectors
+from grader.evidence.environment import Episode, Visit, sectors
 from grader.kinds.contract import Look
 from kit.geometry import Pose
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
+from grader.evidence.world.facts import RunFacts, WorldFacts
 from grader.kinds.contract import Look
-from grader.worlds.facts import RunFacts, WorldFacts
 from kit.world.problems import quoted, suggestion
 
 ANY: Final = math.nan

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.examination import Exam
-from grader.trained import Budget
+from grader.evidence.reward import Exam
+from grader.evidence.reward_training import Budget
 
 
 @dataclass(frozen=True, slots=True)

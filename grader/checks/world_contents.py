@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import ANY, UNSAID, count, metres, no_model
+from grader.evidence.world.facts import Box, WorldFacts
 from grader.kinds.contract import Look
-from grader.worlds.facts import Box, WorldFacts
 from kit.world.problems import quoted
 
 

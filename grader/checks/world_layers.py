@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import UNSAID, count
+from grader.evidence.world.facts import WorldFacts
 from grader.kinds.contract import Look
-from grader.worlds.facts import WorldFacts
 from kit.world.problems import quoted, suggestion
 
 

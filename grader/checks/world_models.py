@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from grader.checks.contract import check
 from grader.checks.faults import ANY, UNSAID, count, metres, no_model
+from grader.evidence.world.facts import Device, Joint, Model, Part, WorldFacts
 from grader.kinds.contract import Look
-from grader.worlds.facts import Device, Joint, Model, Part, WorldFacts
 from kit.world.problems import quoted, suggestion
 
 

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 from grader.cohort.late import Arrival, LatePolicy
 from grader.cohort.queue import Queue
+from grader.reports.cleaning import cell, one_line
 from grader.result import Status, Verdict, amount
-from grader.writers.cleaning import cell, one_line
 
 REFUSED: Final = "refused"
 WAITING: Final = "waiting"

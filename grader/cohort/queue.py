@@ -13,12 +13,12 @@ from typing import Any, Final
 
 from grader.archives import Refused, is_archive
 from grader.assignment import Assignment
-from grader.edition import grader_version
 from grader.reading import read
 from grader.result import SCHEMA, Result
 from grader.session import Terms
 from grader.submission import WORTHLESS, Submission, take
-from kit.host.confine import Level
+from grader.version import grader_version
+from kit.host.sandbox.confinement import Level
 from kit.workspace import write_atomically
 
 MANIFEST: Final = "manifest.json"

@@ -15,9 +15,9 @@ from typing import IO, Final
 
 from grader.assignment import Assignment
 from grader.cohort.queue import Queue
-from grader.edition import grader_version
 from grader.result import Result, Status, Test, Verdict
 from grader.session import grade
+from grader.version import grader_version
 
 DONE: Final = "done"
 TRIES: Final = 2

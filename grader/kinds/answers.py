@@ -25,7 +25,7 @@ from grader.checks.contract import check
 from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task, from_yaml
 from kit.host.failure import Failure
 from kit.world.problems import quoted, suggestion
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.grading import Gatherer

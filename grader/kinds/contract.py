@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from grader.checks.contract import Check
-from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind
+from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, WorldError
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment, Criterion, Trial

@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment, Shift, Trial
-from grader.calls import read_call
 from grader.checks.drives import CHECKS
+from grader.evidence.service_calls import read_call
 from grader.kinds.contract import Conditions, Sheet, Sort, Task
 from kit.geometry import Pose
-from kit.places import Place as Where
-from kit.places import find_place
-from kit.sim.telling import SERVICES
+from kit.run.scenario import Place as Where
+from kit.run.scenario import find_place
+from kit.sim.services import SERVICES
 from kit.world.catalogue import Case
 from kit.world.problems import WorldError, quoted, suggestion
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.grading import Gatherer
@@ -34,7 +34,7 @@ def read(sheet: Sheet) -> Task:
 
 def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
     """Its episodes, each run when a criterion first needs it."""
-    from grader.controllers import ControllerRuns
+    from grader.evidence.controller import ControllerRuns
 
     return nullcontext(
         ControllerRuns(

@@ -24,18 +24,18 @@ from numpy.lib import format as npy
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
 from grader.checks.drives import CHECKS
-from grader.drive import Drive
+from grader.evidence.drive_record import Drive
 from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task
 from grader.kinds.controller import place_of
-from kit.headless import Fingerprint
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
-from kit.places import Place
-from kit.recording import ACCEPT, Playback, Recording, RecordingError, load
+from kit.run.headless import Fingerprint
+from kit.run.metrics import Score, Trip
+from kit.run.recording import ACCEPT, Playback, Recording, RecordingError, load
+from kit.run.scenario import Place
+from kit.sim.services import tell
 from kit.sim.simulation import Simulation
-from kit.sim.telling import tell
-from kit.trip import Score, Trip
 
 if TYPE_CHECKING:
     from grader.grading import Evidence, Gatherer

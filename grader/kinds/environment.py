@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, complaint
-from grader.environments import Visit, Wish, visit
+from grader.evidence.environment import Visit, Wish, visit
 from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task
 from grader.kinds.controller import place_of
-from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
 from kit.world.problems import quoted
 

@@ -22,26 +22,26 @@ import numpy as np
 from grader.assignment import Assignment, Criterion, Seeds, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVES
-from grader.drive import Drive
-from grader.episodes import Bumps, shifted
+from grader.evidence.drive_record import Drive
+from grader.evidence.episodes import Bumps, shifted
 from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
 from grader.kinds.controller import read as read_trials
 from kit.fields import adjacency
-from kit.fields.course import Course
-from kit.fields.derived import derive
+from kit.fields.controller_setup import Course
+from kit.fields.derived_charges import derive
 from kit.fields.layout import Layout, read_layout
 from kit.fields.minima import Flow
 from kit.fields.pair import decide
 from kit.geometry import Pose
-from kit.headless import Fingerprint
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.places import Place
-from kit.recording import Recorder, Recording
-from kit.runner import Observer
+from kit.run.headless import Fingerprint
+from kit.run.metrics import Score, Trip
+from kit.run.recording import Recorder, Recording
+from kit.run.runner import Observer
+from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
-from kit.trip import Score, Trip
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:

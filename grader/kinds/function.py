@@ -32,12 +32,12 @@ from typing import TYPE_CHECKING, Any, Final
 from grader.assignment import Assignment, Criterion, Seeds
 from grader.checks.contract import check
 from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
-from kit.host.batch import StudentFunctions
-from kit.host.confine import Level
 from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.sandbox.confinement import Level
+from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
 from kit.world.problems import quoted, suggestion
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.grading import Gatherer

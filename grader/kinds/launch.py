@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
+from grader.evidence.launch import Launched, Questions, Run, laid_out, launched
 from grader.kinds.contract import Conditions, Sheet, Sort, Task
-from grader.launches import Launched, Questions, Run, laid_out, launched
-from kit.host.confine import Level
 from kit.host.failure import FailureKind
+from kit.host.sandbox.confinement import Level
 from kit.world.problems import quoted
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.grading import Gatherer

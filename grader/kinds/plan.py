@@ -30,7 +30,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.reading import read_requirements
 from kit.layers.requirements import Case, Contact, Requirement, Sight, fit_together
 from kit.world.problems import WorldError, quoted, suggestion
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 MOST: Final = 64
 """Layers, and lines of a proof."""

@@ -10,7 +10,7 @@ from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
 from grader.kinds.contract import Conditions, Sheet, Sort, Task
 from kit.world.problems import quoted
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.grading import Gatherer
@@ -26,7 +26,7 @@ def read(sheet: Sheet) -> Task:
 
 def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
     """The function, examined once."""
-    from grader.examination import Examination
+    from grader.evidence.reward import Examination
 
     return Examination(assignment, file, level=conditions.level, may_fall=conditions.may_fall)
 

@@ -22,17 +22,17 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
+from grader.evidence.training import Budget, Order, Plan, Stop, Trainings, train
 from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, from_yaml, once
-from grader.trainings import Budget, Order, Plan, Stop, Trainings, train
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
-from kit.learning.algorithms import ALGORITHMS
-from kit.learning.choice import TaskChoice
-from kit.learning.extra import LearnerMissing
-from kit.learning.presets import Falling
-from kit.learning.tasks import UnknownTask
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.tasks import UnknownTask
+from kit.learning.training.algorithms import ALGORITHMS
+from kit.learning.training.optional_deps import LearnerMissing
+from kit.learning.training.presets import Falling
 from kit.world.problems import quoted, suggestion
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 MOST_STEPS: Final = 5_000_000
 MOST_SEEDS: Final = 20

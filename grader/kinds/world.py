@@ -21,16 +21,16 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, Seeds, Shift, Trial
 from grader.checks.faults import Run, Seen
 from grader.checks.worlds import CHECKS, RUNS, remark
+from grader.evidence.world.facts import Order, RunFacts, WorldFacts
+from grader.evidence.world.process import WorldProcess
 from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
-from grader.worlds.facts import Order, RunFacts, WorldFacts
-from grader.worlds.process import WorldProcess
 from kit.controllers import find
-from kit.host.confine import Level
 from kit.host.failure import GuestError
-from kit.places import Place
+from kit.host.sandbox.confinement import Level
+from kit.run.scenario import Place
 from kit.world.problems import quoted
 from kit.world.records import World
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager

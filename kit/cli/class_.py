@@ -13,8 +13,8 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.cohort.document import Report
-    from kit.school.cohort.measures import Item
+    from kit.school.report.document import Report
+    from kit.school.report.measures import Item
 
 WAYS = ("mean", "half", "scale")
 
@@ -103,9 +103,9 @@ def report(
     A folder stands for every .json file in it. Files that cannot be read are named and left out; two files of one
     student count once. Students are called S1, S2, ... unless --names is given.
     """
-    from kit.school.cohort.gathering import gather
-    from kit.school.cohort.report import CHAPTERS, class_report, set_up
-    from kit.school.cohort.roll import read_roll
+    from kit.school.report.class_data import gather
+    from kit.school.report.class_report import CHAPTERS, class_report, set_up
+    from kit.school.report.students import read_roll
     from kit.school.survey.reading import read_form
     from kit.world.problems import suggestion
 
@@ -148,8 +148,8 @@ def study(
 
 def _items() -> Mapping[str, Item]:
     """The questions of the kit's quiz with their options; none where the lessons are not there."""
-    from kit.school.cohort.measures import Item
     from kit.school.quiz.reading import read_bank
+    from kit.school.report.measures import Item
 
     try:
         bank = read_bank()
@@ -173,10 +173,10 @@ def _give_out(
     glyphs: str | None,
 ) -> None:
     """Writes the files that were asked for; the terminal gets the text unless JSON goes there."""
-    from kit.school.cohort.as_data import as_csv, as_json
-    from kit.school.cohort.as_html import as_html
-    from kit.school.cohort.as_svg import as_svg
-    from kit.school.cohort.as_text import ASCII, BLOCKS, rows_of
+    from kit.school.report.as_data import as_csv, as_json
+    from kit.school.report.as_html import as_html
+    from kit.school.report.as_svg import as_svg
+    from kit.school.report.as_text import ASCII, BLOCKS, rows_of
 
     to_terminal = json_file is not None and str(json_file) == "-"
     files: dict[Path, str] = {}

@@ -31,8 +31,8 @@ def command(
 ) -> None:
     """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
     with learning_options.mistakes():
-        from kit.learning.evaluation import Examiner, seed_for
-        from kit.learning.telling import side_by_side
+        from kit.learning.policies.evaluation import Examiner, seed_for
+        from kit.learning.training.run_text import side_by_side
 
         results = {}
         for name in policies:
@@ -53,11 +53,11 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
 
     import numpy as np
 
-    from kit.learning.events import Examined
-    from kit.learning.runs import find_run
-    from kit.learning.telling import shares_of
-    from kit.picture.curve import Axes, Curve, draw_curves
-    from kit.picture.encode import ENCODERS
+    from kit.learning.training.events import Examined
+    from kit.learning.training.run_text import shares_of
+    from kit.learning.training.runs import find_run
+    from kit.render.curve import Axes, Curve, draw_curves
+    from kit.render.encode import ENCODERS
 
     drawn = []
     for name in policies:

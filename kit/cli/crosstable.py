@@ -41,11 +41,11 @@ def command(
     were trained on one group each. Interrupt it as you like; the same command goes on where it was.
     """
     with learning_options.mistakes():
-        from kit.learning.algorithms import find_algorithm
-        from kit.learning.choice import TaskChoice
-        from kit.learning.crosstable import crosstable, groups_of, rows_of
-        from kit.learning.extra import require_learner
-        from kit.learning.runs import RunConfig
+        from kit.learning.environment.task_spec import TaskChoice
+        from kit.learning.training.algorithms import find_algorithm
+        from kit.learning.training.crosstable import crosstable, groups_of, rows_of
+        from kit.learning.training.optional_deps import require_learner
+        from kit.learning.training.runs import RunConfig
 
         if find_algorithm(algo).neural:
             require_learner()

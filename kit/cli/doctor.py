@@ -16,7 +16,7 @@ from typing import Final
 import click
 
 import kit
-from kit.host.ladder import probe
+from kit.host.sandbox.probe import probe
 from kit.tui.input.probe import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
 from kit.workspace import open_workspace

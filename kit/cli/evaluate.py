@@ -12,8 +12,8 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.policies import Policy
-    from kit.learning.tasks import Task
+    from kit.learning.environment.tasks import Task
+    from kit.learning.policies.policies import Policy
 
 
 @click.command()
@@ -57,7 +57,7 @@ def command(
     confidence (Wilson).
     """
     with learning_options.mistakes():
-        from kit.learning.evaluation import Examiner, seed_for
+        from kit.learning.policies.evaluation import Examiner, seed_for
 
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
@@ -75,7 +75,7 @@ def command(
 
 
 def _write_node(policy: Policy, file: Path) -> None:
-    from kit.learning.policy_node import node_source
+    from kit.learning.policies.policy_node import node_source
     from kit.workspace import write_atomically
 
     write_atomically(file, node_source(policy).encode())
@@ -88,11 +88,11 @@ def _write_node(policy: Policy, file: Path) -> None:
 def _show_paths(
     policy: Policy, task: Task, count: int, pictures: Path | None, seed: int, *, greedy: bool
 ) -> None:
-    from kit.learning.evaluation import seed_for
-    from kit.learning.paths import drive, scene_of
-    from kit.picture.encode import ENCODERS
-    from kit.picture.image import draw, image_camera, save
-    from kit.picture.text import plain_rows
+    from kit.learning.policies.evaluation import seed_for
+    from kit.learning.policies.paths import drive, scene_of
+    from kit.render.encode import ENCODERS
+    from kit.render.image import draw, image_camera, save
+    from kit.render.world_text import plain_rows
 
     ways = drive(policy, task, count, seed_for(seed, "paths"), greedy=greedy)
     columns, rows = shutil.get_terminal_size()

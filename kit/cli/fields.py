@@ -16,8 +16,8 @@ from kit.cli import options
 from kit.controllers import find
 
 if TYPE_CHECKING:
-    from kit.fields.course import Course
-    from kit.places import Place
+    from kit.fields.controller_setup import Course
+    from kit.run.scenario import Place
     from kit.study.pairs import Printed, Summary
 
 FAILED: Final = 1
@@ -79,7 +79,7 @@ def show(
 
     On the full screen, `i` chooses an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
-    from kit.desk import open_desk
+    from kit.controllers.workspace_files import open_desk
     from kit.workspace import WorkspaceError
 
     with _mistakes_explained():
@@ -236,14 +236,14 @@ def _print_test(summary: Summary, *, first: bool) -> None:
 
 def _described(place: Place, course: Course) -> Iterator[str]:
     """The field in characters and in words."""
-    from kit.fields.course import middle_of
+    from kit.fields.controller_setup import middle_of
     from kit.fields.planner import Unreachable
-    from kit.picture.camera import Camera
-    from kit.picture.encode import Ascii
-    from kit.picture.field import FieldPicture, with_field
-    from kit.picture.painter import Painter
-    from kit.session import Session
-    from kit.showing import Showing
+    from kit.render.camera import Camera
+    from kit.render.encode import Ascii
+    from kit.render.field import FieldPicture, with_field
+    from kit.render.painter import Painter
+    from kit.run.session import Session
+    from kit.run.view import Showing
 
     picture = FieldPicture(course)
     traps = picture.traps()
@@ -272,7 +272,7 @@ def _described(place: Place, course: Course) -> Iterator[str]:
 
 
 def _course(place: Place, derived: bool) -> Course:
-    from kit.fields.course import Course
+    from kit.fields.controller_setup import Course
 
     if place.case is None:
         raise LookupError(
@@ -290,7 +290,7 @@ def _course(place: Place, derived: bool) -> Course:
 
 
 def _place(name: str, case: str | None) -> Place:
-    from kit.places import find_place
+    from kit.run.scenario import find_place
 
     return find_place(name, case)
 

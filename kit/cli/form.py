@@ -17,7 +17,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.school.progress import Progress
-    from kit.school.survey.answering import Answers
+    from kit.school.survey.form_session import Answers
     from kit.school.survey.questions import Form, Phase, Question, Value
 
 WIDTH: Final = 78
@@ -43,7 +43,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     when you export your progress and hand it in.
     """
     from kit.school.progress import Kind, Progress
-    from kit.school.survey.answering import Answers
+    from kit.school.survey.form_session import Answers
     from kit.school.survey.questions import Phase
     from kit.school.survey.reading import read_form
     from kit.workspace import open_workspace
@@ -65,7 +65,7 @@ def _phase_now(form: Form, answers: Answers, progress: Progress) -> Phase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import Kind
     from kit.school.quiz.answers import Occasion, answers_of
-    from kit.school.survey.answering import still_open
+    from kit.school.survey.form_session import still_open
     from kit.school.survey.questions import Phase
 
     if answers.started(Phase.AFTER) and not still_open(form, answers, Phase.AFTER):
@@ -84,7 +84,7 @@ def _phase_now(form: Form, answers: Answers, progress: Progress) -> Phase:
 def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> None:
     """Asks what is open. Which questions come can change with each answer, so they are looked up each time."""
     from kit.school.progress import Kind
-    from kit.school.survey.answering import Answers, asked, still_open
+    from kit.school.survey.form_session import Answers, asked, still_open
 
     done: list[Question] = []
     """In this sitting, for going back."""
@@ -136,7 +136,7 @@ class _Reply:
 
 def _ask(question: Question, was: Value, number: int, of: int) -> _Reply | None:
     """One question until it is answered; None where the student leaves."""
-    from kit.school.survey.answering import NotAnAnswer, parse
+    from kit.school.survey.form_session import NotAnAnswer, parse
 
     head = f"{number}/{of}  "
     if question.lead:
@@ -203,7 +203,7 @@ def _say(head: str, text: str) -> None:
 
 
 def _show(form: Form, answers: Answers, phases: list[Phase]) -> None:
-    from kit.school.survey.answering import asked
+    from kit.school.survey.form_session import asked
 
     for phase in phases:
         if not answers.started(phase):

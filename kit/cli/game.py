@@ -13,11 +13,11 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.learning.policies import Policy
-    from kit.recording import Recording
+    from kit.learning.policies.policies import Policy
+    from kit.run.recording import Recording
     from kit.school.game.levels import Level
+    from kit.school.game.player_progress import LevelStanding
     from kit.school.game.race import Driver, Finish
-    from kit.school.game.standing import LevelStanding
     from kit.school.progress import Progress
     from kit.workspace import Workspace
 
@@ -29,8 +29,8 @@ PLACES = 5
 @contextmanager
 def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
     """The journal and the desk; every mistake ends the verb with a message."""
-    from kit.desk import open_desk
-    from kit.school.game.fame import FameError
+    from kit.controllers.workspace_files import open_desk
+    from kit.school.game.leaderboard import FameError
     from kit.school.game.levels import UnknownLevel
     from kit.school.progress import Progress, ProgressError
     from kit.workspace import WorkspaceError
@@ -48,7 +48,7 @@ def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
 
 def _standings(progress: Progress) -> tuple[LevelStanding, ...]:
     from kit.school.game.levels import all_levels
-    from kit.school.game.standing import standings
+    from kit.school.game.player_progress import standings
 
     return standings(all_levels(), progress.events())
 
@@ -112,7 +112,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
     """Let a program or a trained agent drive LEVEL against the clock."""
     from kit.controllers import find
-    from kit.learning.policies import PolicyError
+    from kit.learning.policies.policies import PolicyError
     from kit.school.game.levels import find_level
     from kit.school.game.race import Driver, race, race_agent
 
@@ -140,7 +140,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
     """Show who was quickest on this machine, of those who joined. Each time is what that player's own kit noted."""
-    from kit.school.game.fame import entries, hall, has_joined
+    from kit.school.game.leaderboard import entries, hall, has_joined
     from kit.school.game.levels import all_levels
 
     with _opened(workspace) as (_progress, _):
@@ -165,7 +165,7 @@ def fame(workspace: Path | None) -> None:
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
     """Put your name and best times where all users of this machine can see them."""
-    from kit.school.game.fame import hall, publish
+    from kit.school.game.leaderboard import hall, publish
 
     with _opened(workspace) as (progress, _):
         called = name or progress.called
@@ -179,7 +179,7 @@ def join(workspace: Path | None, name: str | None) -> None:
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
     """Take your name and times out of the hall of fame."""
-    from kit.school.game.fame import hall, leave
+    from kit.school.game.leaderboard import hall, leave
 
     with _opened(workspace):
         leave(hall())
@@ -201,7 +201,7 @@ def _note(
     progress: Progress, desk: Workspace, level: Level, driver: Driver, finish: Finish, recording: Recording
 ) -> None:
     """Keeps a drive, and says what it earned."""
-    from kit.school.game.drives import note
+    from kit.school.game.drive_records import note
     from kit.school.game.ghosts import reference_ghost
 
     if finish.failure is not None:
@@ -223,8 +223,8 @@ def _note(
 
 
 def _policy(agent: str, desk: Workspace) -> Policy:
-    from kit.learning.policies import load_policy
-    from kit.learning.runs import find_run
+    from kit.learning.policies.policies import load_policy
+    from kit.learning.training.runs import find_run
 
     file = Path(agent)
     return load_policy(file) if file.is_file() else find_run(desk.runs, agent).policy()

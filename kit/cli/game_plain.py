@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from kit.cli import options
 from kit.cli.plain import Plain, play_plainly
 from kit.controllers import find
-from kit.recording import RecordingError, load
+from kit.run.recording import RecordingError, load
 from kit.school.game.race import SEED, judged
 
 if TYPE_CHECKING:
-    from kit.recording import Recording
+    from kit.run.recording import Recording
     from kit.school.game.levels import Level
     from kit.school.game.race import Finish
     from kit.workspace import Workspace

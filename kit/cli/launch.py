@@ -13,8 +13,8 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.launch.finding import LaunchTarget
-    from kit.launch.launching import Line
+    from kit.launch.launch_file_search import LaunchTarget
+    from kit.launch.launch_run import Line
     from kit.workspace import Workspace
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -70,7 +70,7 @@ def command(
 
     Exit code: 0 all went well; 1 a program failed; 2 something is missing or wrong; 130 ended by Ctrl-C.
     """
-    from kit.launch.finding import find_launch
+    from kit.launch.launch_file_search import find_launch
     from kit.ros.packages import PackageError
     from kit.workspace import WorkspaceError, open_workspace
 
@@ -120,7 +120,7 @@ def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 def _show_arguments(target: LaunchTarget) -> None:
     from kit.host.failure import GuestError
     from kit.launch.advice import explained
-    from kit.launch.launch_file import declared_arguments
+    from kit.launch.launch_file_process import declared_arguments
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
@@ -146,13 +146,13 @@ def _run_plainly(
     speed: float | None,
 ) -> None:
     from kit.host.failure import GuestError
-    from kit.inspection.door import open_door
-    from kit.inspection.sockets import sockets_folder
+    from kit.inspection.server import open_door
+    from kit.inspection.world_sockets import sockets_folder
     from kit.launch.advice import explained
-    from kit.launch.launching import Launch
-    from kit.launch.plain import Limit, run_plainly
-    from kit.launch.problems import CannotStart
-    from kit.ros.graph import Graph
+    from kit.launch.errors import CannotStart
+    from kit.launch.launch_run import Launch
+    from kit.launch.plain_launch import Limit, run_plainly
+    from kit.ros.graph.graph import Graph
     from kit.world.problems import WorldError
 
     for number in (signal.SIGTERM, signal.SIGHUP):

@@ -17,9 +17,9 @@ from kit.cli import layers_shown as shown
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.layers.patch import Patch
-    from kit.layers.tasks import Task
-    from kit.layers.world_planning import WorldPlan
+    from kit.layers.case_sources import Task
+    from kit.layers.flatland.world_patch import Patch
+    from kit.layers.flatland.world_planning import WorldPlan
 
 BROKEN: Final = 1
 """Exit code: the requirements are not met, or cannot be within sixteen layers."""
@@ -41,7 +41,7 @@ class _Reading:
 
     def open(self, target: str, requirements: Path | None = None) -> Task:
         """What the user named. Raises WorldError and UnknownTask."""
-        from kit.layers.tasks import open_task
+        from kit.layers.case_sources import open_task
 
         environment = dict(map(_variable, self.variables))
         return open_task(
@@ -117,8 +117,8 @@ def command(context: click.Context) -> None:
             click.echo(context.get_help())
             return
         from kit.cli.layers_screen import show_on_screen
+        from kit.layers.case_sources import open_task
         from kit.layers.examples import EXAMPLES
-        from kit.layers.tasks import open_task
 
         first = next(iter(EXAMPLES))
         show_on_screen(open_task(first), first, terminal)
@@ -167,7 +167,7 @@ def plan(
       kit layers plan my.world.yaml --apply
       kit layers plan depot --json
     """
-    from kit.layers.tasks import solve_task
+    from kit.layers.case_sources import solve_task
     from kit.world.records import MAX_LAYERS
 
     with _mistakes():
@@ -224,9 +224,9 @@ def check(
       kit layers plan my.world.yaml --requirements > my.layers.yaml    once, then edit it
       kit layers check my.world.yaml my.layers.yaml                    in CI
     """
-    from kit.layers.data import check_data
+    from kit.layers.case_sources import solve_task
     from kit.layers.explain import check_in_words
-    from kit.layers.tasks import solve_task
+    from kit.layers.plan_data import check_data
 
     with _mistakes():
         task = reading.open(world, requirements)
@@ -272,9 +272,9 @@ def explain(
       kit layers explain greedy-trap
     """
     from kit.layers import explain as words
+    from kit.layers.case_sources import solve_task
     from kit.layers.drawing import draw_assignment, draw_case, plain
     from kit.layers.greedy import greedy
-    from kit.layers.tasks import solve_task
 
     with _mistakes():
         task = reading.open(target)
@@ -309,14 +309,14 @@ def example(name: str | None, on_screen: bool) -> None:
     """
     from kit.layers.examples import EXAMPLES
     from kit.layers.reading import written
-    from kit.world.tables import table
+    from kit.plain_text import table
 
     if name is None:
         shown.echo(table([(key, case.title) for key, case in EXAMPLES.items()]))
         shown.echo(["", "`kit layers example NAME` prints one, `kit layers explain NAME` goes through it."])
     elif name in EXAMPLES and on_screen:
         from kit.cli.layers_screen import show_on_screen
-        from kit.layers.tasks import open_task
+        from kit.layers.case_sources import open_task
 
         show_on_screen(open_task(name), name)
     elif name in EXAMPLES:
@@ -340,7 +340,7 @@ def _variable(text: str) -> tuple[str, str]:
 @contextmanager
 def _mistakes() -> Iterator[None]:
     """A mistake in the user's files ends in words and exit code 2."""
-    from kit.layers.tasks import UnknownTask
+    from kit.layers.case_sources import UnknownTask
     from kit.world.problems import WorldError
 
     try:
@@ -350,7 +350,7 @@ def _mistakes() -> Iterator[None]:
 
 
 def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> None:
-    from kit.layers.patch import PatchError, apply, recheck
+    from kit.layers.flatland.world_patch import PatchError, apply, recheck
 
     assert task.source is not None  # there is a patch
     try:
@@ -365,7 +365,7 @@ def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> N
 
 
 def _patch(task: Task, world_plan: WorldPlan | None, also_shared: bool) -> Patch:
-    from kit.layers.patch import patch_of
+    from kit.layers.flatland.world_patch import patch_of
     from kit.world.records import MAX_LAYERS
 
     if world_plan is None or task.source is None:

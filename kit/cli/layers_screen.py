@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.layers.tasks import Task
+    from kit.layers.case_sources import Task
     from kit.tui.terminal import TerminalDecision
 
 

@@ -13,12 +13,12 @@ import click
 if TYPE_CHECKING:
     from kit.layers.assignment import Assignment
     from kit.layers.drawing import Glyphs
-    from kit.layers.dropping import Sacrifice
+    from kit.layers.flatland.world_patch import Patch
+    from kit.layers.flatland.world_planning import WorldPlan
     from kit.layers.greedy import GreedyRun
-    from kit.layers.patch import Patch
     from kit.layers.planning import Plan
+    from kit.layers.relaxation import Sacrifice
     from kit.layers.requirements import Case
-    from kit.layers.world_planning import WorldPlan
 
 
 def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit: float) -> None:
@@ -44,7 +44,7 @@ def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit:
 
 def _ways_out(found: Plan, kept: int, time_limit: float) -> tuple[Sacrifice | None, Sacrifice | None]:
     """What to give up, or to tolerate, so that with the kept layers there are no more than sixteen."""
-    from kit.layers.dropping import give_up, tolerate
+    from kit.layers.relaxation import give_up, tolerate
     from kit.world.records import MAX_LAYERS
 
     limit = MAX_LAYERS - kept
@@ -58,8 +58,8 @@ def plan_data(
     found: Plan, world_plan: WorldPlan | None, patch: Patch | None, time_limit: float
 ) -> dict[str, Any]:
     """Everything ``show_plan`` says, and the patch."""
-    from kit.layers.data import patch_data, plan_data, sacrifice_data, world_data
     from kit.layers.greedy import greedy
+    from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
     from kit.world.records import MAX_LAYERS
 
     facts = plan_data(found, greedy(found.case))
@@ -76,10 +76,10 @@ def plan_data(
 
 
 def show_greedy(case: Case, *, as_json: bool, graph: str | None) -> None:
-    from kit.layers.data import greedy_data
     from kit.layers.drawing import draw_assignment
     from kit.layers.explain import greedy_end_in_words
     from kit.layers.greedy import greedy
+    from kit.layers.plan_data import greedy_data
 
     run = greedy(case)
     if as_json:

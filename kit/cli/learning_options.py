@@ -12,8 +12,8 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.learning.policies import Policy
-    from kit.learning.tasks import Task
+    from kit.learning.environment.tasks import Task
+    from kit.learning.policies.policies import Policy
 
 on = click.option(
     "--on",
@@ -51,13 +51,13 @@ def names(text: str | None) -> tuple[str, ...]:
 def mistakes() -> Iterator[None]:
     """Ends the verb with one clear line for whatever a user can cause."""
     from kit.host.failure import GuestError
-    from kit.learning.algorithms import UnknownAlgorithm
-    from kit.learning.arena import Unsupported
-    from kit.learning.extra import LearnerMissing
-    from kit.learning.policies import PolicyError
-    from kit.learning.runs import RunError
-    from kit.learning.student import RewardFileError
-    from kit.learning.tasks import UnknownTask
+    from kit.learning.environment.batch_map import Unsupported
+    from kit.learning.environment.tasks import UnknownTask
+    from kit.learning.policies.policies import PolicyError
+    from kit.learning.training.algorithms import UnknownAlgorithm
+    from kit.learning.training.optional_deps import LearnerMissing
+    from kit.learning.training.runs import RunError
+    from kit.learning.training.student_reward import RewardFileError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
@@ -82,8 +82,8 @@ def runs_folder(workspace: Path | None) -> Path:
 
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
     """A policy by the name of its run, or by its file; without a name that of the last run. With its title."""
-    from kit.learning.policies import load_policy
-    from kit.learning.runs import find_run
+    from kit.learning.policies.policies import load_policy
+    from kit.learning.training.runs import find_run
 
     if name is not None and (name.endswith(".npz") or "/" in name):
         return Path(name).stem, load_policy(Path(name))

@@ -37,10 +37,10 @@ def command(
     """
     from kit.cli.lesson_plain import PlainLesson
     from kit.cli.waiting import Intake
-    from kit.desk import open_desk
+    from kit.controllers.workspace_files import open_desk
+    from kit.school.lessons.exercise_files import WorkError
+    from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.reading import UnknownLesson, find_lesson
-    from kit.school.lessons.visit import Visit
-    from kit.school.lessons.works import WorkError
     from kit.school.progress import Progress, ProgressError
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
@@ -78,7 +78,7 @@ def command(
 
 
 def _list(progress: Progress) -> None:
-    from kit.school.lessons.shelf import entries
+    from kit.school.lessons.catalogue import entries
 
     for each in entries(progress.events()):
         stand = each.standing
@@ -97,10 +97,10 @@ def _watch(scene: Scene) -> None:
     """A scene in words and two pictures: how it begins and how it ends."""
     from kit.cli.plain import HEIGHT, WIDTH
     from kit.controllers import find
-    from kit.picture.text import plain_rows, report
-    from kit.places import find_place
-    from kit.session import Session
-    from kit.showing import Showing
+    from kit.render.world_text import plain_rows, report
+    from kit.run.scenario import find_place
+    from kit.run.session import Session
+    from kit.run.view import Showing
 
     place = find_place(scene.place, scene.case, None)
     with Session(place, seed=scene.seed, watched=True) as session:
@@ -123,7 +123,7 @@ def _drive(scene: Scene, file: str, desk: Workspace, intake: Intake) -> None:
     """The student drives line by line; the recording is kept in ``file``."""
     from kit.cli.plain import Plain, play_plainly
     from kit.controllers import find
-    from kit.places import find_place
+    from kit.run.scenario import find_place
 
     place = find_place(scene.place, scene.case, None)
     click.echo(

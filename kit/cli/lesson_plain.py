@@ -9,12 +9,12 @@ from typing import Final, NamedTuple
 import click
 
 from kit.cli.waiting import Intake, Lines
-from kit.host.reload import FileWatch
+from kit.host.file_watcher import FileWatch
 from kit.school.lessons.checking import Report, handed_in
+from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.markup import parsed, plain, rows
 from kit.school.lessons.reading import WIDTH
 from kit.school.lessons.records import Command, Exercise, Scene, Step, StepKind
-from kit.school.lessons.visit import Visit
 
 LOOK_S: Final = 0.2
 """How often to look whether the student's file was saved."""

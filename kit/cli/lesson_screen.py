@@ -17,7 +17,7 @@ def show_on_screen(
 ) -> NoReturn:
     """Goes through a lesson on a full screen, and ends the verb when that is left."""
     os.environ.update(terminal.environment())
-    from kit.school.lessons.visit import Visit
+    from kit.school.lessons.lesson_session import Visit
     from kit.tui.app import KitApp
     from kit.tui.screens.lesson import LessonScreen
 

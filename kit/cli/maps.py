@@ -27,11 +27,11 @@ def command(name: str | None, glyphs: str | None) -> None:
         card = find_map(name)
     except UnknownMap as error:
         options.fail(str(error))
-    from kit.picture.encode import ENCODERS
-    from kit.picture.text import plain_rows
-    from kit.places import place_on_map
-    from kit.session import Session
-    from kit.showing import Showing
+    from kit.render.encode import ENCODERS
+    from kit.render.world_text import plain_rows
+    from kit.run.scenario import place_on_map
+    from kit.run.session import Session
+    from kit.run.view import Showing
 
     chosen = options.terminal(glyphs=glyphs).glyphs.value
     columns, rows = shutil.get_terminal_size()

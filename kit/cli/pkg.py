@@ -52,7 +52,7 @@ def create(desk: Workspace, name: str, destination: Path | None, node_name: str,
 
     `kit launch` carries it out as it lies; in a ROS 2 workspace `colcon build` builds it.
     """
-    from kit.launch.creating import create_package
+    from kit.launch.package_creation import create_package
     from kit.world.catalogue import UnknownMap
 
     try:

@@ -13,15 +13,15 @@ import click
 
 from kit.cli.waiting import Intake, Lines
 from kit.controllers import ControllerFile, find, in_folder, shipped
-from kit.inspection.door import Door, open_door
+from kit.inspection.server import Door, open_door
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.pacing import MAXIMUM, REAL_TIME, Pace
-from kit.picture.text import plain_rows, report
-from kit.places import Place, find_place
-from kit.recording import Recorder, save
+from kit.render.world_text import plain_rows, report
 from kit.ros.log import LogRecord
-from kit.session import Session
-from kit.showing import Showing, clock, said
+from kit.run.pacing import MAXIMUM, REAL_TIME, Pace
+from kit.run.recording import Recorder, save
+from kit.run.scenario import Place, find_place
+from kit.run.session import Session
+from kit.run.view import Showing, clock, said
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 

@@ -50,8 +50,8 @@ def command(
     kit play simple --controller teleop --record drive.npz
     """
     from kit.controllers import find
-    from kit.desk import open_desk
-    from kit.inspection.sockets import sockets_folder
+    from kit.controllers.workspace_files import open_desk
+    from kit.inspection.world_sockets import sockets_folder
     from kit.workspace import WorkspaceError, check_writable
 
     try:
@@ -68,7 +68,7 @@ def command(
     doors = sockets_folder(desk.folder)
     if terminal.plain.value:
         from kit.cli.plain import Plain, play_plainly
-        from kit.places import find_place
+        from kit.run.scenario import find_place
         from kit.world.problems import WorldError
 
         click.echo(f"The kit, line by line. {terminal.plain.reason}")
@@ -105,7 +105,7 @@ def command(
     app.run()
     recording = screen.recording()
     if record is not None and recording is not None:
-        from kit.recording import save
+        from kit.run.recording import save
 
         try:
             save(recording, record)

@@ -86,7 +86,7 @@ def name_yourself(workspace: Path | None, name: str) -> None:
 
 
 def _show(progress: Progress) -> None:
-    from kit.school.lessons.shelf import entries
+    from kit.school.lessons.catalogue import entries
 
     events = progress.events()
     if not events:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kit.school.progress import Event, Progress
     from kit.school.quiz.answers import Choice
     from kit.school.quiz.items import Bank, Item
-    from kit.school.quiz.sitting import Plan, Sitting
+    from kit.school.quiz.quiz_session import Plan, Sitting
     from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
@@ -94,7 +94,7 @@ def _bank() -> Bank:
 
 def _plan(bank: Bank, lesson: str | None, today: bool) -> Plan:
     from kit.school.quiz.items import UnknownLesson
-    from kit.school.quiz.sitting import Today, of_lesson, the_twelve
+    from kit.school.quiz.quiz_session import Today, of_lesson, the_twelve
 
     try:
         if today:
@@ -118,7 +118,7 @@ def _progress(workspace: Path | None) -> Progress:
 
 
 def _sitting(progress: Progress, bank: Bank, plan: Plan, again: bool) -> Sitting:
-    from kit.school.quiz.sitting import Sitting, student_seed
+    from kit.school.quiz.quiz_session import Sitting, student_seed
 
     return Sitting(progress, bank, plan, seed=student_seed(progress), anew=again)
 
@@ -126,9 +126,9 @@ def _sitting(progress: Progress, bank: Bank, plan: Plan, again: bool) -> Sitting
 def _print_scores(bank: Bank, workspace: Path | None) -> None:
     from kit.school.progress import FILE, ProgressError
     from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.quiz_session import local_now
+    from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.schedule import schedule_of
-    from kit.school.quiz.sitting import local_now
-    from kit.school.quiz.words import scores_lines
 
     events: list[Event] = []
     try:
@@ -143,8 +143,8 @@ def _print_scores(bank: Bank, workspace: Path | None) -> None:
 
 def _print_finished(sitting: Sitting) -> None:
     """There is nothing to ask: how it came out, and what one can do."""
-    from kit.school.quiz.sitting import InRounds
-    from kit.school.quiz.words import again_line, closing_lines, schedule_lines, today_line
+    from kit.school.quiz.quiz_session import InRounds
+    from kit.school.quiz.quiz_text import again_line, closing_lines, schedule_lines, today_line
 
     if isinstance(sitting.plan, InRounds):
         for line in (*closing_lines(sitting), again_line(sitting.plan)):
@@ -174,7 +174,7 @@ def _ask_on_screen(sitting: Sitting, terminal: TerminalDecision) -> NoReturn:
 
 def ask_plainly(sitting: Sitting) -> None:
     """Asks what the sitting has ahead, by lines of standard input, until all is asked, ``q``, or its end."""
-    from kit.school.quiz.words import closing_lines, today_line
+    from kit.school.quiz.quiz_text import closing_lines, today_line
 
     click.echo(f"{sitting.plan.title}: {sitting.total} questions.")
     if sitting.number > 1:
@@ -195,7 +195,7 @@ def ask_plainly(sitting: Sitting) -> None:
 
 
 def _ask(sitting: Sitting, item: Item) -> None:
-    from kit.school.quiz.words import feedback, verdict, ways_on, wrapped
+    from kit.school.quiz.quiz_text import feedback, verdict, ways_on, wrapped
 
     click.echo("")
     click.echo(f"Question {sitting.number} of {sitting.total}, {item.topic.label}")
@@ -241,7 +241,7 @@ def _choice() -> Choice:
 
 
 def _confidence() -> int | None:
-    from kit.school.quiz.words import SURE_CHOICES, SURE_QUESTION
+    from kit.school.quiz.quiz_text import SURE_CHOICES, SURE_QUESTION
 
     words = ", ".join(f"{number} {text}" for number, text in SURE_CHOICES)
     click.echo(f"{SURE_QUESTION} {words}")

@@ -25,8 +25,8 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
     """
     import numpy as np
 
-    from kit.places import find_place
-    from kit.recording import RecordingError, load, rerun
+    from kit.run.recording import RecordingError, load, rerun
+    from kit.run.scenario import find_place
     from kit.world.problems import WorldError
 
     try:

@@ -76,12 +76,12 @@ def command(
     Ctrl-C, after the summary of what was run.
     """
     from kit.controllers import find
-    from kit.headless import run_headless
-    from kit.pacing import MAXIMUM, REAL_TIME
-    from kit.places import find_place
-    from kit.ros.graph import Graph
-    from kit.showing import said
-    from kit.turns import Companion
+    from kit.ros.graph.graph import Graph
+    from kit.run.headless import run_headless
+    from kit.run.lockstep import Companion
+    from kit.run.pacing import MAXIMUM, REAL_TIME
+    from kit.run.scenario import find_place
+    from kit.run.view import said
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
@@ -91,8 +91,8 @@ def command(
         options.fail(str(error))
     company: list[Callable[[Graph], Companion]] = []
     if serve:
-        from kit.inspection.door import Door
-        from kit.inspection.sockets import sockets_folder
+        from kit.inspection.server import Door
+        from kit.inspection.world_sockets import sockets_folder
 
         company.append(lambda graph: Door(graph, sockets_folder(desk.folder), Path(place).stem))
     if bag is not None:

@@ -12,7 +12,7 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.runs import Run
+    from kit.learning.training.runs import Run
 
 
 @click.command()
@@ -26,8 +26,8 @@ def command(
     run: str | None, order: Literal["pause", "go", "stop"] | None, as_json: bool, workspace: Path | None
 ) -> None:
     """List the training runs, show RUN, or ask it (by default the last one) to pause, go on or stop."""
-    from kit.learning.runs import all_runs, find_run
-    from kit.learning.telling import table_of
+    from kit.learning.training.run_text import table_of
+    from kit.learning.training.runs import all_runs, find_run
 
     with learning_options.mistakes():
         folder = learning_options.runs_folder(workspace)
@@ -44,7 +44,7 @@ def command(
 
 
 def _ask(run: Run, order: Literal["pause", "go", "stop"]) -> None:
-    from kit.learning.runs import RunError
+    from kit.learning.training.runs import RunError
 
     if not run.alive:
         raise RunError(f"{run.name} is not being trained. `kit train --resume {run.name}` goes on with it.")
@@ -53,7 +53,7 @@ def _ask(run: Run, order: Literal["pause", "go", "stop"]) -> None:
 
 
 def _show(run: Run, as_json: bool) -> None:
-    from kit.learning.telling import line_of
+    from kit.learning.training.run_text import line_of
 
     config, summary = run.config(), run.summary()
     if as_json:

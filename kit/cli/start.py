@@ -36,7 +36,7 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
 
     Enter goes on where you left off: for a new student that is the first lesson.
     """
-    from kit.desk import open_desk
+    from kit.controllers.workspace_files import open_desk
     from kit.workspace import WorkspaceError
 
     try:

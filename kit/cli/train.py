@@ -10,8 +10,8 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.events import EventReader
-    from kit.learning.runs import Run, RunConfig
+    from kit.learning.training.events import EventReader
+    from kit.learning.training.runs import Run, RunConfig
     from kit.tui.terminal import TerminalDecision
 
 
@@ -111,8 +111,8 @@ def command(
             raise click.UsageError(
                 "Which task? `kit train --list` lists them; `kit train turn` is the first."
             )
-        from kit.learning.choice import TaskChoice
-        from kit.learning.runs import RunConfig
+        from kit.learning.environment.task_spec import TaskChoice
+        from kit.learning.training.runs import RunConfig
 
         choice = TaskChoice(
             task,
@@ -137,10 +137,10 @@ def _begin(
     config: RunConfig, name: str | None, workspace: Path | None, terminal: TerminalDecision | None
 ) -> None:
     """Checks everything that can be wrong before anything is written."""
-    from kit.learning.algorithms import find_algorithm
-    from kit.learning.extra import require_learner
-    from kit.learning.runs import new_run
-    from kit.learning.student import parameters_of
+    from kit.learning.training.algorithms import find_algorithm
+    from kit.learning.training.optional_deps import require_learner
+    from kit.learning.training.runs import new_run
+    from kit.learning.training.student_reward import parameters_of
 
     _check(config)
     if find_algorithm(config.algorithm).neural:
@@ -151,9 +151,9 @@ def _begin(
 
 
 def _check(config: RunConfig) -> None:
-    from kit.learning.algorithms import find_algorithm
-    from kit.learning.courses import Courses
-    from kit.learning.mirror import Mirror
+    from kit.learning.environment.case_arrays import Courses
+    from kit.learning.environment.mirror import Mirror
+    from kit.learning.training.algorithms import find_algorithm
 
     task = config.choice.resolve()
     Courses(task)
@@ -164,7 +164,7 @@ def _check(config: RunConfig) -> None:
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:
-    from kit.learning.runs import RunError, find_run
+    from kit.learning.training.runs import RunError, find_run
 
     run = find_run(learning_options.runs_folder(workspace), name)
     run.config()
@@ -185,8 +185,8 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
 
 def _start(run: Run, terminal: TerminalDecision | None) -> None:
     """``terminal``: where to watch it; None: nowhere."""
-    from kit.learning.events import EventReader
-    from kit.learning.worker import start
+    from kit.learning.training.events import EventReader
+    from kit.learning.training.worker import start
 
     reader = EventReader(run.events_file, from_now=True)
     process = start(run)
@@ -211,9 +211,9 @@ def _show(run: Run, terminal: TerminalDecision, reader: EventReader | None = Non
 
 
 def _list() -> list[str]:
-    from kit.learning.algorithms import ALGORITHMS
-    from kit.learning.rewards import REWARDS
-    from kit.learning.tasks import TASKS
+    from kit.learning.environment.rewards import REWARDS
+    from kit.learning.environment.tasks import TASKS
+    from kit.learning.training.algorithms import ALGORITHMS
 
     lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in TASKS)]
     lines.append("\nCases, by group:")

@@ -12,8 +12,8 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.events import EventReader
-    from kit.learning.runs import Run
+    from kit.learning.training.events import EventReader
+    from kit.learning.training.runs import Run
     from kit.tui.terminal import TerminalDecision
 
 LINE_S = 2.0
@@ -34,7 +34,7 @@ def command(
 
     Ctrl-C ends the watching, not the training.
     """
-    from kit.learning.runs import find_run
+    from kit.learning.training.runs import find_run
 
     with learning_options.mistakes():
         found = find_run(learning_options.runs_folder(workspace), run)
@@ -68,8 +68,8 @@ def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -
 
     ``reader``: of its events, if not all of them.
     """
-    from kit.learning.events import Ended, EventReader, Progress
-    from kit.learning.telling import line_of
+    from kit.learning.training.events import Ended, EventReader, Progress
+    from kit.learning.training.run_text import line_of
 
     reader = reader or EventReader(run.events_file)
     told_at, ended = -LINE_S, None

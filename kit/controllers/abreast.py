@@ -7,10 +7,10 @@ if no way leads to the target.
 from collections.abc import Sequence
 
 from kit.controllers.odometry import CourseNode, spin
-from kit.fields.course import Course
+from kit.fields.controller_setup import Course
 from kit.fields.pair import Command
 from kit.fields.planner import Unreachable
-from kit.fields.ride import Follower
+from kit.fields.trajectory import Follower
 from kit.geometry import Pose
 
 

@@ -11,7 +11,7 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from kit.controllers.odometry import CourseNode, spin
-from kit.fields.course import Course, middle_of
+from kit.fields.controller_setup import Course, middle_of
 from kit.fields.layout import Intensities
 from kit.fields.pair import Command, decide
 from kit.geometry import Pose

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from kit.msg.std_msgs import Float32, String
-from kit.ros.graph import Graph
+from kit.ros.graph.graph import Graph
 
 TOPIC = "/teleopkeys"
 STRENGTH_TOPIC = "/teleopkeys/strength"

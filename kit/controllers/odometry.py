@@ -15,7 +15,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 
-from kit.fields.course import Course
+from kit.fields.controller_setup import Course
 from kit.fields.pair import Command
 from kit.geometry import Pose
 from kit.world.problems import WorldError

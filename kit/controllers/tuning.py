@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from kit.msg.rcl_interfaces import Parameter, ParameterType, ParameterValue, SetParameters
-from kit.ros.graph import Graph
+from kit.ros.graph.graph import Graph
 
 
 class Tuner:

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kit import kernels
+from kit.kernels import kernels
 
 Floats = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ class TensionPoint:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Field:
-    """Many charges as arrays, for ``kit.kernels.add_forces``, where the formula stands."""
+    """Many charges as arrays, for ``kit.kernels.kernels.add_forces``, where the formula stands."""
 
     stretches: Floats
     """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""

@@ -24,13 +24,13 @@ from typing import Final
 from numpy.typing import ArrayLike
 
 from kit.fields.charges import Charge, CompositeCharge, Field, Floats, Handover, LineCharge, PointCharge
-from kit.fields.derived import derive
-from kit.fields.floor import Floor, wall_depth
+from kit.fields.derived_charges import derive
+from kit.fields.occupancy_grid import Floor, wall_depth
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 FILE: Final = "charges.yaml"
 

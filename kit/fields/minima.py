@@ -10,8 +10,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.floor import Floats, Floor
 from kit.fields.layout import Layout
+from kit.fields.occupancy_grid import Floats, Floor
 
 STRIDE: Final = 3
 """Cells to a step, so that sixteen directions and more are told apart."""

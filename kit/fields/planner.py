@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.floor import FAR, Cell, Floats, Floor
+from kit.fields.occupancy_grid import FAR, Cell, Floats, Floor
 
 ROOM: Final = 0.15
 """More room than this [m] on either side costs nothing less."""

@@ -7,12 +7,12 @@ from collections.abc import Iterable, Iterator
 from kit.msg.fields import Many, Nested
 from kit.msg.interfaces import Interface, definition, find_message
 from kit.msg.message import Message, type_name
-from kit.ros.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
-from kit.ros.graph import Graph
-from kit.ros.handle import NodeHandle
-from kit.ros.instants import Duration
-from kit.ros.naming import topic_or_service_is_hidden
-from kit.ros.qos import HistoryPolicy, LivelinessPolicy
+from kit.ros.graph.graph import Graph
+from kit.ros.graph.naming import topic_or_service_is_hidden
+from kit.ros.graph.node_handle import NodeHandle
+from kit.ros.node.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
+from kit.ros.node.time import Duration
 
 NamesAndTypes = list[tuple[str, list[str]]]
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
-from kit.ros.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
+from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 
 _NAMES: Final = MappingProxyType(
     {

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Final, Literal, NamedTuple, Protocol
 
 from kit.host.failure import Failure, GuestError
-from kit.host.guest import Guest
+from kit.host.node_process import Guest
 from kit.host.wire import printable
-from kit.ros.node import Node
+from kit.ros.node.node import Node
 
 FAREWELL_S: Final = 2.0
 """How long a command has to end after it was asked to."""

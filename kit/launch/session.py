@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from kit.launch.launching import Launch
-from kit.places import place_in_file
-from kit.session import Session
+from kit.launch.launch_run import Launch
+from kit.run.scenario import place_in_file
+from kit.run.session import Session
 
 
 class LaunchedSession(Session):

@@ -8,10 +8,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
-from kit.launch.problems import CannotStart
+from kit.launch.errors import CannotStart
 from kit.launch.requests import Start
-from kit.ros.arguments import parse_ros_arguments
 from kit.ros.exceptions import InvalidRosArguments
+from kit.ros.execution.arguments import parse_ros_arguments
 
 NODE: Final = "flatland_server"
 

@@ -14,7 +14,7 @@ from typing import Final, Literal
 
 from kit.layers.assignment import Assignment
 from kit.layers.requirements import Case, Contact
-from kit.world.tables import table
+from kit.plain_text import table
 
 Style = Literal[
     "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"

@@ -10,12 +10,12 @@ from functools import partial
 from itertools import combinations
 
 from kit.layers.certificate import Certificate
-from kit.layers.dropping import Sacrifice
+from kit.layers.flatland.world_patch import Patch
+from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
-from kit.layers.patch import Patch
 from kit.layers.planning import Plan
+from kit.layers.relaxation import Sacrifice
 from kit.layers.requirements import Case, Requirement, Sight, fit_together
-from kit.layers.world_planning import WorldPlan
 from kit.world.records import MAX_LAYERS
 
 WIDTH = 80

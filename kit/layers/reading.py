@@ -27,6 +27,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from kit.layers.flatland.yaml_edits import flow, scalar
 from kit.layers.requirements import (
     Case,
     CaseError,
@@ -38,12 +39,11 @@ from kit.layers.requirements import (
     Sight,
     Sighting,
 )
-from kit.layers.yamltext import flow, scalar
 from kit.world.documents import Documents
 from kit.world.files import Enclosure, Unusable
 from kit.world.problems import Problem, Problems, WorldError, quoted, suggestion
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 _PAIRS: Final[Mapping[str, Relation]] = MappingProxyType(
     {"collide": "collide", "either": "either", "apart": "apart"}

@@ -2,7 +2,7 @@
 
 import gymnasium
 
-from kit.learning.tasks import HALLWAY, TURN, WHEELCHAIRS
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS
 
 for _id, _class, _task in (
     ("RobotKit/Turn-v0", "TurnEnv", TURN),
@@ -11,7 +11,7 @@ for _id, _class, _task in (
 ):
     gymnasium.register(
         _id,
-        entry_point=f"kit.learning.env:{_class}",
-        vector_entry_point="kit.learning.vector:BatchVectorEnv",
+        entry_point=f"kit.learning.environment.env:{_class}",
+        vector_entry_point="kit.learning.environment.vector_env:BatchVectorEnv",
         kwargs={"task": _task},
     )

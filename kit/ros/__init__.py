@@ -20,8 +20,8 @@ def names_folder() -> Path:
     return Path(__file__).parent / "names"
 
 
-def stand_ins_folder() -> Path:
+def shims_folder() -> Path:
     """The folder of packages that stand in for what packages of Flatland's time import and is not installed."""
     from pathlib import Path
 
-    return Path(__file__).parent / "stand_ins"
+    return Path(__file__).parent / "shims"

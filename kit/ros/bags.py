@@ -27,16 +27,16 @@ from rosbags.rosbag2 import Reader, ReaderError, StoragePlugin, Writer, WriterEr
 
 from kit.msg.interfaces import UnknownInterface, find_message
 from kit.msg.message import Message
-from kit.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from kit.ros.event_handler import SubscriptionEventCallbacks
-from kit.ros.graph import Graph
-from kit.ros.instants import Duration
-from kit.ros.naming import topic_or_service_is_hidden
-from kit.ros.node import Node
-from kit.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from kit.ros.qos_matching import fitting_qos
+from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.graph.graph import Graph
+from kit.ros.graph.naming import topic_or_service_is_hidden
+from kit.ros.node.event_handler import SubscriptionEventCallbacks
+from kit.ros.node.node import Node
+from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from kit.ros.node.qos_matching import fitting_qos
+from kit.ros.node.subscription import Subscription
+from kit.ros.node.time import Duration
 from kit.ros.serialization import Distro, Serializer
-from kit.ros.subscription import Subscription
 
 Storage = Literal["mcap", "sqlite3"]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kit.ros.node import Node
-    from kit.ros.parameter import Parameter
+    from kit.ros.node.node import Node
+    from kit.ros.parameters.parameter import Parameter
 
 
 class NotInitializedException(Exception):

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.instants import S_TO_NS
+from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
-    from kit.ros.clock import Clock
+    from kit.ros.node.clock import Clock
 
 
 class LoggingSeverity(IntEnum):

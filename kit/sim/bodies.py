@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 
 import pymunk
 
-from kit import kernels
 from kit.geometry import Pose
+from kit.kernels import kernels
 from kit.world.records import Body
 
 Twist = tuple[float, float, float]

@@ -6,9 +6,9 @@ import math
 import re
 from dataclasses import dataclass
 
-from kit import motors
+from kit.sim import motors
+from kit.world.plugin_reader import Section
 from kit.world.problems import quoted
-from kit.world.reading import Section
 
 _TOPIC = re.compile(r"/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*", re.ASCII)
 

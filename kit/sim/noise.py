@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hashlib import blake2b
 
-from kit import kernels
+from kit.kernels import kernels
 
 
 def stream_of(seed: int, *names: str) -> int:

@@ -10,19 +10,19 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from kit import kernels
 from kit.geometry import Pose
+from kit.kernels import kernels
 from kit.msg import geometry_msgs, nav_msgs
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.bodies import PhysicalBody, Twist
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Publisher, Site
 from kit.sim.keys import read_rate, read_topic, read_variances
 from kit.sim.messages import TF_TOPIC, pose_message, transform, transforms, twist_message
 from kit.sim.noise import Noise, stream_of
 from kit.sim.plugin import Outgoing
-from kit.sim.site import Publisher, Site
-from kit.world.reading import Section
+from kit.world.plugin_reader import Section
 
 Covariances = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Of pose and twist, (36,) each."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from kit.geometry import Pose
+from kit.sim.instance import Stage, StandingModel
 from kit.sim.loading import load_model
 from kit.sim.plugin import Endpoint, Outgoing
-from kit.sim.stage import Stage, StandingModel
 from kit.sim.state import BodyState, SimulationState
 from kit.sim.surroundings import Outline, ScanView, hull_distance, outlines
 from kit.world.problems import WorldError

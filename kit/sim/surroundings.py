@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kit import kernels
 from kit.geometry import Pose
-from kit.sight import in_blocks
+from kit.kernels import kernels
+from kit.kernels.lidar_index import in_blocks
 from kit.sim.bodies import PhysicalBody, Rigid
 from kit.sim.physics import Physics
 from kit.world.records import Circle, Color

@@ -12,13 +12,13 @@ from typing import Final
 
 import numpy as np
 
-from kit.arrays import Floats
-from kit.school.cohort.chapters.setting import Setting
-from kit.school.cohort.expertise import WAYS
-from kit.school.cohort.gathering import ClassData
-from kit.school.cohort.inference import summary
-from kit.school.cohort.measures import Measure, Quiz
-from kit.school.cohort.report import set_up
+from kit.kernels.arrays import Floats
+from kit.school.report.chapters.setting import Setting
+from kit.school.report.class_data import ClassData
+from kit.school.report.class_report import set_up
+from kit.school.report.expertise import WAYS
+from kit.school.report.inference import summary
+from kit.school.report.measures import Measure, Quiz
 from kit.school.survey.questions import Phase, Purpose
 from kit.study.evaluation_data import Printed, Study
 

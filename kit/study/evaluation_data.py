@@ -9,15 +9,15 @@ from typing import Final
 
 import numpy as np
 
-from kit.arrays import Floats
-from kit.school.cohort.measures import BLANK, Item, Quiz, Ratings, Reply
+from kit.kernels.arrays import Floats
 from kit.school.quiz.answers import Outcome
+from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
 from kit.school.survey.questions import HIGHEST, LOWEST, Phase, Purpose, Question
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, quoted
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 FILE: Final = Path(__file__).with_name("evaluation.yaml")
 

@@ -7,14 +7,14 @@ from typing import Final
 
 import numpy as np
 
-from kit.school.cohort.chapters import people, quiz, relations
-from kit.school.cohort.chapters.setting import Setting
-from kit.school.cohort.document import Block, Caution, Cell, Chapter, Column, Report, Style, Table, Text
-from kit.school.cohort.inference import summary
-from kit.school.cohort.items import analyse
-from kit.school.cohort.normality import shapiro_wilk
-from kit.school.cohort.report import chapters
 from kit.school.quiz.answers import Outcome
+from kit.school.report.chapters import people, quiz, relations
+from kit.school.report.chapters.setting import Setting
+from kit.school.report.class_report import chapters
+from kit.school.report.document import Block, Caution, Cell, Chapter, Column, Report, Style, Table, Text
+from kit.school.report.inference import summary
+from kit.school.report.items import analyse
+from kit.school.report.normality import shapiro_wilk
 from kit.school.survey.questions import Purpose
 from kit.study.evaluation import (
     Difference,

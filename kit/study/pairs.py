@@ -12,12 +12,12 @@ import numpy as np
 
 from kit.controllers import ControllerFile
 from kit.fields import adjacency
-from kit.fields.course import Course, middle_of
+from kit.fields.controller_setup import Course, middle_of
 from kit.geometry import Pose
-from kit.picture.scene import Body
-from kit.picture.text import nearest_wall
-from kit.places import Place
-from kit.session import Session
+from kit.render.scene import Body
+from kit.render.world_text import nearest_wall
+from kit.run.scenario import Place
+from kit.run.session import Session
 from kit.sim.simulation import Simulation
 
 SAMPLE: Final = 10
@@ -301,7 +301,7 @@ def rows(
     runs: int, seed: int, controllers: tuple[ControllerFile, ...]
 ) -> Iterator[tuple[Printed, tuple[Summary, ...]]]:
     """Both tables, row by row, as they are done."""
-    from kit.places import find_place
+    from kit.run.scenario import find_place
 
     for printed in (*TABLE_46, *TABLE_53):
         place = find_place(printed.map, printed.case)

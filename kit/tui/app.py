@@ -9,9 +9,9 @@ from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from kit.tui.input.driver import KeyDriver
-from kit.tui.look import Look
 from kit.tui.terminal import TerminalDecision
-from kit.tui.text_rows import ASCII_ONLY
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import ASCII_ONLY
 
 
 class KitApp(App[None]):

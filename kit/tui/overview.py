@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is drawn first
+    from kit.school.lessons.catalogue import Entry
+    from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.records import Lesson
-    from kit.school.lessons.shelf import Entry
-    from kit.school.lessons.visit import Visit
     from kit.school.progress import Progress
 
 
@@ -65,7 +65,7 @@ class School:
 
     def look(self) -> Overview:
         """Reads everything. Slow: to be called in another thread."""
-        from kit.school.lessons.shelf import entries, going_on
+        from kit.school.lessons.catalogue import entries, going_on
         from kit.school.progress import ProgressError
 
         try:
@@ -77,7 +77,7 @@ class School:
 
     def visit(self, lesson: Lesson) -> Visit:
         """To go through a lesson. Raises ProgressError."""
-        from kit.school.lessons.visit import Visit
+        from kit.school.lessons.lesson_session import Visit
 
         return Visit(lesson, self.progress(), self.desk)
 
@@ -88,9 +88,9 @@ class School:
                 self._progress = None
 
     def _due(self) -> int | None:
+        from kit.school.quiz.quiz_session import local_now
         from kit.school.quiz.reading import read_bank
         from kit.school.quiz.schedule import schedule_of
-        from kit.school.quiz.sitting import local_now
         from kit.world.problems import WorldError
 
         try:

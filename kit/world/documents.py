@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from kit.world.composing import Budget, Composer, NotYaml
 from kit.world.files import Enclosure, Unusable, read_bytes
-from kit.world.nodes import MapNode, Node
 from kit.world.problems import Problems, quoted
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_reader import Budget, Composer, NotYaml
+from kit.world.yaml_section import Section
+from kit.world.yaml_tree import MapNode, Node
 
 MAX_YAML_BYTES = 1_000_000
 MAX_INCLUDES = 16

@@ -11,8 +11,8 @@ from kit.world.documents import Documents
 from kit.world.files import Unusable
 from kit.world.problems import quoted
 from kit.world.records import MAX_LAYERS, Color, Layer, Walls
-from kit.world.section import Section
 from kit.world.walls import image_walls, read_lines
+from kit.world.yaml_section import Section
 
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 

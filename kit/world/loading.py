@@ -10,10 +10,10 @@ from kit.world.documents import Documents
 from kit.world.files import Enclosure, Unusable
 from kit.world.layer_reader import LayerReader
 from kit.world.model_reader import ModelEntry, read_model
+from kit.world.plugin_reader import DeviceReader, WorldDeviceReader, WorldScope, read_plugins
 from kit.world.problems import Problem, Problems, WorldError, quoted
-from kit.world.reading import DeviceReader, WorldDeviceReader, WorldScope, read_plugins
 from kit.world.records import Model, Place, World
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 
 def load_world(

@@ -11,8 +11,8 @@ from typing import Literal
 
 from kit.geometry import Pose
 from kit.world.hull import area, convex_hull
+from kit.world.plugin_reader import DeviceReader, ModelScope, layers_of, read_named, read_plugins
 from kit.world.problems import quoted, suggestion
-from kit.world.reading import DeviceReader, ModelScope, layers_of, read_named, read_plugins
 from kit.world.records import (
     Anchor,
     Body,
@@ -25,7 +25,7 @@ from kit.world.records import (
     Place,
     Polygon,
 )
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 TRANSLUCENT: Color = (1.0, 1.0, 1.0, 0.5)
 

@@ -10,8 +10,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from kit.world.nodes import Leaf, as_flag, as_number
 from kit.world.problems import quoted
+from kit.world.yaml_tree import Leaf, as_flag, as_number
 
 _INCLUDE = re.compile(r"\$(?P<spread>\[include\]|include)\s+(?P<file>\S.*)", re.DOTALL)
 _EVAL = re.compile(r"\$eval\b\s*(return\b)?\s*", re.DOTALL)

@@ -10,9 +10,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from kit.plain_text import INDENT, WIDTH, blocks, indented, listed, table
+from kit.world.collision_rules import Cause, Laser, Thing, Touch, Touching
 from kit.world.records import MAX_LAYERS, Layer, Model, World
-from kit.world.tables import INDENT, WIDTH, blocks, indented, listed, table
-from kit.world.touching import Cause, Laser, Thing, Touch, Touching
 
 T = TypeVar("T")
 

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from kit.world.files import Unusable, read_bytes
-from kit.world.nodes import as_number
 from kit.world.problems import Problems, quoted
 from kit.world.records import Place
-from kit.world.section import MAX_NUMBER
+from kit.world.yaml_section import MAX_NUMBER
+from kit.world.yaml_tree import as_number
 
 MAX_IMAGE_BYTES = 32_000_000
 MAX_PIXELS = 4096 * 4096

@@ -17,10 +17,10 @@ from statistics import median
 
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
-from kit.places import place_on_map
-from kit.ros.executors import SingleThreadedExecutor
-from kit.ros.graph import Graph
-from kit.runner import Runner
+from kit.ros.execution.executors import SingleThreadedExecutor
+from kit.ros.graph.graph import Graph
+from kit.run.runner import Runner
+from kit.run.scenario import place_on_map
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 
@@ -158,8 +158,10 @@ def main() -> None:
     share = (whole - bare) / whole
     print(f"maze tick, driver called directly [us]            {bare:10.1f}")
     print(f"maze tick, driver through the graph [us]          {whole:10.1f}   the graph's share: {share:.0%}")
-    print(f"import kit.ros [ms]                               {start_ms('import kit.ros.running'):10.1f}")
-    node = "from kit.ros.graph import Graph; Graph().create_node('n')"
+    print(
+        f"import kit.ros [ms]                               {start_ms('import kit.ros.execution.client_library'):10.1f}"
+    )
+    node = "from kit.ros.graph.graph import Graph; Graph().create_node('n')"
     print(f"import and make a node [ms]                       {start_ms(node):10.1f}")
 
 

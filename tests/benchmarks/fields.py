@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.fields.charges import CompositeCharge, Field, LineCharge, PointCharge
-from kit.fields.course import Course
-from kit.fields.floor import open_floor
+from kit.fields.controller_setup import Course
 from kit.fields.layout import derived_layout
 from kit.fields.minima import Flow
-from kit.picture.camera import Camera
-from kit.picture.field import FieldPicture, changed, with_field
-from kit.picture.scene import Scene
-from kit.places import find_place
+from kit.fields.occupancy_grid import open_floor
+from kit.render.camera import Camera
+from kit.render.field import FieldPicture, changed, with_field
+from kit.render.scene import Scene
+from kit.run.scenario import find_place
 
 PROMISED_MS = 50.0
 """A 200 x 200 grid on a map of 500 segments."""

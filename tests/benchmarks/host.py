@@ -22,15 +22,15 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.controllers import find
-from kit.host.batch import StudentFunctions
-from kit.host.confine import Level
-from kit.host.guest import Guest
-from kit.host.ladder import probe
+from kit.host.node_process import Guest
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import probe
+from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.ros import names_folder
-from kit.ros.context import hosting
-from kit.ros.graph import Graph
+from kit.ros.execution.context import hosting
+from kit.ros.graph.graph import Graph
 
 STEPS = 5000
 TICK_NS = 10_000_000

@@ -11,11 +11,11 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from kit.inspection.door import Door
-from kit.inspection.sockets import sockets_folder
-from kit.places import find_place
-from kit.runner import Runner
-from kit.session import Session
+from kit.inspection.server import Door
+from kit.inspection.world_sockets import sockets_folder
+from kit.run.runner import Runner
+from kit.run.scenario import find_place
+from kit.run.session import Session
 
 SECONDS, REPEATS = 1.0, 5
 

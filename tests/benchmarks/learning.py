@@ -20,17 +20,17 @@ from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.learning.algorithms import ALGORITHMS
-from kit.learning.choice import TaskChoice
-from kit.learning.crosstable import crosstable, groups_of, rows_of
-from kit.learning.evaluation import Examiner, Result
-from kit.learning.events import Ended, Examined
-from kit.learning.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
-from kit.learning.runs import Run, RunConfig, new_run
-from kit.learning.student import StudentReward
-from kit.learning.tally import Episode
-from kit.learning.telling import shares_of
-from kit.learning.training import make_learner, train
+from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.evaluation import Examiner, Result
+from kit.learning.training.algorithms import ALGORITHMS
+from kit.learning.training.crosstable import crosstable, groups_of, rows_of
+from kit.learning.training.events import Ended, Examined
+from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
+from kit.learning.training.run_text import shares_of
+from kit.learning.training.runs import Run, RunConfig, new_run
+from kit.learning.training.student_reward import StudentReward
+from kit.learning.training.training import make_learner, train
 
 FIRST_SEED = 6000
 FINAL_TEST = 987_654_321

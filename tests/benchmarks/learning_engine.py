@@ -22,12 +22,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.arena import ground
-from kit.learning.batch import BatchEnv
-from kit.learning.env import TaskEnv
-from kit.learning.rewards import PROGRESS
-from kit.learning.tasks import HALLWAY, TURN, WHEELCHAIRS, Start, Task
-from kit.learning.transition import Array, Transition
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_map import ground
+from kit.learning.environment.env import TaskEnv
+from kit.learning.environment.rewards import PROGRESS
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Start, Task
+from kit.learning.environment.transition import Array, Transition
 from kit.world.catalogue import find_map
 
 REPEATS = 12

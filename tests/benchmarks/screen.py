@@ -22,12 +22,12 @@ os.environ["TEXTUAL_COLOR_SYSTEM"] = (
 import numpy as np
 from textual.pilot import Pilot
 
-from kit.picture.camera import Camera
-from kit.picture.encode import ENCODERS
-from kit.picture.painter import Painter
-from kit.picture.roles import ANSI, TRUECOLOR
-from kit.picture.scene import Scene
-from tests.picture.scenes import drive
+from kit.render.camera import Camera
+from kit.render.encode import ENCODERS
+from kit.render.painter import Painter
+from kit.render.roles import ANSI, TRUECOLOR
+from kit.render.scene import Scene
+from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in
 
 FPS = 20

@@ -18,8 +18,8 @@ from types import MappingProxyType
 import numpy as np
 import pymunk
 
-from kit import kernels
 from kit.geometry import Pose
+from kit.kernels import kernels
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.loading import load, load_model
 from kit.sim.plugins.laser import LaserParams

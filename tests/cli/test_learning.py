@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.learning.policies import load_policy
+from kit.learning.policies.policies import load_policy
 
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
 

@@ -45,7 +45,7 @@ def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
     shutil.copy(lessons_folder() / "outcomes.yaml", lessons)
     (lessons / "02-braking").mkdir()
     (lessons / "02-braking" / "lesson.yaml").write_text("title: Braking\nminuts: 3\n")
-    monkeypatch.setattr("kit.school.lessons.shelf.lessons_folder", lambda: lessons)
+    monkeypatch.setattr("kit.school.lessons.catalogue.lessons_folder", lambda: lessons)
     desk = tmp_path / "desk"
     desk.mkdir()
     with Progress(desk) as progress:

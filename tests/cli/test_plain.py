@@ -14,8 +14,8 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.cli.plain import Plain, obey, play_plainly
 from kit.controllers import find
-from kit.places import find_place
-from kit.recording import load, rerun
+from kit.run.recording import load, rerun
+from kit.run.scenario import find_place
 
 DRIVER = """
 import rclpy

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from kit.fields.charges import CompositeCharge, LineCharge, PointCharge, members
-from kit.fields.derived import derive, differences
-from kit.fields.floor import Floor, open_floor
+from kit.fields.derived_charges import derive, differences
 from kit.fields.layout import FILE, Intensities, derived_layout, layout_of, read_layout
+from kit.fields.occupancy_grid import Floor, open_floor
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 

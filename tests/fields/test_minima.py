@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from kit.fields.charges import Field, LineCharge
-from kit.fields.course import Course, middle_of
-from kit.fields.floor import Floor
+from kit.fields.controller_setup import Course, middle_of
 from kit.fields.layout import Intensities, Layout
 from kit.fields.minima import Flow
-from kit.places import find_place
+from kit.fields.occupancy_grid import Floor
+from kit.run.scenario import find_place
 
 ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
 

@@ -25,7 +25,7 @@ from grader.reading import read
 from grader.result import Result, Status
 from grader.session import Terms, grade
 from grader.submission import take
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 
 TOKEN = "735192468013"
 """A secret: in the assignment, in the grader's environment, in its memory."""
@@ -177,7 +177,7 @@ ATTACKS: tuple[Attack, ...] = (
     Attack(7, "leave by sys.exit while loading", whole="import sys\nsys.exit(0)\n", end=STOPPED),
     Attack(8, "walk the frames, the modules, the heap", FRAMES.format(token=list(TOKEN)) + f"import gc\nfor each in gc.get_objects():\n    if type(each) is str and each == ''.join({list(TOKEN)!r}): got('heap')"),
     Attack(9, "read the tests' source", "import linecache, inspect\nfor module in list(sys.modules.values()):\n    if 'grader' in getattr(module, '__name__', ''): got(module)"),
-    Attack(10, "patch the simulator", "import math, random; math.hypot = lambda *a: 0.0; random.random = lambda: 0.5\nfor name in list(sys.modules):\n    if name.startswith(('kit.sim', 'pymunk', 'kit.runner')): got(name)"),
+    Attack(10, "patch the simulator", "import math, random; math.hypot = lambda *a: 0.0; random.random = lambda: 0.5\nfor name in list(sys.modules):\n    if name.startswith(('kit.sim', 'pymunk', 'kit.run.runner')): got(name)"),
     Attack(11, "change what it was given", "node.get_clock().now = None; node.context = None\nfor topic in node.get_topic_names_and_types(): topic[1].clear()"),
     Attack(12, "numbers that are none", "class F(float):\n    def __float__(self): return 1e9\n    def __eq__(self, other): return True\nm = Twist(); m.linear.x = F(0.0); node.drive.publish(m)"),
     Attack(13, "NaN and infinity", "m = Twist(); m.linear.x = float('nan'); node.drive.publish(m); m.linear.x = float('inf'); node.drive.publish(m)"),
@@ -313,7 +313,7 @@ def table(levels: tuple[Level, ...]) -> Iterator[str]:
 
 
 def main() -> None:
-    from kit.host.ladder import probe
+    from kit.host.sandbox.probe import probe
 
     for line in table(tuple(rung.level for rung in probe() if rung.is_available)):
         print(line, flush=True)

@@ -9,7 +9,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from kit.host import landlock
+from kit.host.sandbox import landlock
 
 LOCKS = pytest.mark.skipif(
     sys.platform != "linux" or landlock.abi() < 3, reason="this kernel cannot lock a process in (Landlock)"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.reports import FORMATS, writer
 from grader.result import Verdict
-from grader.writers import FORMATS, writer
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 from tests.grader.attacks import ATTACKS, TOKEN, Attack, attempt
 from tests.grader.conftest import LOCKS
 

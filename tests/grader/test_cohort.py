@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from grader import edition
+from grader import version
 from grader.__main__ import main
 from grader.cohort import gradebook
 from grader.cohort.choice import RULES, chosen
@@ -32,8 +32,8 @@ from grader.reading import read
 from grader.result import Verdict
 from grader.session import Terms
 from grader.submission import take
-from kit.host.confine import Level
-from kit.host.ladder import probe
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import probe
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
@@ -135,14 +135,14 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
         work(queue, key)
-    assert edition.grader_version() == edition.grader_version.__wrapped__()
-    seen = list(edition._sources())
+    assert version.grader_version() == version.grader_version.__wrapped__()
+    seen = list(version._sources())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
     edited.write_text(seen[0][1].read_text() + "# another line\n")
-    monkeypatch.setattr(edition, "_sources", lambda: [(seen[0][0], edited), *seen[1:]])
-    other = edition.grader_version.__wrapped__()
-    assert other != edition.grader_version()
+    monkeypatch.setattr(version, "_sources", lambda: [(seen[0][0], edited), *seen[1:]])
+    other = version.grader_version.__wrapped__()
+    assert other != version.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
     prepare(queue, tmp_path / "in", queue.assignment(), TERMS)
     assert len(queue.waiting()) == 4

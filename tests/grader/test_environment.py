@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from grader.environments import sectors
+from grader.evidence.environment import sectors
 from grader.reading import read
 from grader.result import Result, Status
 from grader.session import Terms, grade
 from grader.submission import Submission
-from kit.host.confine import Level
-from kit.learning.observations import NINE
+from kit.host.sandbox.confinement import Level
+from kit.learning.environment.observations import NINE
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 

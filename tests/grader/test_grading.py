@@ -22,9 +22,9 @@ from grader.result import Result, Status, Verdict
 from grader.self_test import odds, prove
 from grader.session import LevelTooLow, Terms, grade, opened
 from grader.submission import Submission
-from kit.host import ladder
-from kit.host.confine import Level
-from kit.recording import load
+from kit.host.sandbox import probe
+from kit.host.sandbox.confinement import Level
+from kit.run.recording import load
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
 DESK = Terms(Level.LIMITED)
@@ -286,11 +286,11 @@ def test_a_required_level_is_reached_or_nothing_is_graded(
     file.write_text(FORWARD)
     asked = ("check", str(file), "--assignment", str(folder), "--json")
     code, text = invoke(*asked, "--require-level", "0")
-    if ladder.highest() is Level.LIMITED:
+    if probe.highest() is Level.LIMITED:
         assert code == 2
     else:
         assert (code, json.loads(text)["level"]) == (1, 1)
-    monkeypatch.setattr(ladder, "highest", lambda: Level.FILTERED)
+    monkeypatch.setattr(probe, "highest", lambda: Level.FILTERED)
     code, text = invoke(*asked, "--require-level", "2")
     assert (code, "does not reach confinement level 2" in text) == (2, True)
 

@@ -12,7 +12,7 @@ from grader.reading import read
 from grader.result import Result, Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from grader.evidence.world.facts import WorldFacts
+from grader.evidence.world.world_reading import facts_of
 from grader.kinds.answers import Key, Questions
 from grader.reading import read
-from grader.worlds.facts import WorldFacts
-from grader.worlds.looking import facts_of
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 YARD = LESSONS / "07-who-collides-who-sees" / "what-happens"

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from kit.host.confine import Level
-from kit.host.ladder import probe
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import probe
 from tests.grader.conftest import LOCKS, TEMPLATES
 
 ROOT = Path(__file__).parents[2]

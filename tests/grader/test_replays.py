@@ -10,9 +10,9 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.exploit import TICKS
-from kit.places import find_place
-from kit.recording import load, rerun
+from grader.evidence.exploit import TICKS
+from kit.run.recording import load, rerun
+from kit.run.scenario import find_place
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
 KIT_MAPS = Path(str(find_place("turn").world.file)).parents[1]

@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grader import behaviours, planning
 from grader.assignment import Assignment, GridTask
-from grader.examination import Exam
-from grader.model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
-from grader.symmetry import mirrored, rotated
-from grader.trained import Budget
-from grader.transitions import KNOWN, Steps, rewards_of, transition
-from kit.host.confine import Level
+from grader.evidence import behaviours, value_iteration
+from grader.evidence.reward import Exam
+from grader.evidence.reward_training import Budget
+from grader.evidence.symmetry import mirrored, rotated
+from grader.evidence.task_model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
+from grader.evidence.transitions import KNOWN, Steps, rewards_of, transition
 from kit.host.failure import FailureKind
-from kit.host.limits import GRADER
-from kit.learning.rewards import ALGORITHM_1, ALGORITHM_3, Reward
-from kit.learning.student import columns_of
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import GRADER
+from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward
+from kit.learning.training.student_reward import columns_of
 
 ROOM = GridTask(
     (
@@ -121,7 +121,7 @@ def test_nine_rewards_are_judged_by_what_they_ask_for(examined: Callable[[str], 
 def test_the_exploit_is_a_way_that_never_arrives(examined: Callable[[str], Exam], name: str) -> None:
     exam = examined(name)
     assert exam.judged.exploit is not None
-    way = planning.follow(exam.plan, exam.judged.exploit, ROOM.max_steps)
+    way = value_iteration.follow(exam.plan, exam.judged.exploit, ROOM.max_steps)
     assert len(way) == ROOM.max_steps + 1
     assert exam.model.target not in exam.model.cell_of(way)
     # Replayed move by move, no other way pays as well: it is what the reward asks for.
@@ -135,21 +135,21 @@ def test_the_exploit_is_a_way_that_never_arrives(examined: Callable[[str], Exam]
 @pytest.mark.parametrize("reward", [ALGORITHM_1, ALGORITHM_3], ids=lambda each: each.name)
 def test_the_seeds_own_algorithms_teach_what_they_should(reward: Reward, rows: tuple[str, ...]) -> None:
     model = build(GridTask(rows, 0.98, 200))
-    outcome = planning.judge(planning.plan(model, rewards_of(reward, model)))
+    outcome = value_iteration.judge(value_iteration.plan(model, rewards_of(reward, model)))
     assert outcome.success == pytest.approx(1.0)
 
 
 def test_a_reward_that_says_nothing_does_not_pass() -> None:
     """Every move is as good as every other one; some luck does not make it a reward."""
     model = room()
-    outcome = planning.judge(planning.plan(model, np.zeros((model.states, 4))))
+    outcome = value_iteration.judge(value_iteration.plan(model, np.zeros((model.states, 4))))
     assert outcome.success < 0.5
 
 
 def test_values_satisfy_bellmans_equation() -> None:
     model = room(SMALL)
     rewards = np.random.default_rng(3).normal(size=(model.states, 4))
-    made = planning.plan(model, rewards)
+    made = value_iteration.plan(model, rewards)
     ahead = made.values.max(axis=1)[model.next] * ~model.done
     assert made.values == pytest.approx(rewards + SMALL.discount * ahead, abs=1e-7)
 
@@ -261,7 +261,7 @@ def test_a_longer_horizon_changes_what_pays() -> None:
     short = replace(ROOM, discount=0.5)
     model = build(short)
     rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
-    assert planning.judge(planning.plan(model, rewards)).success == pytest.approx(1.0)
+    assert value_iteration.judge(value_iteration.plan(model, rewards)).success == pytest.approx(1.0)
 
 
 BRIEF = Budget(steps=20_000, seeds=1, episodes=30)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from grader.evidence.training import Order, Stop, Trainings
 from grader.kinds.contract import Conditions, Look
 from grader.kinds.training import look
 from grader.reading import read
 from grader.result import Status
 from grader.session import Terms, grade
 from grader.submission import Submission
-from grader.trainings import Order, Stop, Trainings
-from kit.host.confine import Level
+from kit.host.sandbox.confinement import Level
 from kit.world.problems import WorldError
 
 SHEET = """

@@ -15,18 +15,18 @@ from PIL import Image
 from grader.checks.contract import NoParams
 from grader.checks.faults import Run, Seen
 from grader.checks.worlds import CHECKS, FAULTS, RUNS, remark
+from grader.evidence.world.facts import Order, RunFacts, WorldFacts
+from grader.evidence.world.path_search import flood
+from grader.evidence.world.process import WorldProcess
+from grader.evidence.world.world_reading import facts_of
+from grader.evidence.world.world_run import run
 from grader.kinds.contract import Look
 from grader.reading import read
 from grader.result import Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import take
-from grader.worlds.facts import Order, RunFacts, WorldFacts
-from grader.worlds.looking import facts_of
-from grader.worlds.process import WorldProcess
-from grader.worlds.running import run
-from grader.worlds.way import flood
-from kit.host.confine import Level
 from kit.host.failure import FailureKind, GuestError
+from kit.host.sandbox.confinement import Level
 from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES
 

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from grader.reports import FORMATS, cleaning, writer
 from grader.result import Result, Status, Test, Visibility
-from grader.writers import FORMATS, cleaning, writer
 
 NASTY = {
     "workflow command": "::set-output name=result::x",

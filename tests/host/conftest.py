@@ -9,7 +9,7 @@ from typing import Protocol
 
 import pytest
 
-from kit.host.limits import MIB, Limits
+from kit.host.sandbox.limits import MIB, Limits
 
 
 class Student(Protocol):

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from kit.host.failure import FailureKind, GuestError
-from kit.host.guest import Guest
-from kit.ros.graph import Graph
-from kit.ros.node import Node
+from kit.host.node_process import Guest
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
 from tests.host.conftest import LINUX, QUICK, Student
 
 FORGER = """

@@ -11,17 +11,17 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.inspection.door import Door
-from kit.inspection.sockets import sockets_folder
-from kit.live import LiveRun
+from kit.inspection.server import Door
+from kit.inspection.world_sockets import sockets_folder
 from kit.msg.geometry_msgs import PointStamped
 from kit.msg.rcl_interfaces import IntegerRange, ParameterDescriptor
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import SetBool
-from kit.places import place_on_map
-from kit.ros.graph import Graph
-from kit.ros.instants import Time
-from kit.session import Session
+from kit.ros.graph.graph import Graph
+from kit.ros.node.time import Time
+from kit.run.scenario import place_on_map
+from kit.run.session import Session
+from kit.run.world_thread import LiveRun
 from kit.world.catalogue import find_map
 
 SPEED = 20.0

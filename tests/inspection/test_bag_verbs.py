@@ -9,7 +9,7 @@ import pytest
 
 from kit.msg.std_msgs import String
 from kit.ros.bags import BagRecorder, Storage
-from kit.ros.graph import Graph
+from kit.ros.graph.graph import Graph
 from tests.inspection.conftest import SPEED, Kit, Stage
 
 INFO = """

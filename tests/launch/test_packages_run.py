@@ -6,10 +6,10 @@ import math
 import re
 from pathlib import Path
 
-from kit.launch.finding import find_launch
-from kit.launch.launching import Launch, Line
+from kit.launch.launch_file_search import find_launch
+from kit.launch.launch_run import Launch, Line
 from kit.launch.session import LaunchedSession
-from kit.ros.graph import Graph
+from kit.ros.graph.graph import Graph
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop
 
 ARGUMENTS = """\

@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.layers.examples import EXAMPLES
-from kit.layers.slots import read_world
+from kit.layers.flatland.layer_lists import read_world
 from tests.layers.conftest import YARD, WriteFiles
 
 

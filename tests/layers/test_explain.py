@@ -10,14 +10,14 @@ import pytest
 
 from kit.layers import explain as words
 from kit.layers.certificate import Certificate
-from kit.layers.dropping import give_up, tolerate
 from kit.layers.examples import EXAMPLES
-from kit.layers.existing import today_case
+from kit.layers.flatland.layer_lists import read_world, slots_of
+from kit.layers.flatland.world_case import today_case
+from kit.layers.flatland.world_planning import plan_world
 from kit.layers.greedy import greedy
 from kit.layers.planning import Plan, solve
+from kit.layers.relaxation import give_up, tolerate
 from kit.layers.requirements import Contact, Requirement
-from kit.layers.slots import read_world, slots_of
-from kit.layers.world_planning import plan_world
 from tests.layers.cases import random_case, random_graph
 from tests.layers.conftest import YARD, WriteFiles
 

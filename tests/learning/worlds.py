@@ -9,10 +9,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.actions import Move
-from kit.learning.batch import BatchEnv, Step
-from kit.learning.tasks import HALLWAY, TURN, WHEELCHAIRS, Task
-from kit.learning.transition import Transition
+from kit.learning.environment.actions import Move
+from kit.learning.environment.batch import BatchEnv, Step
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Task
+from kit.learning.environment.transition import Transition
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
 """One of each kind."""

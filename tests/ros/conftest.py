@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import pytest
 
 from kit.ros import names_folder
-from kit.ros.context import set_default_graph
-from kit.ros.graph import Graph
+from kit.ros.execution.context import set_default_graph
+from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 
 

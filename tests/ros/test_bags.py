@@ -16,8 +16,8 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
-from kit.ros.graph import Graph
-from kit.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from kit.ros.graph.graph import Graph
+from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 TICK_NS = 10_000_000
 

@@ -7,12 +7,17 @@ from typing import Any
 import pytest
 
 from kit.msg.rcl_interfaces import Log
-from kit.ros.context import hosting
-from kit.ros.graph import Graph
+from kit.ros.execution.client_library import (
+    get_logger,
+    get_logger_effective_level,
+    get_logger_level,
+    set_logger_level,
+)
+from kit.ros.execution.context import hosting
+from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord, get_logging_severity_from_string
-from kit.ros.node import Node
-from kit.ros.qos import QoSProfile
-from kit.ros.running import get_logger, get_logger_effective_level, get_logger_level, set_logger_level
+from kit.ros.node.node import Node
+from kit.ros.node.qos import QoSProfile
 
 
 @pytest.fixture
@@ -101,7 +106,7 @@ class TestFilters:
 def test_lines_are_told_to_rosout_also_those_of_before(graph: Graph, node: Node) -> None:
     node.get_logger().warn("early")
     heard: list[Log] = []
-    from kit.ros.qos import DurabilityPolicy
+    from kit.ros.node.qos import DurabilityPolicy
 
     latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     graph.create_node("listener").create_subscription(Log, "/rosout", heard.append, latched)

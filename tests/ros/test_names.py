@@ -53,7 +53,7 @@ def test_a_package_of_messages_has_all_of_them(package: str) -> None:
 def test_without_the_folder_the_names_mean_nothing() -> None:
     for name in ("rclpy", "std_msgs", "tf2_ros"):
         run = subprocess.run(
-            [sys.executable, "-c", f"import kit.ros.node, {name}"],
+            [sys.executable, "-c", f"import kit.ros.node.node, {name}"],
             capture_output=True,
             text=True,
             check=False,

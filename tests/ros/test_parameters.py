@@ -22,7 +22,6 @@ from kit.msg.rcl_interfaces import (
     SetParametersAtomically,
     SetParametersResult,
 )
-from kit.ros.context import Context
 from kit.ros.exceptions import (
     InvalidParameterException,
     InvalidParameterTypeException,
@@ -32,10 +31,11 @@ from kit.ros.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from kit.ros.graph import Graph
-from kit.ros.node import Node
-from kit.ros.parameter import Parameter, parameter_value_to_python
-from kit.ros.parameter_files import get_parameter_value
+from kit.ros.execution.context import Context
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
+from kit.ros.parameters.parameter import Parameter, parameter_value_to_python
+from kit.ros.parameters.parameter_files import get_parameter_value
 
 Type = Parameter.Type
 

@@ -10,13 +10,13 @@ import pytest
 from kit.msg.flatland_msgs import MoveModel
 from kit.msg.geometry_msgs import Pose2D
 from kit.msg.std_srvs import Empty, SetBool, Trigger
-from kit.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.exceptions import InvalidServiceNameException, NodeFailure, WouldDeadlock
-from kit.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from kit.ros.graph import Graph
+from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.execution.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from kit.ros.execution.task import Future
+from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.ros.node import Node
-from kit.ros.task import Future
+from kit.ros.node.node import Node
 
 SECOND = 1_000_000_000
 

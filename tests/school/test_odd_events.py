@@ -9,17 +9,17 @@ from itertools import count
 
 import pytest
 
-from kit.school.cohort.work import work_of
 from kit.school.game.levels import Level, all_levels
-from kit.school.game.standing import standings
+from kit.school.game.player_progress import standings
+from kit.school.lessons.lesson_progress import standing
 from kit.school.lessons.reading import find_lesson
-from kit.school.lessons.standing import standing
 from kit.school.progress import Event, Kind
 from kit.school.quiz.answers import answers_of
 from kit.school.quiz.items import Bank
 from kit.school.quiz.reading import read_bank
 from kit.school.quiz.schedule import schedule_of
-from kit.school.survey.answering import Answers
+from kit.school.report.work import work_of
+from kit.school.survey.form_session import Answers
 from kit.school.survey.reading import read_form
 
 ODD = {

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from kit.msg.std_msgs import String
+from kit.sim.context import Site
 from kit.sim.plugin import Outgoing, Plugin
 from kit.sim.plugins import readers
 from kit.sim.simulation import Simulation
-from kit.sim.site import Site
 from kit.world.loading import load_world
+from kit.world.plugin_reader import ModelScope, Section
 from kit.world.problems import WorldError
-from kit.world.reading import ModelScope, Section
 from tests.sim.workshop import FLATLAND, OURS, Workshop
 
 

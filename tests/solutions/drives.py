@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from kit.controllers import find
-from kit.places import Place, find_place
-from kit.recording import Recorder, Recording, save
-from kit.session import Session
+from kit.run.scenario import Place, find_place
+from kit.run.recording import Recorder, Recording, save
+from kit.run.session import Session
 
 FOLDER: Final = Path(__file__).parent
 LESSONS: Final = FOLDER.parents[1] / "lessons"

@@ -20,7 +20,7 @@ import pytest
 
 import kit as kit_package
 from tests.tui.test_play_pty import User
-from tests.tui.test_world_view_pty import run_on
+from tests.tui.widgets.test_world_view_pty import run_on
 
 RELAY = Path(__file__).with_name("relay.py")
 SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")

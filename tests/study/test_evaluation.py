@@ -12,20 +12,20 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.cohort.chapters import relations
-from kit.school.cohort.chapters.setting import Setting
-from kit.school.cohort.inference import (
+from kit.school.quiz.answers import Outcome
+from kit.school.report.chapters import relations
+from kit.school.report.chapters.setting import Setting
+from kit.school.report.inference import (
     correlation,
     correlation_test,
     difference_test,
     rank_correlation,
     trend,
 )
-from kit.school.cohort.items import analyse, kr20
-from kit.school.cohort.measures import Ratings
-from kit.school.cohort.normality import shapiro_wilk
-from kit.school.cohort.robustness import of_difference
-from kit.school.quiz.answers import Outcome
+from kit.school.report.items import analyse, kr20
+from kit.school.report.measures import Ratings
+from kit.school.report.normality import shapiro_wilk
+from kit.school.report.robustness import of_difference
 from kit.study.evaluation import Grid, differences, order_of_scores, recompute, setting_of, unexplained
 from kit.study.evaluation_data import FILE, read_study
 from kit.study.evaluation_report import study_report

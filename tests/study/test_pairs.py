@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find
-from kit.places import Place, find_place, place_in_file
+from kit.run.scenario import Place, find_place, place_in_file
 from kit.study.pairs import NUDGE, TABLE_46, TABLE_53, Outcome, Printed, Summary, nudged, repeat, try_once
 from kit.world.catalogue import maps_folder
 

@@ -11,8 +11,8 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.tui.app import KitApp
-from kit.tui.look import Look
 from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+from kit.tui.theme import Look
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
 SEEN_WITHIN = 60.0

@@ -13,10 +13,10 @@ from textual.app import App
 from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
-from kit.picture.encode import Encoder
-from kit.picture.roles import ANSI, Palette
-from kit.tui.painting import ASK_CURSOR, CroppingCompositor
-from kit.tui.world_view import WorldView
+from kit.render.encode import Encoder
+from kit.render.roles import ANSI, Palette
+from kit.tui.textual_patches import ASK_CURSOR, CroppingCompositor
+from kit.tui.widgets.world_view import WorldView
 
 
 class TapeDriver(HeadlessDriver):

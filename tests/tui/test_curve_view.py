@@ -8,9 +8,9 @@ import numpy as np
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.picture.curve import Axes, Curve
-from kit.picture.encode import Ascii
-from kit.tui.curve import CurveView
+from kit.render.curve import Axes, Curve
+from kit.render.encode import Ascii
+from kit.tui.widgets.learning_curve import CurveView
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.tui.test_play_pty import KIT, User
-from tests.tui.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
 
 Open = Callable[..., User]
 

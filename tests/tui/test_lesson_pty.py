@@ -10,7 +10,7 @@ import pytest
 from kit.school.progress import Kind, Progress
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.test_play_pty import KIT, ROBOT, User
-from tests.tui.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
 
 PROGRAM = str(Path(__file__).parent / "programs" / "lesson_app.py")
 PATIENCE = 60.0

@@ -15,12 +15,12 @@ import pytest
 
 import kit as kit_package
 from kit.controllers import find
-from kit.headless import run_headless
-from kit.places import find_place
-from kit.recording import load, rerun
+from kit.run.headless import run_headless
+from kit.run.recording import load, rerun
+from kit.run.scenario import find_place
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
-from tests.tui.test_world_view_pty import run_on
+from tests.tui.widgets.test_world_view_pty import run_on
 
 ROBOT = re.compile("[►◥▲◤◄◣▼◢]")
 CONTROLLER = """

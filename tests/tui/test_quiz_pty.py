@@ -10,7 +10,7 @@ import pytest
 from kit.school.progress import Kind, Progress
 from kit.workspace import open_workspace
 from tests.tui.test_play_pty import KIT, User
-from tests.tui.test_world_view_pty import cpu_seconds, run_on
+from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
 
 Open = Callable[..., User]
 

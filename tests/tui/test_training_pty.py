@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.runs import Run, all_runs
+from kit.learning.training.runs import Run, all_runs
 from tests.tui.test_play_pty import KIT, ROBOT, User, resize
-from tests.tui.test_world_view_pty import run_on
+from tests.tui.widgets.test_world_view_pty import run_on
 
 TABLE = ("train", "turn", "--algo", "q-learning", "--name", "mine")
 """A table learns without the extra, and slowly enough to be looked at."""

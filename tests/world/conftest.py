@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.reading import DeviceReader, ModelScope, Section, WorldDeviceReader, WorldScope
+from kit.world.plugin_reader import DeviceReader, ModelScope, Section, WorldDeviceReader, WorldScope
 from kit.world.records import Sight
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]

@@ -9,8 +9,8 @@ import pytest
 import yaml
 
 from kit.world.loading import load_world
+from kit.world.plugin_reader import DeviceReader
 from kit.world.problems import Problem, WorldError
-from kit.world.reading import DeviceReader
 
 FOLDER = Path(__file__).parent / "bad_worlds"
 NAMES = sorted(path.parent.name for path in FOLDER.glob("*/expected.yaml"))

@@ -215,7 +215,7 @@ def test_a_hostile_text_is_given_up_soon(write: WriteFiles, text: str) -> None:
 def test_a_hostile_text_is_given_up_without_libyaml_too(
     write: WriteFiles, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kit.world.composing._LOADER", yaml.SafeLoader)
+    monkeypatch.setattr("kit.world.yaml_reader._LOADER", yaml.SafeLoader)
     refusal(write({"world.yaml": text[:20_000]}))
 
 

@@ -17,8 +17,8 @@ from kit.geometry import Pose
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.loading import load_world
+from kit.world.plugin_reader import DeviceReader, ModelScope, Section
 from kit.world.problems import Problems, WorldError
-from kit.world.reading import DeviceReader, ModelScope, Section
 from kit.world.records import Place, World
 
 FLATLAND = Path(__file__).resolve().parents[3] / "shared" / "flatland_worlds" / "avidbots-flatland"

@@ -13,8 +13,8 @@ from PIL import Image
 
 from kit.geometry import Pose
 from kit.world.loading import load_model, load_world
+from kit.world.plugin_reader import DeviceReader, WorldDeviceReader
 from kit.world.problems import WorldError
-from kit.world.reading import DeviceReader, WorldDeviceReader
 from kit.world.records import ALL_LAYERS, Anchor, Circle, Place, Polygon, Sight
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]

@@ -18,8 +18,8 @@ import yaml
 from PIL import Image
 
 from kit.world.loading import load_world
+from kit.world.plugin_reader import DeviceReader
 from kit.world.problems import WorldError
-from kit.world.reading import DeviceReader
 from kit.world.report import details, summary
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -10,10 +10,10 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kit.plain_text import WIDTH, blocks, listed, table
 from kit.world.loading import load_world
-from kit.world.reading import DeviceReader
+from kit.world.plugin_reader import DeviceReader
 from kit.world.report import details, summary
-from kit.world.tables import WIDTH, blocks, listed, table
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]
 

@@ -12,12 +12,12 @@ import click
 from kit.cli import options
 from kit.cli.options import Storage
 from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.visit import Visit
+from kit.inspection.client import Visit
 
 if TYPE_CHECKING:
     from kit.ros.bags import Bag
-    from kit.ros.node import Node
-    from kit.ros.publisher import Publisher
+    from kit.ros.node.node import Node
+    from kit.ros.node.publisher import Publisher
 
 
 @click.group()

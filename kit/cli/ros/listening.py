@@ -11,14 +11,14 @@ import click
 from kit.cli.ros.quality import Wishes, quality_options
 from kit.cli.ros.values import interface_named
 from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import absolute
 from kit.inspection.message_text import LONGEST, NoSuchField, Style, pick, to_csv, to_yaml
 from kit.inspection.meters import NARROW_WINDOW, WIDE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
-from kit.inspection.visit import Visit
 from kit.msg.interfaces import find_message
 from kit.msg.message import Message
-from kit.ros.instants import Time
-from kit.ros.qos_matching import fitting_qos
+from kit.ros.node.qos_matching import fitting_qos
+from kit.ros.node.time import Time
 
 REPORT_S: Final = 1.0
 """Seconds between two reports of a meter, in the world's time."""

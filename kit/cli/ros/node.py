@@ -5,8 +5,8 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import absolute, node_info, node_names
-from kit.inspection.visit import Visit
 
 
 @click.group()

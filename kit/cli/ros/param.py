@@ -11,9 +11,9 @@ import click
 import yaml
 
 from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import absolute, node_names
 from kit.inspection.parameter_text import description, nested, type_text, value_text
-from kit.inspection.visit import Visit
 from kit.msg.message import Message, Service
 from kit.msg.rcl_interfaces import (
     DescribeParameters,
@@ -25,10 +25,10 @@ from kit.msg.rcl_interfaces import (
     SetParametersResult,
 )
 from kit.ros.exceptions import InvalidRosArguments
-from kit.ros.naming import validate_full_topic_name
-from kit.ros.parameter import Parameter as TypedParameter
-from kit.ros.parameter import parameter_value_to_python
-from kit.ros.parameter_files import get_parameter_value, read_parameter_file
+from kit.ros.graph.naming import validate_full_topic_name
+from kit.ros.parameters.parameter import Parameter as TypedParameter
+from kit.ros.parameters.parameter import parameter_value_to_python
+from kit.ros.parameters.parameter_files import get_parameter_value, read_parameter_file
 
 PATIENCE_S: Final = 5.0
 """How long a node may take to answer."""

@@ -8,11 +8,11 @@ from kit.cli.ros.quality import Wishes, quality_options
 from kit.cli.ros.values import filled, interface_named, read_values
 from kit.cli.ros.visiting import refuse, visiting
 from kit.host.codec import NotFiniteError
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import absolute
-from kit.inspection.visit import Visit
 from kit.msg.interfaces import find_message
 from kit.ros.exceptions import NameValidationException
-from kit.ros.qos import QoSProfile
+from kit.ros.node.qos import QoSProfile
 
 
 @click.command()

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from kit.ros.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles, QoSProfile, ReliabilityPolicy
+from kit.ros.node.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles, QoSProfile, ReliabilityPolicy
 
 
 @dataclass(frozen=True, slots=True)

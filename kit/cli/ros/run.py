@@ -10,8 +10,8 @@ import click
 
 from kit.cli import options
 from kit.cli.ros.visiting import INTERRUPTED, refuse
-from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
-from kit.inspection.visit import Visit, WorldGone
+from kit.inspection.client import Visit, WorldGone
+from kit.inspection.world_sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
 
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -34,10 +34,10 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     kit ros run my_package my_node --ros-args -p speed:=0.2
     kit ros run my_node.py
     """
-    from kit.launch.problems import CannotStart
+    from kit.launch.errors import CannotStart
     from kit.launch.processes import Printed
     from kit.launch.requests import Start
-    from kit.launch.single import Single
+    from kit.launch.single_program import Single
 
     desk = options.desk(workspace)
     search = (Path.cwd(), Path.cwd() / "src", desk.packages)

@@ -6,8 +6,8 @@ import click
 
 from kit.cli.ros.values import filled, interface_named, read_values
 from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import service_info, services
-from kit.inspection.visit import Visit
 from kit.msg.interfaces import find_service
 
 

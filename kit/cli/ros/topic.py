@@ -6,8 +6,8 @@ import click
 
 from kit.cli.ros import listening, publishing
 from kit.cli.ros.visiting import refuse, visiting
+from kit.inspection.client import Visit
 from kit.inspection.graph_text import topic_info, topic_summary, topics
-from kit.inspection.visit import Visit
 
 
 @click.group()

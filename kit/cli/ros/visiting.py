@@ -12,8 +12,8 @@ from typing import Any, NoReturn
 import click
 
 from kit.cli import options
-from kit.inspection.sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
-from kit.inspection.visit import NoAnswer, Visit, WorldGone
+from kit.inspection.client import NoAnswer, Visit, WorldGone
+from kit.inspection.world_sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
 
 NOT_DONE = 1
 INTERRUPTED = 128 + signal.SIGINT

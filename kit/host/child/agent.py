@@ -7,17 +7,17 @@ import sys
 import threading
 from typing import NoReturn
 
-from kit.host.child import calls, seeds
-from kit.host.child.conversation import Channel, Conversation, watch_stacks
-from kit.host.child.program import Program, explain
+from kit.host.child import function_calls, seeds
+from kit.host.child.command_loop import Channel, Conversation, watch_stacks
+from kit.host.child.student_module import Program, explain
 
 
 def preload(role: str) -> None:
     """Imports what a program of this role will need, while there is still the right to keep it compiled."""
     if role == "node":
-        import kit.host.child.nodes
+        import kit.host.child.node_program
     elif role == "launch":
-        import kit.host.child.launching  # noqa: F401 - likewise
+        import kit.host.child.launch_program  # noqa: F401 - likewise
 
 
 def work(role: str, channel: Channel) -> NoReturn:
@@ -43,15 +43,15 @@ def work(role: str, channel: Channel) -> NoReturn:
     seeds.plant(start["seed"])
     try:
         if role == "node":
-            from kit.host.child import nodes
+            from kit.host.child import node_program
 
-            nodes.run(program, conversation, start)
+            node_program.run(program, conversation, start)
         elif role == "launch":
-            from kit.host.child import launching
+            from kit.host.child import launch_program
 
-            launching.run(program, conversation, start)
+            launch_program.run(program, conversation, start)
         else:
-            calls.serve(program, conversation)
+            function_calls.serve(program, conversation)
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
         conversation.fail(explain(problem, program))
     raise AssertionError("a program ends by an answer")

@@ -1,4 +1,4 @@
-"""The first code of a student's process. Run by its path, not imported: see ``launcher.command``."""
+"""The first code of a student's process. Run by its path, not imported: see ``process.command``."""
 
 import os
 import sys

@@ -13,10 +13,10 @@ import select
 import signal
 from contextlib import suppress
 
-from kit.host import confine
 from kit.host.child import agent
-from kit.host.child.conversation import Channel
-from kit.host.reaper import end_descendants, remove_folder
+from kit.host.child.command_loop import Channel
+from kit.host.sandbox import confinement
+from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import LOST_PIPE
 
 PIPE = 0
@@ -34,11 +34,11 @@ def run() -> int:
 def _start() -> int:
     channel = Channel(PIPE)
     role, record = channel.receive()
-    cage = confine.Cage.from_json(record)
-    confine.adopt_orphans()
+    cage = confinement.Cage.from_json(record)
+    confinement.adopt_orphans()
     try:
-        confine.separate(cage.level)
-    except confine.CannotConfine as problem:
+        confinement.separate(cage.level)
+    except confinement.CannotConfine as problem:
         channel.send(["refused", str(problem)])
         return 1
     agent.preload(role)
@@ -108,10 +108,10 @@ def _let_go(*descriptors: int) -> None:
     os.close(null)
 
 
-def _student(role: str, cage: confine.Cage) -> int:
+def _student(role: str, cage: confinement.Cage) -> int:
     """In the child: into the cage, then on with the student's code."""
     os.setsid()
-    if cage.level >= confine.Level.SEPARATE:
+    if cage.level >= confinement.Level.SEPARATE:
         # The first process of a namespace is deaf to most signals, and its end is the end of all: not a
         # student's place.
         child = os.fork()
@@ -121,8 +121,8 @@ def _student(role: str, cage: confine.Cage) -> int:
     channel = Channel(os.dup(PIPE))
     _let_go(PIPE)
     try:
-        confine.lock(cage)
-    except confine.CannotConfine as problem:
+        confinement.lock(cage)
+    except confinement.CannotConfine as problem:
         channel.send(["refused", str(problem)])
         return 1
     channel.send(["confined", int(cage.level)])

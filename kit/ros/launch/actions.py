@@ -8,12 +8,12 @@ from typing import Any
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity, entities
+from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent
-from kit.ros.launch.problems import LaunchError
 from kit.ros.launch.sources import LaunchDescriptionSource
-from kit.ros.launch.substitution import SomeText, Substitution, described, normalize, perform
+from kit.ros.launch.substitutions import SomeText, Substitution, described, normalize, perform
 
 Entities = Iterable[LaunchDescriptionEntity]
 

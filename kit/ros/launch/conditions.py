@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.launch.problems import LaunchError
-from kit.ros.launch.substitution import SomeText, described, normalize, perform
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.substitutions import SomeText, described, normalize, perform
 
 if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext

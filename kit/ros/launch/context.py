@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.launch.problems import LaunchError
+from kit.ros.launch.errors import LaunchError
 
 if TYPE_CHECKING:
     from kit.ros.launch.entity import LaunchDescriptionEntity
     from kit.ros.launch.event_handlers import EventHandler
     from kit.ros.launch.events import Event
-    from kit.ros.launch.substitution import Substitution
+    from kit.ros.launch.substitutions import Substitution
 
 
 @dataclass

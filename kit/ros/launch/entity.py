@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.launch.problems import calling_place
+from kit.ros.launch.errors import calling_place
 
 if TYPE_CHECKING:
     from kit.ros.launch.actions import DeclareLaunchArgument

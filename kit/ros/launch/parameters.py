@@ -9,8 +9,8 @@ from typing import Any
 
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.problems import LaunchError
-from kit.ros.launch.substitution import SomeText, Substitution, normalize, perform
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.substitutions import SomeText, Substitution, normalize, perform
 
 
 class ParameterValue:
@@ -91,7 +91,7 @@ def _evaluated(context: LaunchContext, value: Any) -> Any:
 
 
 def _read(text: str) -> Any:
-    from kit.ros.parameter_files import parse_value  # only now: it takes PyYAML
+    from kit.ros.parameters.parameter_files import parse_value  # only now: it takes PyYAML
 
     try:
         return parse_value(text)

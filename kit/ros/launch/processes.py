@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from kit.ros.graph.naming import absolute_namespace
 from kit.ros.launch import parameters as parameter_arguments
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import Action, LaunchDescriptionEntity, entities
 from kit.ros.launch.event_handlers import OnProcessExit
-from kit.ros.launch.substitution import SomeText, normalize, perform
-from kit.ros.naming import absolute_namespace
+from kit.ros.launch.substitutions import SomeText, normalize, perform
 
 WITHOUT_MEANING = frozenset(
     {

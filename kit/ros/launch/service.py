@@ -19,6 +19,7 @@ from typing import Any, Final
 
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
+from kit.ros.launch.errors import LaunchError, Place
 from kit.ros.launch.events import (
     Event,
     ProcessExited,
@@ -27,7 +28,6 @@ from kit.ros.launch.events import (
     ProcessStarted,
     Shutdown,
 )
-from kit.ros.launch.problems import LaunchError, Place
 from kit.ros.launch.processes import ExecuteProcess
 
 Request = list[Any]

@@ -8,8 +8,8 @@ from typing import Final
 
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import LaunchDescription
-from kit.ros.launch.problems import LaunchError
-from kit.ros.launch.substitution import SomeText, normalize, perform
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.substitutions import SomeText, normalize, perform
 
 GENERATOR: Final = "generate_launch_description"
 

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.recording import Recording, RecordingError, load, save
+from kit.run.recording import Recording, RecordingError, load, save
 from kit.school.game.levels import Level
 from kit.school.game.race import Driver, reference
 from kit.workspace import Workspace

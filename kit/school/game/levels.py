@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from kit.places import Place, find_place
+from kit.run.scenario import Place, find_place
 from kit.school.lessons.reading import lessons_folder
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, WorldError, quoted, suggestion
 from kit.world.records import Place as At
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 FILE: Final = "levels.yaml"
 

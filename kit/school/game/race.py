@@ -11,19 +11,19 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.controllers import ControllerFile, find, shipped
-from kit.host.confine import DESK_LEVEL
-from kit.host.confine import Level as Confinement
 from kit.host.failure import Failure
-from kit.host.ladder import allows
-from kit.places import Place
-from kit.recording import Recorder, Recording
-from kit.school.game.guide import Guide
+from kit.host.sandbox.confinement import DESK_LEVEL
+from kit.host.sandbox.confinement import Level as Confinement
+from kit.host.sandbox.probe import allows
+from kit.run.recording import Recorder, Recording
+from kit.run.scenario import Place
+from kit.run.session import Session
 from kit.school.game.levels import Level
-from kit.session import Session
+from kit.school.game.reference_driver import Guide
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
-    from kit.learning.policies import Policy
+    from kit.learning.policies.policies import Policy
 
 LONGEST: Final = 6.0
 """A drive ends when it has taken so many times the level's par."""
@@ -162,7 +162,7 @@ def race_agent(
     level: Level, policy: Policy, *, on_second: Callable[[float], None] | None = None
 ) -> tuple[Finish, Recording]:
     """A trained policy drives the level, as the ROS 2 node it would be on a robot. Raises PolicyError."""
-    from kit.learning.policy_node import node_source
+    from kit.learning.policies.policy_node import node_source
 
     source = node_source(policy)
     with TemporaryDirectory(prefix="agent-") as folder:

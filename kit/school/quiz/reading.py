@@ -13,7 +13,7 @@ from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, quoted, suggestion
 from kit.world.records import Place
-from kit.world.section import Section
+from kit.world.yaml_section import Section
 
 SHEET: Final = "quiz.yaml"
 WIDEST: Final = 74

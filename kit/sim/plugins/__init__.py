@@ -10,8 +10,8 @@ import pkgutil
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from kit.sim.site import Device, WorldDevice
-from kit.world.reading import DeviceReader, WorldDeviceReader
+from kit.sim.context import Device, WorldDevice
+from kit.world.plugin_reader import DeviceReader, WorldDeviceReader
 
 _FOUND = [
     importlib.import_module(f"{__name__}.{module.name}").DEVICE for module in pkgutil.iter_modules(__path__)

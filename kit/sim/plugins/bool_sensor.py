@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from kit.msg.std_msgs import Bool
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_rate, read_topic
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 
 @dataclass(frozen=True, slots=True)

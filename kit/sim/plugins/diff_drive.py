@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from kit.msg.geometry_msgs import Twist
+from kit.sim.context import Device, Site
 from kit.sim.keys import SpeedLimits, read_limits, read_topic
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 
 @dataclass(frozen=True, slots=True)

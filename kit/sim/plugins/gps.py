@@ -11,11 +11,11 @@ from kit.msg.sensor_msgs import NavSatFix
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_rate, read_topic
 from kit.sim.messages import TF_TOPIC, transform, transforms
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 EQUATOR = 6378137.0
 """WGS 84's semi-major axis [m] ..."""

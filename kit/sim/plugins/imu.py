@@ -14,12 +14,12 @@ from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_rate, read_topic, read_variances
 from kit.sim.messages import TF_TOPIC, quaternion, transform, transforms
 from kit.sim.noise import Noise
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,19 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kit import kernels
 from kit.geometry import Pose
+from kit.kernels import kernels
+from kit.kernels.lidar_index import beams
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sight import beams
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_rate, read_topic
 from kit.sim.messages import TF_TOPIC, transform, transforms
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
 from kit.sim.surroundings import ScanView
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 from kit.world.records import Sight
 
 MAX_RAYS = 10_000

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.clock import UpdateTimer
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_rate
 from kit.sim.messages import TF_TOPIC, transform, transforms
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 
 @dataclass(frozen=True, slots=True)

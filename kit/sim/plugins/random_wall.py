@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.sim.context import WorldDevice, WorldSite
 from kit.sim.noise import Noise
 from kit.sim.physics import Wall
 from kit.sim.plugin import Plugin
-from kit.sim.site import WorldDevice, WorldSite
+from kit.world.plugin_reader import Section, WorldScope
 from kit.world.problems import quoted
-from kit.world.reading import Section, WorldScope
 
 
 @dataclass(frozen=True, slots=True)

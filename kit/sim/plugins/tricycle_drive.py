@@ -7,15 +7,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kit import motors
 from kit.msg.geometry_msgs import Twist
+from kit.sim import motors
 from kit.sim.bodies import clipped
+from kit.sim.context import Device, Site
 from kit.sim.keys import SpeedLimits, read_limits, read_topic
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
+from kit.world.plugin_reader import ModelScope, Section
 from kit.world.problems import quoted
-from kit.world.reading import ModelScope, Section
 from kit.world.records import Anchor, Joint
 
 TOLERANCE = 1e-5
@@ -135,7 +135,7 @@ class TricycleDrive(Plugin):
     ====================== ==================================================================
 
     Reports as DiffDrive does, with the same keys; wheels of the encoders are the rear ones, which turn as
-    ``kit.motors.tricycle_twist`` says. The front wheel turns with the steering. Like DiffDrive's, the last command
+    ``kit.sim.motors.tricycle_twist`` says. The front wheel turns with the steering. Like DiffDrive's, the last command
     holds for ever.
     """
 

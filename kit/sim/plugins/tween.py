@@ -10,10 +10,10 @@ from typing import Any
 
 from kit.geometry import Pose
 from kit.msg.std_msgs import Bool
+from kit.sim.context import Device, Site
 from kit.sim.keys import read_topic
 from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.site import Device, Site
-from kit.world.reading import ModelScope, Section
+from kit.world.plugin_reader import ModelScope, Section
 
 Easing = Callable[[float], float]
 """From the share of the time that is over, 0 to 1, to the share of the way: 0 at 0 and 1 at 1."""

@@ -12,15 +12,15 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.widgets import Input
 
+from kit.layers.case_table import Editing, Kind
 from kit.layers.drawing import Glyphs, draw_matrix, plain
-from kit.layers.editing import Editing, Kind
+from kit.layers.guided_tour import Page as Step
 from kit.layers.requirements import Case, CaseError
-from kit.layers.walk import Page as Step
-from kit.tui.case_rows import drawn, picture, words_width
-from kit.tui.painting import StillScreen
+from kit.tui.rows.case_rows import drawn, picture, words_width
 from kit.tui.screens.layers_keys import EDIT_HELP, EDIT_KEYS
 from kit.tui.screens.page import Page
-from kit.tui.text_rows import TextRows, row, spread
+from kit.tui.textual_patches import StillScreen
+from kit.tui.widgets.text_rows import TextRows, row, spread
 
 KINDS: dict[Kind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
 

@@ -14,22 +14,22 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual.binding import Binding, BindingType
 
 from kit.fields import adjacency
-from kit.fields.course import Course, middle_of
+from kit.fields.controller_setup import Course, middle_of
 from kit.fields.minima import Trap
 from kit.fields.planner import Unreachable
 from kit.geometry import Pose
-from kit.picture.camera import Camera
-from kit.picture.field import FieldPicture, changed, with_field
-from kit.picture.scene import FloatArray, Scene
-from kit.tui.look import Look
+from kit.render.camera import Camera
+from kit.render.field import FieldPicture, changed, with_field
+from kit.render.scene import FloatArray, Scene
 from kit.tui.screens.fields_keys import FIELDS_HELP, FIELDS_KEYS
 from kit.tui.screens.play import PlayScreen
-from kit.tui.text_rows import Row, row
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
     from kit.controllers.tuning import Tuner
-    from kit.places import Place
-    from kit.session import Session
+    from kit.run.scenario import Place
+    from kit.run.session import Session
 
 STEP: Final = 1.1
 """One key press multiplies or divides an intensity by this."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.tui.key_rows import key_line, key_page
+from kit.tui.rows.key_rows import key_line, key_page
 from kit.tui.screens.watch_keys import PLAY_HELP
 
 FIELDS_KEYS: Final = key_line(

@@ -13,20 +13,20 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.picture.conversation import Conversation, conversation
-from kit.picture.graph import BOX, PLAIN, Plan, Sight, Spot, draw
-from kit.picture.graph_places import Places, arrange
-from kit.picture.graph_walk import across, along, still_there
-from kit.picture.travel import Travel
-from kit.tui.frame_view import FrameView
-from kit.tui.graph_words import about, heading, rates, ruled
-from kit.tui.listening import Heard, Listening
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
-from kit.tui.running import Running
+from kit.render.graph import BOX, PLAIN, Plan, Sight, Spot, draw
+from kit.render.graph_data import Conversation, conversation
+from kit.render.graph_layout import Places, arrange
+from kit.render.graph_navigation import across, along, still_there
+from kit.render.message_animation import Travel
+from kit.tui.graph_listener import Heard, Listening
+from kit.tui.rows.graph_rows import about, heading, rates, ruled
 from kit.tui.screens.graph_keys import GRAPH_HELP, GRAPH_KEYS, MESSAGE_KEYS
 from kit.tui.screens.page import Page
-from kit.tui.text_rows import TextRows, row
+from kit.tui.session_host import Running
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.frame_view import FrameView
+from kit.tui.widgets.text_rows import TextRows, row
 
 FRAME: Final = 1 / 8
 """Seconds between two places of a dot."""

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.binding import Binding, BindingType
 from textual.message import Message
 
-from kit.inspection.sockets import sockets_folder
+from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
-from kit.tui.look import Look
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import LAUNCH_HELP, LAUNCH_KEYS
+from kit.tui.theme import Look
 
 if TYPE_CHECKING:
-    from kit.launch.finding import LaunchTarget
-    from kit.launch.launching import Launch, Line
+    from kit.launch.launch_file_search import LaunchTarget
+    from kit.launch.launch_run import Launch, Line
     from kit.launch.session import LaunchedSession
-    from kit.session import Session
+    from kit.run.session import Session
     from kit.workspace import Workspace
 
 
@@ -88,10 +88,10 @@ class LaunchScreen(WatchScreen):
     def _open(self) -> Session:
         from kit.host.failure import GuestError
         from kit.launch.advice import explained
-        from kit.launch.launching import Launch
-        from kit.launch.problems import CannotStart
+        from kit.launch.errors import CannotStart
+        from kit.launch.launch_run import Launch
         from kit.launch.session import LaunchedSession
-        from kit.ros.graph import Graph
+        from kit.ros.graph.graph import Graph
         from kit.world.problems import WorldError
 
         self._launch = launch = Launch(

@@ -14,22 +14,22 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input
 
+from kit.layers.case_sources import Task, UnknownTask, open_task, solve_task
 from kit.layers.drawing import MOST_IN_PICTURE, Glyphs
 from kit.layers.examples import EXAMPLES
+from kit.layers.flatland.world_planning import WorldPlan
+from kit.layers.guided_tour import Method, Part, case_page, method_pages, plan_pages
+from kit.layers.guided_tour import Page as Step
 from kit.layers.planning import Plan
 from kit.layers.requirements import Case
-from kit.layers.tasks import Task, UnknownTask, open_task, solve_task
-from kit.layers.walk import Method, Part, case_page, method_pages, plan_pages
-from kit.layers.walk import Page as Step
-from kit.layers.world_planning import WorldPlan
-from kit.tui.case_rows import picture, scrolled, words_width
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
+from kit.tui.rows.case_rows import picture, scrolled, words_width
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers_keys import WALK_HELP, WALK_KEYS
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.picker import Choice, Picker
-from kit.tui.text_rows import Row, TextRows, row, spread
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError

@@ -8,26 +8,26 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
-from kit.inspection.sockets import sockets_folder
+from kit.inspection.world_sockets import sockets_folder
+from kit.school.lessons.exercise_files import WorkError
+from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.records import Option, Step
-from kit.school.lessons.visit import Visit
-from kit.school.lessons.works import WorkError
 from kit.school.progress import ProgressError
-from kit.tui import lesson_rows as say
+from kit.tui.exercise_model import Workbench
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, named
 from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
-from kit.tui.lesson_sheet import BESIDE, Content, LessonSheet
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
-from kit.tui.scene_view import SceneView
+from kit.tui.rows import lesson_rows as say
 from kit.tui.screens.lesson_bench import BenchKeys
 from kit.tui.screens.lesson_keys import Possible, keys
 from kit.tui.screens.lesson_ways import WayKeys
 from kit.tui.screens.page import Page, wrapped
-from kit.tui.text_rows import Row, TextRows, row
-from kit.tui.workbench import Workbench
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.lesson_page import BESIDE, Content, LessonSheet
+from kit.tui.widgets.lesson_scene_view import SceneView
+from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.workspace import Workspace
 
 ARROWS = ("up", "down", "left", "right")

@@ -10,20 +10,20 @@ from textual import work
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from kit.school.lessons.works import WorkError
+from kit.school.lessons.exercise_files import WorkError
 from kit.school.progress import ProgressError
-from kit.tui import lesson_rows as say
+from kit.tui.rows import lesson_rows as say
 from kit.tui.screens.lesson_keys import ASK_BEGIN_AGAIN, CHECKING_KEYS
 from kit.tui.screens.scroll_page import ScrollPage
-from kit.tui.text_rows import Row, row
+from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
-    from kit.places import Place
-    from kit.recording import Recording
+    from kit.run.recording import Recording
+    from kit.run.scenario import Place
+    from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.records import Step
-    from kit.school.lessons.visit import Visit
-    from kit.tui.look import Look
-    from kit.tui.workbench import Workbench
+    from kit.tui.exercise_model import Workbench
+    from kit.tui.theme import Look
     from kit.workspace import Workspace
 
 
@@ -250,8 +250,8 @@ class BenchKeys(Screen[None]):
 
 def _load(file: Path) -> tuple[Recording, Place]:
     """In another thread: the physics takes a moment to import."""
-    from kit.places import find_place
-    from kit.recording import load
+    from kit.run.recording import load
+    from kit.run.scenario import find_place
 
     recording = load(file)
     return recording, find_place(recording.place, recording.case)

@@ -8,21 +8,21 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from kit.controllers import find
-from kit.inspection.sockets import sockets_folder
+from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named
-from kit.tui.key_rows import key_line, key_page
+from kit.tui.rows.key_rows import key_line, key_page
 from kit.tui.screens.replay import ReplayScreen
 from kit.tui.screens.watch import WatchScreen
-from kit.tui.text_rows import Row, row
+from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kit.places import Place
+    from kit.run.scenario import Place
+    from kit.run.session import Session
     from kit.school.lessons.records import Scene
-    from kit.session import Session
-    from kit.tui.look import Look
+    from kit.tui.theme import Look
     from kit.workspace import Workspace
 
 TELEOP: Final = "teleop"
@@ -88,7 +88,7 @@ class HandDrive(WatchScreen):
 
     def _place(self) -> Place:
         """In the helper thread."""
-        from kit.places import find_place
+        from kit.run.scenario import find_place
 
         return find_place(self._scene.place, self._scene.case)
 
@@ -135,7 +135,7 @@ class HandDrive(WatchScreen):
         self._save()
 
     def _save(self) -> None:
-        from kit.recording import save
+        from kit.run.recording import save
 
         recording = self.behind.recording()
         if recording is None or not recording.ticks:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from kit.tui.key_rows import key_line, key_page
-from kit.tui.text_rows import Row
+from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.widgets.text_rows import Row
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,16 +9,16 @@ from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
 from kit.school.lessons.records import Command, How
-from kit.tui.aside import run_aside
 from kit.tui.screens.lesson_keys import LESSON_HELP
 from kit.tui.screens.page import Page
 from kit.tui.screens.picker import Choice, Picker
+from kit.tui.suspend import run_aside
 
 if TYPE_CHECKING:
+    from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.records import Step
-    from kit.school.lessons.visit import Visit
-    from kit.tui.look import Look
-    from kit.tui.workbench import Workbench
+    from kit.tui.exercise_model import Workbench
+    from kit.tui.theme import Look
     from kit.workspace import Workspace
 
 

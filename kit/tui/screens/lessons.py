@@ -10,16 +10,16 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.school.progress import ProgressError
-from kit.tui import lessons_rows as say
-from kit.tui.key_rows import key_line
-from kit.tui.look import Look
 from kit.tui.overview import Overview, School
-from kit.tui.painting import StillScreen
+from kit.tui.rows import lesson_list_rows as say
+from kit.tui.rows.key_rows import key_line
 from kit.tui.screens.page import Page, wrapped
-from kit.tui.text_rows import TextRows, row
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
-    from kit.school.lessons.shelf import Entry
+    from kit.school.lessons.catalogue import Entry
 
 SUMMARY_ROWS: Final = 6
 KEYS: Final = key_line(("up down", "choose"), ("Enter", "open"), ("Esc", "back"))

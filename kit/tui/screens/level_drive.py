@@ -14,26 +14,26 @@ from textual.containers import Vertical
 from textual.message import Message
 
 from kit.controllers import find
-from kit.inspection.sockets import sockets_folder
-from kit.picture.scene import Mark, Path, Scene
-from kit.school.game.drives import Noted, note
+from kit.inspection.world_sockets import sockets_folder
+from kit.render.scene import Mark, Path, Scene
+from kit.run.view import clock
+from kit.school.game.drive_records import Noted, note
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import Level
 from kit.school.game.race import LONGEST, SEED, Driver, Finish, Judge
 from kit.school.progress import Progress, ProgressError
-from kit.showing import clock
-from kit.tui import levels_rows as say
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, drive_key, named
-from kit.tui.key_rows import key_line, key_page
+from kit.tui.rows import level_rows as say
+from kit.tui.rows.key_rows import key_line, key_page
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.watch import WatchScreen
-from kit.tui.text_rows import Row, row, spread
+from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
-    from kit.places import Place
-    from kit.session import Session
-    from kit.tui.look import Look
+    from kit.run.scenario import Place
+    from kit.run.session import Session
+    from kit.tui.theme import Look
     from kit.workspace import Workspace
 
 ONE, TWO = "teleop", "teleop_pair"

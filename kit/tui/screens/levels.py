@@ -11,26 +11,26 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.controllers import in_folder, shipped
-from kit.school.game import fame
-from kit.school.game.drives import Noted, note
+from kit.school.game import leaderboard
+from kit.school.game.drive_records import Noted, note
 from kit.school.game.ghosts import Ghost, folder, ghosts, reference_ghost
 from kit.school.game.levels import Level, all_levels
+from kit.school.game.player_progress import LevelStanding, standings
 from kit.school.game.race import Driver, Finish, race, race_agent
-from kit.school.game.standing import LevelStanding, standings
 from kit.school.progress import Kind, Progress, ProgressError
-from kit.tui import levels_rows as say
-from kit.tui.key_rows import key_line
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
+from kit.tui.rows import level_rows as say
+from kit.tui.rows.key_rows import key_line
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.picker import Choice, Picker
-from kit.tui.text_rows import Row, TextRows, row, spread
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import TypeAlias
 
-    from kit.recording import Recording
+    from kit.run.recording import Recording
     from kit.workspace import Workspace
 
     _Drive: TypeAlias = Callable[[Level], tuple[Finish, Recording]]
@@ -229,7 +229,7 @@ class LevelsScreen(StillScreen[None]):
         choices = [Choice(str(file), file.name.split(".")[1], "") for file in files]
         picked = await self.app.push_screen_wait(Picker("Watch whose drive?", choices))
         if picked is not None:
-            from kit.recording import RecordingError, load
+            from kit.run.recording import RecordingError, load
             from kit.tui.screens.lesson_drive import WorstRun
 
             try:
@@ -242,7 +242,7 @@ class LevelsScreen(StillScreen[None]):
             )
 
     def action_fame(self) -> None:
-        found = fame.entries(fame.hall())
+        found = leaderboard.entries(leaderboard.hall())
         rows: list[Row] = [row()]
         for level in self._levels:
             best = [each for each in found if each.level == level.id][:BEST]
@@ -321,14 +321,14 @@ class LevelsScreen(StillScreen[None]):
 
 
 def _runs(folder: Path) -> list[str]:
-    from kit.learning.runs import all_runs
+    from kit.learning.training.runs import all_runs
 
     return [run.name for run in all_runs(folder)]
 
 
 def _race_agent(level: Level, runs: Path, name: str, tell: _Tell) -> tuple[Finish, Recording]:
-    from kit.learning.policies import PolicyError
-    from kit.learning.runs import RunError, find_run
+    from kit.learning.policies.policies import PolicyError
+    from kit.learning.training.runs import RunError, find_run
 
     try:
         return race_agent(level, find_run(runs, name).policy(), on_second=tell)

@@ -12,7 +12,7 @@ from textual.containers import Vertical
 from textual.screen import ModalScreen
 
 from kit.tui.input.keys import base_key
-from kit.tui.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import Row, TextRows, row
 
 WIDTH: Final = 74
 

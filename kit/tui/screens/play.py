@@ -13,17 +13,17 @@ from textual.binding import Binding, BindingType
 from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
-from kit.tui.look import Look
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.picker import Choice, Picker
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
+from kit.tui.theme import Look
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
-    from kit.learning.runs import Run
-    from kit.places import Place
-    from kit.session import Session
+    from kit.learning.training.runs import Run
+    from kit.run.scenario import Place
+    from kit.run.session import Session
 
 TELEOP: Final = "teleop"
 
@@ -139,7 +139,7 @@ class PlayScreen(WatchScreen):
 def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:
     """Every run by its name, with what it learns. Called in another thread: the learning side takes a moment to
     import, and the files may be far away."""
-    from kit.learning.runs import RunError, all_runs
+    from kit.learning.training.runs import RunError, all_runs
 
     found = {}
     for run in all_runs(folder):
@@ -152,6 +152,6 @@ def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:
 
 def _find_place(name: str, case: str | None, root: Path | None = None) -> Place:
     """Called in the helper thread, which imports the physics while the frame is on the screen already."""
-    from kit.places import find_place
+    from kit.run.scenario import find_place
 
     return find_place(name, case, root)

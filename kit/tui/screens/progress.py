@@ -7,11 +7,11 @@ from typing import Any
 
 from textual.screen import Screen
 
-from kit.tui import lessons_rows as say
 from kit.tui.overview import School
+from kit.tui.rows import lesson_list_rows as say
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.scroll_page import ScrollPage
-from kit.tui.text_rows import Row
+from kit.tui.widgets.text_rows import Row
 
 
 async def show_progress(screen: Screen[Any], school: School) -> None:
@@ -33,10 +33,10 @@ def _rows(school: School) -> list[Row] | str:
 
 def _quiz(school: School) -> list[str]:
     from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.quiz_session import local_now
+    from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.reading import read_bank
     from kit.school.quiz.schedule import schedule_of
-    from kit.school.quiz.sitting import local_now
-    from kit.school.quiz.words import scores_lines
     from kit.world.problems import WorldError
 
     events = school.progress().events()

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from textual.screen import Screen
 
     from kit.school.quiz.items import Bank
-    from kit.school.quiz.sitting import Plan
+    from kit.school.quiz.quiz_session import Plan
 
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
 
 
 async def ask_of_lesson(screen: Screen[Any], progress: Progress, lesson: str) -> None:
     """Asks a lesson's questions, and comes back. To be called in a worker."""
-    from kit.school.quiz.sitting import of_lesson
+    from kit.school.quiz.quiz_session import of_lesson
 
     bank = await _bank(screen)
     if bank is not None:
@@ -31,9 +31,9 @@ async def ask_of_lesson(screen: Screen[Any], progress: Progress, lesson: str) ->
 async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
     from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.quiz_session import Today, local_now, of_lesson, the_twelve
+    from kit.school.quiz.quiz_text import scores_lines, today_line
     from kit.school.quiz.schedule import schedule_of
-    from kit.school.quiz.sitting import Today, local_now, of_lesson, the_twelve
-    from kit.school.quiz.words import scores_lines, today_line
 
     bank = await _bank(screen)
     if bank is None:
@@ -56,7 +56,7 @@ async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
         from kit.tui.screens.scroll_page import ScrollPage  # of no use to the first frame
-        from kit.tui.text_rows import row
+        from kit.tui.widgets.text_rows import row
 
         lines = scores_lines(bank, answers_of(events), schedule)
         await screen.app.push_screen_wait(ScrollPage("Scores", [row(" " + line) for line in lines]))
@@ -76,7 +76,7 @@ async def _bank(screen: Screen[Any]) -> Bank | None:
 
 
 async def _ask(screen: Screen[Any], progress: Progress, bank: Bank, plan: Plan) -> None:
-    from kit.school.quiz.sitting import Sitting, student_seed
+    from kit.school.quiz.quiz_session import Sitting, student_seed
     from kit.tui.screens.quiz import QuizScreen
 
     try:

@@ -12,13 +12,13 @@ from textual.binding import Binding, BindingType
 from kit.school.progress import ProgressError
 from kit.school.quiz.answers import BLANK, NOT_SURE, SURENESS, Choice
 from kit.school.quiz.items import OPTIONS, Item
-from kit.school.quiz.sitting import Sitting
-from kit.school.quiz.words import closing_lines
-from kit.tui.painting import StillScreen
-from kit.tui.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
+from kit.school.quiz.quiz_session import Sitting
+from kit.school.quiz.quiz_text import closing_lines
+from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
 from kit.tui.screens.page import Page
 from kit.tui.screens.quiz_keys import ASK_KEYS, LAST_KEYS, OVER_KEYS, QUIZ_HELP, SURE_KEYS, TOLD_KEYS
-from kit.tui.text_rows import Row, TextRows, row, spread
+from kit.tui.textual_patches import StillScreen
+from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 
 class Stage(Enum):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kit.places import Place
-from kit.recording import Recording
-from kit.tui.look import Look
+from kit.run.recording import Recording
+from kit.run.scenario import Place
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
+from kit.tui.theme import Look
 
 if TYPE_CHECKING:
-    from kit.session import Session
+    from kit.run.session import Session
 
 
 class ReplayScreen(WatchScreen):
@@ -31,7 +31,7 @@ class ReplayScreen(WatchScreen):
 
     def _session(self) -> Session:
         """Called in the helper thread."""
-        from kit.session import Session
+        from kit.run.session import Session
 
         told = self._recording
         session = Session(self._place, seed=told.seed, step_size=told.step_size, watched=True)

@@ -9,9 +9,9 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
-from kit.tui.key_rows import key_line
-from kit.tui.painting import StillScreen
-from kit.tui.text_rows import Row, TextRows, row
+from kit.tui.rows.key_rows import key_line
+from kit.tui.textual_patches import StillScreen
+from kit.tui.widgets.text_rows import Row, TextRows, row
 
 KEYS: Final = key_line(("up down PgUp PgDn", "scroll"), ("Esc", "back"))
 

@@ -9,19 +9,19 @@ from textual import work
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from kit.inspection.sockets import sockets_folder
+from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.keys import base_key
-from kit.tui.look import Look
 from kit.tui.overview import Overview, School
-from kit.tui.readout import said
+from kit.tui.rows.readout_rows import said
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.start_keys import MENU, PANEL_WIDTH, START_HELP, START_KEYS, menu
 from kit.tui.screens.watch import MESSAGE_ROWS
-from kit.tui.text_rows import row, spread
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import row, spread
 
 if TYPE_CHECKING:
-    from kit.showing import View
+    from kit.run.view import View
 
 ARROWS = ("up", "down", "left", "right")
 PLACE, CONTROLLER = "maze", "random_walk"
@@ -206,7 +206,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             await self._visit(screen)
 
     async def _open_layers(self) -> None:
-        from kit.layers.tasks import open_task
+        from kit.layers.case_sources import open_task
         from kit.tui.screens.layers import LayersScreen
 
         await self._visit(

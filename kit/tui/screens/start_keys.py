@@ -6,9 +6,9 @@ import textwrap
 from dataclasses import dataclass
 from typing import Final
 
-from kit.tui.key_rows import key_line, key_page
 from kit.tui.overview import Overview
-from kit.tui.text_rows import Row, row
+from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.widgets.text_rows import Row, row
 
 PANEL_WIDTH: Final = 31
 TEXT: Final = PANEL_WIDTH - 2

@@ -13,23 +13,23 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
-from kit.picture.scene import Scene
-from kit.tui import training_rows as say
-from kit.tui.curve import CurveView
-from kit.tui.following import Following
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
+from kit.render.scene import Scene
+from kit.tui.rows import training_rows as say
 from kit.tui.screens.page import Page, wrapped
 from kit.tui.screens.picker import Choice, Picker
 from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
-from kit.tui.shares import SharesView
-from kit.tui.text_rows import TextRows, row
-from kit.tui.world_view import WorldView
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.training_follower import Following
+from kit.tui.widgets.learning_curve import CurveView
+from kit.tui.widgets.stacked_chart import SharesView
+from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
-    from kit.learning.demonstration import Moment
-    from kit.learning.runs import Run
-    from kit.learning.standing import Standing
+    from kit.learning.policies.demonstration import Moment
+    from kit.learning.training.run_status import Standing
+    from kit.learning.training.runs import Run
 
 ALL: Final = ""
 """The choice of all cases, one after the other."""
@@ -118,7 +118,7 @@ class TrainingScreen(StillScreen[None]):
 
     @property
     def state(self) -> str:
-        """As ``kit.learning.runs.State``; new until the files have been read."""
+        """As ``kit.learning.training.runs.State``; new until the files have been read."""
         return "new" if self.standing is None else self.standing.summary.state
 
     @property

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-from kit.tui.key_rows import key_line, key_page
-from kit.tui.text_rows import Row
+from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.widgets.text_rows import Row
 
 _ALWAYS: Final = (("Tab", "more"), ("y", "reward"), ("c", "case"), ("+ -", "zoom"), ("?", "help"))
 _GO_ON: Final = (("p", "go on"),)

@@ -12,9 +12,9 @@ from kit.tui.screens.picker import Choice, Picker
 if TYPE_CHECKING:
     from textual.screen import Screen
 
-    from kit.learning.runs import Run
-    from kit.tui.look import Look
+    from kit.learning.training.runs import Run
     from kit.tui.screens.training import TrainingScreen
+    from kit.tui.theme import Look
 
 NEW: Final = "new/"
 """Before a task's name: begin a training of it."""
@@ -38,8 +38,8 @@ async def choose_training(screen: Screen[Any], look: Look, runs: Path) -> Traini
 
 def _choices(folder: Path) -> list[Choice]:
     """Called in another thread: the learning side takes a moment to import."""
-    from kit.learning.runs import RunError, all_runs
-    from kit.learning.tasks import TASKS
+    from kit.learning.environment.tasks import TASKS
+    from kit.learning.training.runs import RunError, all_runs
 
     choices = [Choice(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
     for run in all_runs(folder):
@@ -52,10 +52,10 @@ def _choices(folder: Path) -> list[Choice]:
 
 def _run(folder: Path, chosen: str) -> Run:
     """The run, begun where it is to be a new one."""
-    from kit.learning.choice import TaskChoice
-    from kit.learning.extra import require_learner
-    from kit.learning.runs import RunConfig, find_run, new_run
-    from kit.learning.worker import start
+    from kit.learning.environment.task_spec import TaskChoice
+    from kit.learning.training.optional_deps import require_learner
+    from kit.learning.training.runs import RunConfig, find_run, new_run
+    from kit.learning.training.worker import start
 
     if not chosen.startswith(NEW):
         return find_run(folder, chosen)

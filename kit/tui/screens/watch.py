@@ -9,23 +9,23 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.pacing import MAXIMUM, REAL_TIME
-from kit.picture.scene import Scene
-from kit.showing import View
+from kit.render.scene import Scene
+from kit.run.pacing import MAXIMUM, REAL_TIME
+from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
-from kit.tui.look import Look
-from kit.tui.painting import StillScreen
-from kit.tui.readout import PANEL_WIDTH, heading, readout, said
-from kit.tui.running import Running
+from kit.tui.rows.readout_rows import PANEL_WIDTH, heading, readout, said
 from kit.tui.screens.page import Page, wrapped
-from kit.tui.text_rows import Row, TextRows, row
-from kit.tui.world_view import WorldView
+from kit.tui.session_host import Running
+from kit.tui.textual_patches import StillScreen
+from kit.tui.theme import Look
+from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kit.recording import Recording
-    from kit.session import Session
+    from kit.run.recording import Recording
+    from kit.run.session import Session
 
 SPEEDS: Final = {"1": REAL_TIME, "2": 10.0, "3": MAXIMUM}
 PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.tui.key_rows import KeyTable, key_line, key_page
+from kit.tui.rows.key_rows import KeyTable, key_line, key_page
 
 _DRIVE: Final[KeyTable] = (
     ("arrows, W A S D", "drive: you take over from the controller"),

@@ -31,12 +31,12 @@ from kit.ros.launch.conditions import (
     UnlessCondition,
 )
 from kit.ros.launch.entity import LaunchDescription
+from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown
 from kit.ros.launch.events import ShutdownProcess, matches_action
-from kit.ros.launch.problems import LaunchError
 from kit.ros.launch.processes import ExecuteProcess, Node, PushRosNamespace, SetParameter, SetRemap
 from kit.ros.launch.sources import LaunchDescriptionSource
-from kit.ros.launch.substitution import LaunchConfiguration
+from kit.ros.launch.substitutions import LaunchConfiguration
 from tests.ros.launch.conftest import Play
 
 
@@ -277,7 +277,7 @@ def test_a_process_can_be_ended_and_handlers_withdrawn() -> None:
 def write(file: Path, body: str) -> str:
     file.write_text(
         "from kit.ros.launch.actions import *\nfrom kit.ros.launch.entity import LaunchDescription\n"
-        "from kit.ros.launch.substitution import LaunchConfiguration, ThisLaunchFileDir\n"
+        "from kit.ros.launch.substitutions import LaunchConfiguration, ThisLaunchFileDir\n"
         f"def generate_launch_description():\n    return {body}\n"
     )
     return str(file)

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from kit.ros.launch.actions import DeclareLaunchArgument, LogInfo, SetEnvironmentVariable
-from kit.ros.launch.problems import LaunchError
-from kit.ros.launch.substitution import (
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
     FindExecutable,

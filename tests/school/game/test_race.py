@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find
-from kit.host.confine import Level as Confinement
-from kit.host.ladder import allows
-from kit.school.game import fame
-from kit.school.game.drives import note
+from kit.host.sandbox.confinement import Level as Confinement
+from kit.host.sandbox.probe import allows
+from kit.school.game import leaderboard
+from kit.school.game.drive_records import note
 from kit.school.game.ghosts import ghosts, reference_ghost
 from kit.school.game.levels import Level, UnknownLevel, all_levels, find_level
+from kit.school.game.player_progress import standings
 from kit.school.game.race import Driver, Finish, judged, race, reference
-from kit.school.game.standing import standings
 from kit.school.progress import Event, Kind, Progress
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
@@ -165,7 +165,7 @@ def test_stars_add_up_over_drives_and_open_levels() -> None:
 
 
 def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(fame.VARIABLE, str(tmp_path / "hall"))
+    monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = reference(FIRST)
     with Progress(workspace.folder) as progress:
@@ -186,18 +186,18 @@ def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.M
 def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
     hall = tmp_path / "hall"
     found = standings(LEVELS, [drive(FIRST.id, "keys", 5.0)])
-    assert not fame.has_joined(hall)
-    fame.publish(hall, "Ada\x1b[31m", found)
-    (entry,) = fame.entries(hall)
+    assert not leaderboard.has_joined(hall)
+    leaderboard.publish(hall, "Ada\x1b[31m", found)
+    (entry,) = leaderboard.entries(hall)
     assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
     own = hall / f"{os.getuid()}.json"
     (hall / "123456.json").write_text(own.read_text())  # written for somebody else
     (hall / "999.json").symlink_to(own)
     (hall / "0.txt").write_text("x")
-    assert len(fame.entries(hall)) == 1
-    fame.leave(hall)
-    fame.leave(hall)
-    assert fame.entries(hall) == []
+    assert len(leaderboard.entries(hall)) == 1
+    leaderboard.leave(hall)
+    leaderboard.leave(hall)
+    assert leaderboard.entries(hall) == []
 
 
 @pytest.mark.parametrize(
@@ -213,15 +213,15 @@ def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
 )
 def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
     (tmp_path / f"{os.getuid()}.json").write_text(content)
-    assert fame.entries(tmp_path) == []
+    assert leaderboard.entries(tmp_path) == []
 
 
 def test_a_hall_in_which_files_can_be_exchanged_is_refused(tmp_path: Path) -> None:
     hall = tmp_path / "hall"
     hall.mkdir()
     hall.chmod(0o777)
-    with pytest.raises(fame.FameError, match="chmod"):
-        fame.publish(hall, "Ada", standings(LEVELS, []))
+    with pytest.raises(leaderboard.FameError, match="chmod"):
+        leaderboard.publish(hall, "Ada", standings(LEVELS, []))
 
 
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.reading import read
 from kit.school.lessons.records import Lesson
-from kit.school.lessons.visit import Visit
 from kit.school.progress import Progress
 from kit.workspace import Workspace, open_workspace
 

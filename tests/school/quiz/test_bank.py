@@ -14,7 +14,7 @@ from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice
 from kit.school.quiz.items import IDEAS, OPTIONS, Item, Topic
 from kit.school.quiz.reading import SHEET, read_bank
-from kit.tui.quiz_rows import option_rows, question_rows, sure_rows, told_rows
+from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 
 BANK = read_bank()
 COMMANDS = sorted({item.attempt for item in BANK.items if item.attempt})

@@ -10,8 +10,8 @@ import pytest
 from kit.school.progress import Event, Kind
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion
 from kit.school.quiz.items import Bank, Item, Topic
+from kit.school.quiz.quiz_text import schedule_lines, today_line
 from kit.school.quiz.schedule import GAPS, PRACTICE, Schedule, schedule_of
-from kit.school.quiz.words import schedule_lines, today_line
 from tests.school.quiz.made import MONDAY, answered, bank
 
 BANK = bank(ros2=6, layers=6, rl=2)

@@ -9,9 +9,9 @@ import pytest
 from kit.school.progress import Event, Kind
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, Outcome, answer_of, answers_of
 from kit.school.quiz.items import Topic
+from kit.school.quiz.quiz_text import calibration_lines, tally_line
 from kit.school.quiz.rounds import rounds_of
 from kit.school.quiz.scores import Tally, by_topic, calibration, latest, tally
-from kit.school.quiz.words import calibration_lines, tally_line
 from tests.school.quiz.made import MONDAY, answered, bank
 
 BANK = bank(ros2=4, layers=2)

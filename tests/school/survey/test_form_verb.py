@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.progress import Kind, Progress
-from kit.school.survey.answering import Answers
+from kit.school.survey.form_session import Answers
 from kit.school.survey.questions import Phase, Purpose, Shape
 from kit.school.survey.reading import read_form
 

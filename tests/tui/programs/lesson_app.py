@@ -9,16 +9,16 @@ from kit.cli import options
 terminal = options.terminal(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
 os.environ.update(terminal.environment())
 
-from kit.school.lessons import works  # noqa: E402 - as the kit itself does it
+from kit.school.lessons import exercise_files  # noqa: E402 - as the kit itself does it
+from kit.school.lessons.lesson_session import Visit  # noqa: E402
 from kit.school.lessons.reading import read  # noqa: E402
-from kit.school.lessons.visit import Visit  # noqa: E402
 from kit.school.progress import Progress  # noqa: E402
 from kit.tui.app import KitApp  # noqa: E402
 from kit.tui.screens.lesson import LessonScreen  # noqa: E402
 from kit.workspace import open_workspace  # noqa: E402
 
 lessons, solutions, folder = map(Path, sys.argv[1:4])
-works.solutions_folder = lambda: solutions  # type: ignore[assignment]
+exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]
 desk = open_workspace(folder)
 with Progress(desk.folder) as progress:
     app = KitApp(terminal)

@@ -14,8 +14,8 @@ from textual.app import App, ComposeResult
 from textual.timer import Timer
 
 from kit.tui.input.driver import KeyDriver
-from kit.tui.world_view import WorldView
-from tests.picture.scenes import drive
+from kit.tui.widgets.world_view import WorldView
+from tests.render.scenes import drive
 
 
 def report(*what: object) -> None:

@@ -13,12 +13,12 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.msg.rcl_interfaces import GetParameters
-from kit.picture.roles import Role
-from kit.ros.client import Client
-from kit.session import Session
-from kit.tui.look import Look
+from kit.render.roles import Role
+from kit.ros.node.client import Client
+from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+from kit.tui.theme import Look
 
 Scene = Callable[[FieldsScreen, Pilot[None]], Awaitable[None]]
 

@@ -14,11 +14,11 @@ from textual.pilot import Pilot
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_srvs import Trigger
-from kit.ros.graph import Graph
-from kit.ros.qos import qos_profile_sensor_data
-from kit.tui.look import Look
+from kit.ros.graph.graph import Graph
+from kit.ros.node.qos import qos_profile_sensor_data
 from kit.tui.screens.graph import CALM, FRAME, GraphScreen
 from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+from kit.tui.theme import Look
 
 MS = 1_000_000
 

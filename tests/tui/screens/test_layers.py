@@ -11,13 +11,13 @@ from textual.app import App
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from kit.layers.case_sources import open_task
 from kit.layers.reading import read_requirements
 from kit.layers.requirements import Contact, Sight
-from kit.layers.tasks import open_task
-from kit.tui.look import Look
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers import LayersScreen
 from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+from kit.tui.theme import Look
 
 Scene = Callable[[LayersScreen, Pilot[None]], Awaitable[None]]
 

@@ -11,12 +11,12 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.school.lessons import works
+from kit.school.lessons import exercise_files
+from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.reading import read
-from kit.school.lessons.visit import Visit
 from kit.school.progress import Kind, Progress
-from kit.tui.look import Look
 from kit.tui.screens.lesson import LessonScreen
+from kit.tui.theme import Look
 from kit.workspace import Workspace, open_workspace
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text
@@ -58,7 +58,7 @@ class Student:
 @pytest.fixture
 def student(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Student]:
     solutions = write_solutions(tmp_path / "solutions")
-    monkeypatch.setattr(works, "solutions_folder", lambda: solutions)
+    monkeypatch.setattr(exercise_files, "solutions_folder", lambda: solutions)
     made = Student(tmp_path)
     yield made
     made.progress.close()

@@ -9,14 +9,14 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.recording import load
+from kit.run.recording import load
+from kit.run.session import Session
+from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.reading import read
-from kit.school.lessons.visit import Visit
 from kit.school.progress import Kind, Progress
-from kit.session import Session
-from kit.tui.look import Look
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import HandDrive
+from kit.tui.theme import Look
 from kit.workspace import open_workspace
 from tests.tui.lesson_folder import write_drive
 from tests.tui.lesson_stage import rows, seen, stage, text, until

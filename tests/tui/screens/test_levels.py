@@ -10,12 +10,12 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.desk import open_desk
-from kit.school.game import fame
+from kit.controllers.workspace_files import open_desk
+from kit.school.game import leaderboard
 from kit.school.game.levels import all_levels
 from kit.school.progress import Kind, Progress
-from kit.tui import levels_rows as say
 from kit.tui.app import KitApp
+from kit.tui.rows import level_rows as say
 from kit.tui.screens.level_drive import LevelDrive, Result
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.page import Page
@@ -27,7 +27,7 @@ LEVELS = all_levels()
 
 @pytest.fixture
 def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progress]:
-    monkeypatch.setenv(fame.VARIABLE, str(tmp_path / "hall"))
+    monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
     with Progress(tmp_path) as opened:
         yield opened
 

@@ -11,8 +11,8 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import Event, Kind, Progress
+from kit.school.quiz.quiz_session import Sitting, of_lesson, the_twelve
 from kit.school.quiz.reading import read_bank
-from kit.school.quiz.sitting import Sitting, of_lesson, the_twelve
 from kit.tui.screens.page import Page
 from kit.tui.screens.quiz import QuizScreen, Stage
 

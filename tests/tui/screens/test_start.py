@@ -8,12 +8,12 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.desk import open_desk
+from kit.controllers.workspace_files import open_desk
 from kit.school.progress import FILE, Kind, Progress
-from kit.tui.look import Look
 from kit.tui.overview import School
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.start_keys import MENU
+from kit.tui.theme import Look
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 

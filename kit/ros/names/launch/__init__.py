@@ -7,7 +7,7 @@ from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEn
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.sources import LaunchDescriptionSource
-from kit.ros.launch.substitution import SomeText as SomeSubstitutionsType
+from kit.ros.launch.substitutions import SomeText as SomeSubstitutionsType
 
 __all__ = [
     "Action",

@@ -1,3 +1,3 @@
-from kit.ros.launch.substitution import SomeText as SomeSubstitutionsType
+from kit.ros.launch.substitutions import SomeText as SomeSubstitutionsType
 
 __all__ = ["SomeSubstitutionsType"]

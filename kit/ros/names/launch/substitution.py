@@ -1,3 +1,3 @@
-from kit.ros.launch.substitution import Substitution
+from kit.ros.launch.substitutions import Substitution
 
 __all__ = ["Substitution"]

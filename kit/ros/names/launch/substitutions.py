@@ -1,4 +1,4 @@
-from kit.ros.launch.substitution import (
+from kit.ros.launch.substitutions import (
     EnvironmentVariable,
     EqualsSubstitution,
     FindExecutable,

@@ -1,3 +1,3 @@
-from kit.ros.launch.substitution import FindPackageShare
+from kit.ros.launch.substitutions import FindPackageShare
 
 __all__ = ["FindPackageShare"]

@@ -1,7 +1,6 @@
 """rclpy, the client library of ROS 2, as this project offers it."""
 
-from kit.ros.context import Context, get_default_context
-from kit.ros.running import (
+from kit.ros.execution.client_library import (
     InitContextManager,
     SignalHandlerOptions,
     create_node,
@@ -14,6 +13,7 @@ from kit.ros.running import (
     spin_until_future_complete,
     try_shutdown,
 )
+from kit.ros.execution.context import Context, get_default_context
 
 __all__ = [
     "Context",

@@ -1,3 +1,3 @@
-from kit.ros.client import Client
+from kit.ros.node.client import Client
 
 __all__ = ["Client"]

@@ -1,4 +1,4 @@
-from kit.ros.clock import Clock, ROSClock
-from kit.ros.instants import ClockType
+from kit.ros.node.clock import Clock, ROSClock
+from kit.ros.node.time import ClockType
 
 __all__ = ["Clock", "ClockType", "ROSClock"]

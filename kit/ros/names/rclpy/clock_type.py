@@ -1,3 +1,3 @@
-from kit.ros.instants import ClockType
+from kit.ros.node.time import ClockType
 
 __all__ = ["ClockType"]

@@ -1,3 +1,3 @@
-from kit.ros.instants import S_TO_NS
+from kit.ros.node.time import S_TO_NS
 
 __all__ = ["S_TO_NS"]

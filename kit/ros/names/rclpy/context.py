@@ -1,3 +1,3 @@
-from kit.ros.context import Context
+from kit.ros.execution.context import Context
 
 __all__ = ["Context"]

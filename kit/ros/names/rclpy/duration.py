@@ -1,3 +1,3 @@
-from kit.ros.instants import Duration, Infinite
+from kit.ros.node.time import Duration, Infinite
 
 __all__ = ["Duration", "Infinite"]

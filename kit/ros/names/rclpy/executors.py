@@ -1,4 +1,4 @@
-from kit.ros.executors import (
+from kit.ros.execution.executors import (
     ConditionReachedException,
     Executor,
     ExternalShutdownException,

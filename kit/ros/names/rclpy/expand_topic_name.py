@@ -1,3 +1,3 @@
-from kit.ros.naming import expand_topic_name
+from kit.ros.graph.naming import expand_topic_name
 
 __all__ = ["expand_topic_name"]

@@ -1,3 +1,3 @@
-from kit.ros.task import Future
+from kit.ros.execution.task import Future
 
 __all__ = ["Future"]

@@ -1,5 +1,10 @@
+from kit.ros.execution.client_library import (
+    get_logger,
+    get_logger_effective_level,
+    get_logger_level,
+    set_logger_level,
+)
 from kit.ros.log import LoggingSeverity, get_logging_severity_from_string
-from kit.ros.running import get_logger, get_logger_effective_level, get_logger_level, set_logger_level
 
 __all__ = [
     "LoggingSeverity",

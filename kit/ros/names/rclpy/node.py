@@ -1,4 +1,4 @@
 from kit.ros.exceptions import NodeNameNonExistentError
-from kit.ros.node import Node
+from kit.ros.node.node import Node
 
 __all__ = ["Node", "NodeNameNonExistentError"]

@@ -1,4 +1,4 @@
-from kit.ros.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
-from kit.ros.parameter_files import get_parameter_value
+from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
+from kit.ros.parameters.parameter_files import get_parameter_value
 
 __all__ = ["PARAMETER_SEPARATOR_STRING", "Parameter", "get_parameter_value", "parameter_value_to_python"]

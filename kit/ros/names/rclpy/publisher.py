@@ -1,3 +1,3 @@
-from kit.ros.publisher import Publisher
+from kit.ros.node.publisher import Publisher
 
 __all__ = ["Publisher"]

@@ -1,4 +1,4 @@
-from kit.ros.qos import (
+from kit.ros.node.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     InvalidQoSProfileException,

@@ -1,4 +1,4 @@
-from kit.ros.event_handler import (
+from kit.ros.node.event_handler import (
     PublisherEventCallbacks,
     QoSOfferedIncompatibleQoSInfo,
     QoSRequestedIncompatibleQoSInfo,

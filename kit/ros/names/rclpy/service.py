@@ -1,3 +1,3 @@
-from kit.ros.service import Service
+from kit.ros.node.service import Service
 
 __all__ = ["Service"]

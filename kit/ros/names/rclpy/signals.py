@@ -1,3 +1,3 @@
-from kit.ros.running import SignalHandlerOptions
+from kit.ros.execution.client_library import SignalHandlerOptions
 
 __all__ = ["SignalHandlerOptions"]

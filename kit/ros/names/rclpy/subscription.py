@@ -1,3 +1,3 @@
-from kit.ros.subscription import MessageInfo, Subscription
+from kit.ros.node.subscription import MessageInfo, Subscription
 
 __all__ = ["MessageInfo", "Subscription"]

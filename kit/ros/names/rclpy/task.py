@@ -1,3 +1,3 @@
-from kit.ros.task import Future, Task
+from kit.ros.execution.task import Future, Task
 
 __all__ = ["Future", "Task"]

@@ -1,3 +1,3 @@
-from kit.ros.instants import Time
+from kit.ros.node.time import Time
 
 __all__ = ["Time"]

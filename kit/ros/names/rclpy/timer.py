@@ -1,3 +1,3 @@
-from kit.ros.timer import Rate, Timer, TimerInfo
+from kit.ros.node.timer import Rate, Timer, TimerInfo
 
 __all__ = ["Rate", "Timer", "TimerInfo"]

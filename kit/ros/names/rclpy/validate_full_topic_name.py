@@ -1,3 +1,3 @@
-from kit.ros.naming import validate_full_topic_name
+from kit.ros.graph.naming import validate_full_topic_name
 
 __all__ = ["validate_full_topic_name"]

@@ -1,3 +1,3 @@
-from kit.ros.naming import validate_namespace
+from kit.ros.graph.naming import validate_namespace
 
 __all__ = ["validate_namespace"]

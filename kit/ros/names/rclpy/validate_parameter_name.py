@@ -1,3 +1,3 @@
-from kit.ros.naming import validate_parameter_name
+from kit.ros.graph.naming import validate_parameter_name
 
 __all__ = ["validate_parameter_name"]

@@ -1,6 +1,6 @@
 """Frames and transforms, under the names of ROS 2's tf2_ros."""
 
-from kit.ros.transforms import (
+from kit.ros.tf import (
     Buffer,
     ConnectivityException,
     ExtrapolationException,

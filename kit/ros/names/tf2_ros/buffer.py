@@ -1,3 +1,3 @@
-from kit.ros.transforms import Buffer
+from kit.ros.tf import Buffer
 
 __all__ = ["Buffer"]

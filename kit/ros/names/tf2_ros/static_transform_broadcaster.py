@@ -1,3 +1,3 @@
-from kit.ros.transforms import StaticTransformBroadcaster
+from kit.ros.tf import StaticTransformBroadcaster
 
 __all__ = ["StaticTransformBroadcaster"]

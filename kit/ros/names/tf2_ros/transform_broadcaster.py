@@ -1,3 +1,3 @@
-from kit.ros.transforms import TransformBroadcaster
+from kit.ros.tf import TransformBroadcaster
 
 __all__ = ["TransformBroadcaster"]

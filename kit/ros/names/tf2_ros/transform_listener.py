@@ -1,3 +1,3 @@
-from kit.ros.transforms import TransformListener
+from kit.ros.tf import TransformListener
 
 __all__ = ["TransformListener"]

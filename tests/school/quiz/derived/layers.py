@@ -13,7 +13,7 @@ from kit.layers.greedy import greedy
 from kit.layers.planning import solve
 from kit.layers.requirements import Case, Contact, Entity, Laser
 from kit.school.quiz.items import Item
-from kit.world.touching import Touch, Touching
+from kit.world.collision_rules import Touch, Touching
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 from tests.sim.workshop import Workshop
 

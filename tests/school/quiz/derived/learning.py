@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from kit.learning.env import TaskEnv, TurnEnv
-from kit.learning.intervals import wilson
-from kit.learning.presets import Falling
-from kit.learning.rewards import ALGORITHM_3, Reward, Weight
-from kit.learning.tabular import QLearning, Sarsa, TableLearner
-from kit.learning.tasks import TURN
-from kit.learning.transition import Transition
+from kit.learning.environment.env import TaskEnv, TurnEnv
+from kit.learning.environment.rewards import ALGORITHM_3, Reward, Weight
+from kit.learning.environment.tasks import TURN
+from kit.learning.environment.transition import Transition
+from kit.learning.policies.confidence_intervals import wilson
+from kit.learning.training.presets import Falling
+from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
 from kit.school.quiz.items import Item
 from tests.learning.worlds import sampled
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest

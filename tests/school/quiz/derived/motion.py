@@ -10,9 +10,9 @@ from kit.controllers import find
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
-from kit.places import place_on_map
+from kit.run.scenario import place_on_map
+from kit.run.session import Session
 from kit.school.quiz.items import Item
-from kit.session import Session
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest

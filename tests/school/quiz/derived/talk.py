@@ -9,26 +9,26 @@ from kit.msg.fields import FieldError
 from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32
 from kit.msg.std_srvs import Trigger
-from kit.places import place_on_map
-from kit.ros.context import Context
 from kit.ros.exceptions import (
     InvalidParameterTypeException,
     ParameterNotDeclaredException,
     WouldDeadlock,
 )
-from kit.ros.executors import SingleThreadedExecutor
-from kit.ros.graph import Graph
+from kit.ros.execution.context import Context
+from kit.ros.execution.executors import SingleThreadedExecutor
+from kit.ros.graph.graph import Graph
 from kit.ros.launch.actions import DeclareLaunchArgument, LogInfo
 from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.processes import ExecuteProcess
 from kit.ros.launch.service import LaunchService
-from kit.ros.launch.substitution import LaunchConfiguration
+from kit.ros.launch.substitutions import LaunchConfiguration
 from kit.ros.log import LogRecord
-from kit.ros.node import Node
-from kit.ros.parameter import Parameter
-from kit.ros.qos import QoSProfile, ReliabilityPolicy
+from kit.ros.node.node import Node
+from kit.ros.node.qos import QoSProfile, ReliabilityPolicy
+from kit.ros.parameters.parameter import Parameter
+from kit.run.scenario import place_on_map
+from kit.run.session import Session
 from kit.school.quiz.items import Item
-from kit.session import Session
 from kit.world.catalogue import find_map
 from tests.school.quiz.derived.finding import Derivation, Finding
 

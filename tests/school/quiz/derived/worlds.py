@@ -14,9 +14,9 @@ from kit.school.quiz.items import Item
 from kit.sim.loading import load
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
+from kit.world.collision_rules import Touch, Touching
 from kit.world.problems import WorldError
 from kit.world.records import ALL_LAYERS, World
-from kit.world.touching import Touch, Touching
 from kit.world.walls import image_walls
 from tests.school.quiz.derived.finding import Derivation, Finding
 from tests.sim.workshop import Workshop

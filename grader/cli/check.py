@@ -1,0 +1,150 @@
+"""``grader check``: one submission, judged at once."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from grader.cli import options
+
+if TYPE_CHECKING:
+    from grader.grading import Evidence, Grading
+    from grader.result import Result
+
+EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
+
+
+@click.command()
+@click.argument("file", type=click.Path(exists=True, path_type=Path))
+@options.assignment
+@options.level
+@click.option(
+    "--require-level",
+    type=click.IntRange(0, 3),
+    help="Refuse to grade where the machine cannot lock in so far.",
+)
+@options.secret
+@click.option(
+    "--hints", type=click.IntRange(0, 3), default=1, show_default=True, help="How many hint steps to show."
+)
+@click.option(
+    "--format",
+    "form",
+    default="text",
+    show_default=True,
+    metavar="NAME",
+    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
+)
+@click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
+@click.option(
+    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
+)
+@click.option(
+    "--replay",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Keep the worst episode there, for `kit replay`.",
+)
+@click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
+def command(
+    file: Path,
+    folder: Path,
+    level: int | None,
+    require_level: int | None,
+    secret: bool,
+    hints: int,
+    form: str,
+    as_json: bool,
+    output: Path | None,
+    replay: Path | None,
+    for_student: bool,
+) -> None:
+    """Run FILE (or a folder or archive that holds it) as ASSIGNMENT asks, and say what it earns.
+
+    \b
+    grader check my_controller.py --assignment assignments/reach
+
+    Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
+    """
+    from grader.archives import Refused
+    from grader.reports import FORMATS
+    from grader.session import LevelTooLow, Terms, opened
+    from grader.submission import take
+
+    form = "json" if as_json else form
+    if form not in FORMATS:
+        options.fail(f"There is no format {form}; there are: {', '.join(FORMATS)}.")
+    assignment = options.read_assignment(folder)
+    wanted = options.as_level(level)
+    if require_level is not None:
+        wanted = options.required(max(require_level, assignment.level if level is None else level))
+    try:
+        submission = take(file, assignment.submit)
+        with opened(assignment, submission, Terms(wanted, secret)) as grading:
+            result = grading.result()
+            picture = _worst(grading, replay)
+    except (Refused, LevelTooLow) as error:
+        options.fail(str(error))
+    if for_student:
+        result = result.for_student()
+    text = _report(result, form, hints, picture)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        from kit.workspace import write_atomically
+
+        write_atomically(output.absolute(), text.encode())
+    raise SystemExit(EXITS[result.verdict.value])
+
+
+def _report(result: Result, form: str, hints: int, picture: str) -> str:
+    from grader.reports import terminal, writer
+
+    return terminal.write(result, hints=hints) + picture if form == "text" else writer(form)(result)
+
+
+def _worst(grading: Grading, replay: Path | None) -> str:
+    """The worst episode in characters; and kept in a file, if asked for."""
+    worst = grading.worst()
+    shown = "" if worst is None else worst.picture()
+    if worst is None or not shown:
+        return "" if replay is None else "\nNo episode went wrong that could be kept as a replay.\n"
+    title, moves = _titled(worst)
+    if not moves:
+        return f"\n{title}:\n{shown}\n"
+    watch = "To watch it move: add --replay worst.npz" if replay is None else _kept(worst, replay, grading)
+    return f"\n{title}:\n{shown}\n{watch}\n"
+
+
+def _titled(worst: Evidence) -> tuple[str, bool]:
+    """What the picture shows; and whether it can be watched moving."""
+    from grader.evidence.drive_record import Drive
+    from grader.kinds.contract import Look
+
+    if isinstance(worst, Drive):
+        return f"The worst episode, {worst.label} ({worst.outcome})", True
+    if isinstance(worst, Look):
+        return f"A look at {worst.label} ({worst.outcome})", False
+    return "What a robot does that has learnt this reward perfectly", True
+
+
+def _kept(worst: Evidence, replay: Path, grading: Grading) -> str:
+    """Keeps an episode; how to watch it."""
+    from grader.evidence.drive_record import Drive
+    from grader.evidence.reward import Exam
+    from kit.run.recording import save
+    from kit.world.catalogue import map_names
+
+    root = ""
+    try:
+        if isinstance(worst, Drive):
+            save(worst.recording, replay.absolute())
+            if worst.recording.place not in map_names():
+                root = f" --root {shlex.quote(str(grading.assignment.folder))}"
+        elif isinstance(worst, Exam):
+            worst.film(replay.absolute())
+    except OSError as error:
+        options.fail(f"{replay} cannot be written: {error.strerror or error}.")
+    return f"Watch it move: kit replay {shlex.quote(str(replay))}{root}"

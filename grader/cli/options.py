@@ -1,0 +1,70 @@
+"""Options that several verbs share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NoReturn
+
+import click
+
+if TYPE_CHECKING:
+    from grader.assignment import Assignment
+    from kit.host.sandbox.confinement import Level
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+FAILED: Final = 1
+BAD_INPUT: Final = 2
+BROKEN: Final = 3
+"""The grader itself: never the student's doing."""
+
+
+def fail(message: str, code: int = BAD_INPUT) -> NoReturn:
+    """Ends the verb with this message on standard error."""
+    click.echo(message, err=True)
+    raise SystemExit(code)
+
+
+assignment: Decorator = click.option(
+    "--assignment",
+    "folder",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    required=True,
+    help="The assignment's folder.",
+)
+level: Decorator = click.option(
+    "--level",
+    type=click.IntRange(0, 3),
+    help="How far to lock programs in, exactly; by default as the assignment says.",
+)
+secret: Decorator = click.option(
+    "--secret", is_flag=True, help="Use the secret seeds too: for the grade, on the teacher's machine."
+)
+
+
+def read_assignment(folder: Path) -> Assignment:
+    """The assignment, or its mistakes and exit code 2."""
+    from grader.reading import read
+    from kit.world.problems import WorldError
+
+    try:
+        return read(folder)
+    except WorldError as error:
+        fail(str(error))
+
+
+def required(number: int) -> Level:
+    """This level; exit code 2 where the machine does not reach it."""
+    from kit.host.sandbox.confinement import Level
+    from kit.host.sandbox.probe import highest
+
+    if highest() < number:
+        fail(f"This machine does not reach confinement level {number}; `kit doctor` says why.")
+    return Level(number)
+
+
+def as_level(number: int | None) -> Level | None:
+    from kit.host.sandbox.confinement import Level
+
+    return None if number is None else Level(number)

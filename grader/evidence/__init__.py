@@ -1,0 +1,1 @@
+"""Evidence for grading: running submissions and recording what they do."""

@@ -1,0 +1,58 @@
+"""Evidence about a controller: its episodes, each in a fresh process, run when a criterion first needs them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from grader.assignment import Assignment, Criterion, Seeds, Trial
+from grader.evidence.drive_record import Drive
+from grader.evidence.episodes import Order, run
+from kit.host.failure import FailureKind
+from kit.host.sandbox.confinement import Level
+
+
+class ControllerRuns:
+    """The episodes of one submission."""
+
+    def __init__(
+        self, assignment: Assignment, file: Path, *, level: Level, secret: bool, may_fall: bool
+    ) -> None:
+        """``may_fall``: whether a machine that cannot confine so far may confine less; for practice only."""
+        self.level = level
+        self._assignment = assignment
+        self._file = file
+        self._secret = secret
+        self._may_fall = may_fall and not secret
+        self._drives: dict[tuple[str, bool, int], Drive] = {}
+
+    def evidence(self, criterion: Criterion) -> Sequence[Drive]:
+        return [
+            self._drive(self._assignment.trial(name), place, seed, secret)
+            for name in criterion.trials
+            for secret, place, seed in self._seeds(self._assignment.trial(name), criterion.seeds)
+        ]
+
+    def all(self) -> Sequence[Drive]:
+        return list(self._drives.values())
+
+    def _seeds(self, trial: Trial, which: Seeds) -> list[tuple[bool, int, int]]:
+        """Whether it is secret, its place among its kind from 1, and the seed."""
+        public = list(enumerate(trial.seeds, 1)) if which is not Seeds.SECRET else []
+        secret = list(enumerate(trial.secret_seeds, 1)) if which is not Seeds.PUBLIC and self._secret else []
+        return [(False, *each) for each in public] + [(True, *each) for each in secret]
+
+    def _drive(self, trial: Trial, place: int, seed: int, secret: bool) -> Drive:
+        key = trial.name, secret, seed
+        if key not in self._drives:
+            label = f"{trial.name}, secret seed {place}" if secret else f"{trial.name}, seed {seed}"
+            self._drives[key] = self._run(Order(trial, seed, label, secret))
+        return self._drives[key]
+
+    def _run(self, order: Order) -> Drive:
+        while True:
+            drive = run(order, self._file, limits=self._assignment.limits, level=self.level)
+            cannot = drive.failure is not None and drive.failure.kind is FailureKind.CONFINEMENT
+            if not (cannot and self._may_fall and self.level > Level.LIMITED):
+                return drive
+            self.level = Level(self.level - 1)

@@ -1,0 +1,155 @@
+"""What the grader saw of one episode. Checks look at this, and at nothing of the student's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.geometry import Pose
+from kit.host.failure import Failure
+from kit.render.scene import Body, Disc, Scene
+from kit.render.world_text import nearest_wall, plain_rows
+from kit.run.metrics import Score
+from kit.run.recording import ACCEPT, Recording
+from kit.run.scenario import Place
+from kit.world.records import Circle, Polygon
+
+LOOK_EVERY = 5
+"""Ticks between two looks at how near the walls are: 0.05 s, in which a robot at 1 m/s goes 5 cm."""
+
+COLUMNS, ROWS = 60, 18
+"""Of the picture."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Talk:
+    """What the program said on one topic."""
+
+    kind: str
+    """Of message, such as ``geometry_msgs/msg/Twist``."""
+    count: int
+    nodes: tuple[str, ...] = ()
+    """Who said it, by full name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """One episode, over."""
+
+    trial: str
+    label: str
+    """In words that give no secret away: ``maze, secret seed 2``."""
+    seed: int
+    secret: bool
+    place: Place
+    limit_s: float
+    recording: Recording
+    score: Score
+    failure: Failure | None
+    """Why the program stopped, if it did not stop well."""
+    talk: Mapping[str, Talk]
+    """By topic, what the program's nodes published."""
+    refused: tuple[str, ...]
+    """Which of the world's services the program asked for in vain."""
+    printed: tuple[str, ...]
+    fingerprint: str
+    level: int
+    answers: Mapping[str, str] = field(default_factory=dict)
+    """By call, what the program answered; see ``grader.evidence.service_calls``."""
+    bumped: tuple[int, ...] = ()
+    """The ticks at which the robot began to touch something."""
+
+    @property
+    def steps(self) -> int:
+        return self.recording.ticks
+
+    @property
+    def seconds(self) -> float:
+        return self.recording.ticks * self.recording.step_size
+
+    @property
+    def outcome(self) -> str:
+        """In a few words."""
+        if self.failure is not None:
+            return f"stopped ({self.failure.kind.value})"
+        if self.score.reached_s is not None:
+            return f"reached after {self.score.reached_s:.1f} s"
+        bumps = f", {self.score.bumps} bumps" if self.score.bumps else ""
+        return f"not reached{bumps}"
+
+    @cached_property
+    def track(self) -> Floats:
+        """(ticks, 3) the robot's poses."""
+        return self.recording.track(self.place.robot or "") if self.steps else np.empty((0, 3))
+
+    @cached_property
+    def clearances(self) -> Floats:
+        """(k,) from the robot's hull to the nearest wall [m], every ``LOOK_EVERY`` ticks; 0 where it touches."""
+        walls = self.walls
+        if not len(walls) or not len(self.track):
+            return np.full(max(1, len(self.track) // LOOK_EVERY), math.inf)
+        return np.array(
+            [nearest_wall(self.body(Pose(*row)), walls)[0] for row in self.track[::LOOK_EVERY].tolist()]
+        )
+
+    @cached_property
+    def walls(self) -> Floats:
+        """(n, 4) every wall of the world."""
+        layers = self.place.world.layers
+        unique = {layer.walls.file: layer.walls for layer in layers if layer.walls is not None}
+        return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
+
+    @cached_property
+    def commands(self) -> Floats:
+        """(k, 3) what the robot was told: time [s], forward [m/s], turn [rad/s]."""
+        rows = [
+            (
+                told.tick * self.recording.step_size,
+                told.content[2]["linear"]["x"],
+                told.content[2]["angular"]["z"],
+            )
+            for told in self.recording.inputs
+            if told.kind == ACCEPT and told.content[1] == "geometry_msgs/msg/Twist"
+        ]
+        return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+    def body(self, pose: Pose) -> Body:
+        """The robot as it would lie at a pose."""
+        model = next(model for model in self.place.world.models if model.name == self.place.robot)
+        footprints = [footprint.shape for footprint in model.bodies[0].footprints]
+        polygons = tuple(
+            np.array([pose.point(*point) for point in shape.points])
+            for shape in footprints
+            if isinstance(shape, Polygon)
+        )
+        discs = tuple(
+            Disc(*pose.point(*shape.center), shape.radius)
+            for shape in footprints
+            if isinstance(shape, Circle)
+        )
+        return Body(model.name, pose, polygons, discs, robot=True)
+
+    def remark(self, check: str, params: Any = None) -> str:
+        """What else there is to say; the check's own sentence says all."""
+        return ""
+
+    def picture(self, check: str = "") -> str:
+        """Where the robot went and where it ended, in plain characters; the same for every check."""
+        if not len(self.track):
+            return ""
+        case = self.place.case
+        scene = Scene(
+            walls=self.walls,
+            bodies=(self.body(Pose(*self.track[-1].tolist())),),
+            targets=(Disc(*case.target, case.target_radius),) if case else (),
+            trails=(self.track[::LOOK_EVERY, :2].copy(),),
+        )
+        return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))

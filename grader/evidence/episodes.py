@@ -1,0 +1,273 @@
+"""Running one episode: the world, its clock, its chances and the recording are ours; the program is a guest."""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from grader.assignment import Shift, Trial
+from grader.evidence.drive_record import Drive, Talk
+from grader.evidence.service_calls import Caller
+from kit.geometry import Pose
+from kit.host.failure import Failure, GuestError
+from kit.host.node_process import Guest
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import Limits
+from kit.host.wire import printable
+from kit.msg.message import Message, type_name
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
+from kit.run.headless import Fingerprint
+from kit.run.metrics import Trip
+from kit.run.recording import Recorder
+from kit.run.runner import Runner
+from kit.run.scenario import Place
+from kit.sim.plugins.laser import LaserParams
+from kit.sim.simulation import Simulation, SimulationError
+from kit.world.records import Model, World
+
+STEP: Final = 0.01
+"""s"""
+
+HOME_HAIR: Final = 1e-6
+"""A robot may be sent this near to its home [m, rad], and nowhere else."""
+
+WORLD_NODE: Final = "/flatland_server"
+"""The world's own."""
+
+MOST_PRINTED: Final = 200
+"""Lines of a program's output that are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """One episode to run."""
+
+    trial: Trial
+    seed: int
+    label: str
+    secret: bool
+
+
+class JudgedRunner(Runner):
+    """A runner whose world only changes as the assignment allows, and whose clock no program stops."""
+
+    def __init__(self, simulation: Simulation, graph: Graph, services: frozenset[str]) -> None:
+        self._services = services
+        self._home: tuple[str | None, Pose] = (None, Pose())
+        self.refused: list[str] = []
+        super().__init__(simulation, graph)
+
+    def admit(self, robot: str | None, home: Pose) -> None:
+        """Where the robot may be sent."""
+        self._home = robot, home
+
+    def tell(self, service: str, *arguments: Any) -> None:
+        if not self._is_allowed(service, arguments):
+            self.refused.append(service)
+            raise SimulationError(f"{service} is not allowed while a program is graded")
+        super().tell(service, *arguments)
+
+    def prepare(self, service: str, *arguments: Any) -> None:
+        """The same without asking: for the grader itself."""
+        super().tell(service, *arguments)
+
+    @property
+    def paused(self) -> bool:
+        return False
+
+    @paused.setter
+    def paused(self, value: bool) -> None:
+        if value:
+            self.refused.append("pause")
+
+    def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
+        if service not in self._services:
+            return False
+        if service != "move_model":
+            return True
+        robot, home = self._home
+        name, pose = arguments
+        return name == robot and all(
+            abs(wanted - allowed) <= HOME_HAIR for wanted, allowed in zip(pose, home, strict=True)
+        )
+
+
+class Listener:
+    """Counts what each topic is told by others than the world."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._counts: dict[tuple[str, str], int] = {}
+        self._nodes: dict[tuple[str, str], set[str]] = {}
+        self.stop = graph.watch(self._hear)
+
+    def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+        if node.handle.full_name == WORLD_NODE:
+            return
+        key = name, type_name(type(message))
+        self._counts[key] = self._counts.get(key, 0) + 1
+        self._nodes.setdefault(key, set()).add(node.handle.full_name)
+
+    def talk(self) -> Mapping[str, Talk]:
+        return {
+            name: Talk(kind, count, tuple(sorted(self._nodes[name, kind])))
+            for (name, kind), count in sorted(self._counts.items())
+        }
+
+
+class Bumps:
+    """Notes, as one of the runner's observers, when the robot begins to touch something."""
+
+    def __init__(self, robot: str | None) -> None:
+        self._robot = robot
+        self._ticks: list[int] = []
+        self._count = 0
+        self._touching = False
+
+    @property
+    def ticks(self) -> tuple[int, ...]:
+        return tuple(self._ticks)
+
+    def accepted(self, topic: str, message: Message) -> None:
+        """Only what comes of it counts."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        touching = self._robot in simulation.model_names and simulation.touches(str(self._robot))
+        if touching and not self._touching:
+            self._ticks.append(self._count)
+        self._touching = touching
+        self._count += 1
+
+
+def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
+    """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
+    trial = order.trial
+    place = _place(trial)
+    graph = Graph(log_sink=lambda record: None)
+    simulation = Simulation(
+        place.world, seed=order.seed, step_size=STEP, wanted=lambda topic: graph.subscription_count(topic) > 0
+    )
+    runner = JudgedRunner(simulation, graph, trial.services)
+    recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
+    trip, fingerprint = Trip(place.driven, place.case), Fingerprint()
+    bumps = Bumps(place.robot)
+    runner.observers += [recorder, trip, fingerprint, bumps]
+    home = shifted(trial, order.seed)
+    if place.robot is not None:
+        if home != trial.home():
+            runner.prepare("move_model", place.robot, tuple(home))
+        runner.admit(place.robot, home)
+    listener = Listener(graph)
+    caller = Caller(graph, trial.calls)
+    arguments = [*_arguments(place, home), *_parameters(trial)]
+    failure, printed = _drive(runner, trip, order, file, arguments, limits, level, caller)
+    listener.stop()
+    return Drive(
+        trial=trial.name,
+        label=order.label,
+        seed=order.seed,
+        secret=order.secret,
+        place=place,
+        limit_s=trial.time_s,
+        recording=recorder.recording(),
+        score=trip.score,
+        failure=failure,
+        talk=listener.talk(),
+        refused=tuple(runner.refused[:MOST_PRINTED]),
+        printed=printed,
+        fingerprint=fingerprint.text,
+        level=int(level),
+        answers=caller.answers(),
+        bumped=bumps.ticks,
+    )
+
+
+def _drive(
+    runner: JudgedRunner,
+    trip: Trip,
+    order: Order,
+    file: Path,
+    arguments: list[str],
+    limits: Limits,
+    level: Level,
+    caller: Caller,
+) -> tuple[Failure | None, tuple[str, ...]]:
+    """Ticks until the time is over, the target reached, or the program failed."""
+    try:
+        guest = Guest.start(runner.graph, file, args=arguments, seed=order.seed, limits=limits, level=level)
+    except GuestError as error:
+        return error.failure, ()
+    with guest:
+        runner.guests.append(guest)
+        for tick in range(round(order.trial.time_s / STEP)):
+            caller.look(tick * STEP)
+            runner.tick()
+            if guest.failure is not None or (order.trial.until_reached and trip.score.reached_s is not None):
+                break
+        failure = guest.failure
+    lines = [printable(line.text) for line in guest.take_output().lines]
+    return failure, tuple(lines[:MOST_PRINTED])
+
+
+def shifted(trial: Trial, seed: int) -> Pose:
+    """Where the robot starts with this seed."""
+    home, shift = trial.home(), trial.shift
+    if shift == Shift():
+        return home
+    chance = random.Random(f"start {seed}")
+    return Pose(
+        home.x + chance.uniform(-shift.x, shift.x),
+        home.y + chance.uniform(-shift.y, shift.y),
+        home.theta + chance.uniform(-shift.theta, shift.theta),
+    )
+
+
+def _place(trial: Trial) -> Place:
+    place = trial.place
+    if trial.noise is None:
+        return place
+    return replace(place, world=noisy(place.world, trial.noise))
+
+
+def noisy(world: World, noise: float) -> World:
+    """The same world with lasers that err by this standard deviation [m]."""
+    return replace(world, models=tuple(_noisy(model, noise) for model in world.models))
+
+
+def _noisy(model: Model, noise: float) -> Model:
+    plugins = tuple(
+        replace(plugin, params=replace(plugin.params, noise=noise))
+        if isinstance(plugin.params, LaserParams)
+        else plugin
+        for plugin in model.plugins
+    )
+    return replace(model, plugins=plugins)
+
+
+def _arguments(place: Place, home: Pose) -> list[str]:
+    """What every program is told of the place, as ``kit.run.session`` tells it."""
+    if place.robot is None or not all(map(math.isfinite, home)):
+        return []
+    return [
+        "--ros-args",
+        "-p",
+        f"home:=[{home.x!r}, {home.y!r}, {home.theta!r}]",
+        "-p",
+        f"model:={place.robot}",
+    ]
+
+
+def _parameters(trial: Trial) -> list[str]:
+    words = [word for parameter in trial.parameters for word in ("-p", parameter)]
+    return ["--ros-args", *words] if words else []
+
+
+PLATFORM: Final = f"{sys.platform} python {sys.version_info.major}.{sys.version_info.minor}"

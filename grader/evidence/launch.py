@@ -1,0 +1,274 @@
+"""Running a launch file that was handed in: in a copy of the package around it, with the package's own programs.
+
+The launch file is the student's, and runs in a process of its own. What it may start are the programs of the
+package, which are ours, in processes of their own; no commands. The world it asks for must be one of the package's.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from grader.evidence.episodes import Listener
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import Limits
+from kit.host.wire import printable
+from kit.launch.errors import CannotStart
+from kit.launch.graph_only import Worldless
+from kit.launch.launch_file_process import declared_arguments
+from kit.launch.launch_file_search import SHARE, LaunchTarget
+from kit.launch.launch_run import Launch
+from kit.launch.program_lookup import Bounds
+from kit.launch.requests import Argument
+from kit.launch.session import LaunchedSession
+from kit.msg.rcl_interfaces import GetParameters, ParameterType
+from kit.render.world_text import plain_rows
+from kit.ros.graph.graph import Graph
+from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.packages import PackageError
+from kit.run.recording import Recorder
+from kit.run.runner import Runner
+from kit.run.view import Showing
+from kit.world.problems import WorldError
+
+MOST_PROGRAMS: Final = 12
+MOST_LINES: Final = 200
+PID: Final = re.compile(r"\[?pid \[?\d+\]?")
+ANSWER_TICKS: Final = 20
+"""So long a node has to say what its parameters are."""
+LONGEST_STRIDE: Final = 0.1
+"""A model that is farther [m] from where it was one tick ago was put there."""
+COLUMNS, ROWS = 60, 18
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One way to launch it."""
+
+    name: str
+    time_s: float
+    """Simulated."""
+    arguments: Mapping[str, str]
+    secret: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Questions:
+    """What is to be looked at: by node, which parameters."""
+
+    parameters: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class Launched:
+    """One run, over."""
+
+    run: Run
+    failure: Failure | None = None
+    arguments: tuple[Argument, ...] = ()
+    """That the launch file declares."""
+    died: tuple[str, ...] = ()
+    """What went wrong with what it started."""
+    graph: GraphState | None = None
+    """Who was there at the end."""
+    talk: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """By topic, which nodes spoke there."""
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    """``/node name`` -> its value, as text."""
+    ways: Mapping[str, float] = field(default_factory=dict)
+    """By model, how far it drove [m]."""
+    printed: tuple[str, ...] = ()
+    steps: int = 0
+    drawn: str = ""
+    remarks: Any = None
+    """(check, params) -> what else there is to say."""
+
+    @property
+    def label(self) -> str:
+        return "a secret launch" if self.run.secret else f"launch {self.run.name}"
+
+    @property
+    def secret(self) -> bool:
+        return self.run.secret
+
+    @property
+    def outcome(self) -> str:
+        if self.failure is not None:
+            return f"stopped ({self.failure.kind.value})"
+        return f"{len(self.nodes)} nodes" + (f", {len(self.died)} failed" if self.died else "")
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """By full name, but for the world's own and the keyboard's."""
+        there = () if self.graph is None else self.graph.nodes
+        return tuple(name for name in there if name not in OURS)
+
+    def remark(self, check: str, params: Any = None) -> str:
+        return "" if self.remarks is None or self.secret else str(self.remarks(self, check, params))
+
+    def picture(self, check: str = "") -> str:
+        return self.drawn
+
+
+OURS: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_looks"})
+
+
+@contextmanager
+def laid_out(package: Path, file: Path) -> Iterator[LaunchTarget]:
+    """The package with the student's launch file in it, in a folder of its own."""
+    with tempfile.TemporaryDirectory(prefix="launch-") as made:
+        folder = Path(made) / "package"
+        shutil.copytree(package, folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
+        target = folder / file.name
+        target.unlink(missing_ok=True)
+        target.write_bytes(file.read_bytes())
+        Path(made).chmod(0o755)
+        yield LaunchTarget(target, folder, (folder, SHARE))
+
+
+def launched(
+    run: Run, target: LaunchTarget, questions: Questions, *, level: Level, limits: Limits
+) -> Launched:
+    """One run. Never raises for what is the student's mistake."""
+    bounds = Bounds(level, limits, limits, commands=False, most=MOST_PROGRAMS)
+    printed: list[str] = []
+    graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
+    try:
+        arguments = tuple(declared_arguments(target.file, target.folder, target.search, bounds))
+        launch = Launch(
+            target,
+            graph,
+            arguments=run.arguments,
+            bounds=bounds,
+            say=lambda line: printed.append(str(line)),
+        )
+    except GuestError as error:
+        return Launched(run, _told(error.failure, target))
+    try:
+        launch.begin()
+        seen = _with_world(run, launch, questions) if launch.world else _without(run, launch, questions)
+    except GuestError as error:
+        return Launched(run, _told(error.failure, target), arguments)
+    except (CannotStart, WorldError, PackageError, OSError) as problem:
+        return Launched(run, _told(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments)
+    finally:
+        launch.close()
+    return Launched(
+        run,
+        arguments=arguments,
+        died=tuple(printable(each) for each in launch.failures),
+        printed=tuple(_steady(line, target) for line in printed[:MOST_LINES]),
+        **seen,
+    )
+
+
+def _told(failure: Failure, target: LaunchTarget) -> Failure:
+    """Where the copy lies is nothing to tell."""
+    return replace(failure, message=printable(failure.message.replace(f"{target.folder}/", "")))
+
+
+def _steady(line: str, target: LaunchTarget) -> str:
+    """A line without what differs from run to run: processes' numbers, and where the copy lies."""
+    return printable(PID.sub("pid", line).replace(f"{target.folder}/", ""))
+
+
+def _with_world(run: Run, launch: Launch, questions: Questions) -> dict[str, Any]:
+    assert launch.world is not None
+    file = launch.world.path.resolve()
+    if not file.is_relative_to(launch.target.folder.resolve()):
+        raise CannotStart(
+            f"{launch.world.where}the world must be one of the package's, not {launch.world.path}"
+        )
+    with LaunchedSession(launch, seed=1, watched=True) as session:
+        sink = launch.graph.log.sink
+        launch.start()
+        launch.graph.log.sink = sink
+        recorder = Recorder(run.name, None, session.runner.simulation)
+        session.runner.observers.append(recorder)
+        ticks = round(run.time_s / session.runner.simulation.step_size)
+        listener = Listener(launch.graph)
+        _ticked(session.runner, launch, ticks)
+        listener.stop()
+        recording = recorder.recording()
+        ways = {name: _way(recording.track(name)) for name in session.runner.simulation.model_names}
+        drawn = "\n".join(row.rstrip() for row in plain_rows(Showing(session).view().scene, COLUMNS, ROWS))
+        return {
+            **_looked(launch.graph, listener),
+            "parameters": _parameters(launch.graph, session.runner, questions),
+            "ways": ways,
+            "drawn": drawn,
+            "steps": recording.ticks,
+        }
+
+
+def _without(run: Run, launch: Launch, questions: Questions) -> dict[str, Any]:
+    launch.start()
+    ticker = Worldless(launch.graph)
+    ticker.guests.append(launch)
+    listener = Listener(launch.graph)
+    ticks = round(run.time_s / ticker.step_size)
+    _ticked(ticker, launch, ticks)
+    listener.stop()
+    return {
+        **_looked(launch.graph, listener),
+        "parameters": _parameters(launch.graph, ticker, questions),
+        "steps": ticks,
+    }
+
+
+def _ticked(ticker: Runner | Worldless, launch: Launch, ticks: int) -> None:
+    for _ in range(ticks):
+        if launch.is_over:
+            break
+        ticker.tick()
+
+
+def _looked(graph: Graph, listener: Listener) -> dict[str, Any]:
+    talk = {name: each.nodes for name, each in listener.talk().items()}
+    return {"graph": snapshot(graph), "talk": MappingProxyType(talk)}
+
+
+def _parameters(graph: Graph, ticker: Runner | Worldless, questions: Questions) -> Mapping[str, str]:
+    """Asks the nodes themselves."""
+    asking = graph.create_node("grader_looks")
+    asked = {}
+    for node, names in questions.parameters.items():
+        client = asking.create_client(GetParameters, f"{node}/get_parameters")
+        if client.service_is_ready():
+            asked[node] = names, client.call_async(GetParameters.Request(names=list(names)))
+    for _ in range(ANSWER_TICKS if asked else 0):
+        ticker.tick()
+    found = {}
+    for node, (names, future) in asked.items():
+        answer = future.result() if future.done() else None
+        for name, value in zip(names, [] if answer is None else answer.values, strict=False):
+            if value.type != ParameterType.PARAMETER_NOT_SET:
+                found[f"{node} {name}"] = _text(value)
+    return MappingProxyType(found)
+
+
+def _text(value: Any) -> str:
+    kinds = {
+        ParameterType.PARAMETER_BOOL: lambda: str(value.bool_value).lower(),
+        ParameterType.PARAMETER_INTEGER: lambda: str(value.integer_value),
+        ParameterType.PARAMETER_DOUBLE: lambda: f"{value.double_value:g}",
+        ParameterType.PARAMETER_STRING: lambda: str(value.string_value),
+    }
+    return printable(kinds.get(value.type, lambda: "a list")())
+
+
+def _way(track: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+    """m, without jumps."""
+    strides = np.hypot(*np.diff(track[:, :2], axis=0).T) if len(track) > 1 else np.empty(0)
+    return float(math.fsum(strides[strides <= LONGEST_STRIDE].tolist()))

@@ -1,0 +1,211 @@
+"""Evidence about a reward: every transition of the model evaluated in the student's process, and what follows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+import numpy as np
+
+from grader.assignment import Assignment, Criterion
+from grader.evidence import behaviours, exploit, value_iteration
+from grader.evidence.reward_training import Budget, success
+from grader.evidence.symmetry import Turned, mirrored, rotated
+from grader.evidence.task_model import Floats, Model, build
+from grader.evidence.transitions import KNOWN, Steps, transition
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.sandbox.confinement import Level
+from kit.host.student_functions import StudentFunctions
+from kit.host.wire import printable
+from kit.learning.environment.transition import Transition
+from kit.learning.training.student_reward import FUNCTION, RewardFileError, columns_of, parameters_of
+from kit.world.problems import suggestion
+
+SHUFFLE: Final = 1234
+"""The seed of the order in which the same transitions are asked for a second time."""
+MOST_SAMPLES: Final = 4000
+"""Transitions that the mirrored and the rotated task are compared on."""
+
+
+class Exam:
+    """One reward function. What is asked of it first is asked of it in its process; it is asked once."""
+
+    label = "the reward"
+    secret = False
+
+    def __init__(self, file: Path, assignment: Assignment, level: Level) -> None:
+        self.model: Model = build(assignment.task)
+        self.level = level
+        self.failure: Failure | None = None
+        self.printed: tuple[str, ...] = ()
+        self.steps = 0
+        self._file = file
+        self._limits = assignment.limits
+        self._names: tuple[str, ...] = ()
+        self._trained: dict[Budget, float] = {}
+        try:
+            self._names = signature(file)
+            self.rewards: Floats = self._asked(Steps.all(self.model)).reshape(self.model.states, -1)
+        except GuestError as error:
+            self.failure = error.failure
+
+    @property
+    def outcome(self) -> str:
+        return "examined" if self.failure is None else f"stopped ({self.failure.kind.value})"
+
+    @cached_property
+    def plan(self) -> value_iteration.Plan:
+        return value_iteration.plan(self.model, self.rewards)
+
+    @cached_property
+    def judged(self) -> value_iteration.Outcome:
+        return value_iteration.judge(self.plan)
+
+    @cached_property
+    def is_pure(self) -> bool:
+        """Whether the same transitions give the same rewards to the bit: in another order, and in a fresh process."""
+        steps = Steps.all(self.model)
+        order = np.random.default_rng(SHUFFLE).permutation(len(steps))
+        shuffled = steps.at(order)
+        try:
+            with self._open() as functions:
+                first = self._call(functions, shuffled)
+                second = self._call(functions, steps)
+        except GuestError:
+            return False
+        known = self.rewards.reshape(-1)
+        return bool(np.array_equal(first, known[order]) and np.array_equal(second, known))
+
+    @cached_property
+    def symmetry(self) -> float:
+        """The share of transitions whose reward stays the same when the whole task is mirrored and when it is turned."""
+        everything = Steps.all(self.model)
+        # In the target's middle there is no direction to the target.
+        elsewhere = np.flatnonzero(
+            ~everything.reached & (self.model.cell_of(everything.states) != self.model.target)
+        )
+        pick = np.random.default_rng(SHUFFLE).permutation(elsewhere)[:MOST_SAMPLES]
+        sample = everything.at(pick)
+        known = self.rewards.reshape(-1)[pick]
+        same = np.ones(len(sample), dtype=np.bool_)
+        turns: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
+        try:
+            with self._open() as functions:
+                for turned in turns:
+                    same &= np.isclose(self._call(functions, turned), known, rtol=1e-6, atol=1e-9)
+        except GuestError:
+            return 0.0
+        return float(same.mean())
+
+    @cached_property
+    def pairs(self) -> tuple[behaviours.Pair, ...]:
+        """Behaviours compared by what the reward pays them in all."""
+        return behaviours.pairs(self.model, self.rewards)
+
+    @cached_property
+    def loops(self) -> tuple[behaviours.Loop, ...]:
+        return behaviours.loops(self.model, self.rewards)
+
+    def trained(self, budget: Budget) -> float:
+        """How well a robot drives that was trained with this reward; 0 where the reward fails on the way."""
+        if budget not in self._trained:
+            try:
+                with self._open() as functions:
+                    self._trained[budget] = success(lambda each: self._paid(functions, each), budget)
+            except GuestError:
+                self._trained[budget] = 0.0
+        return self._trained[budget]
+
+    def remark(self, check: str, params: Any = None) -> str:
+        """What else there is to say in the light of a check."""
+        if check == "ordered":
+            wrong = next((pair for pair in self.pairs if not pair.is_right), None)
+            return "" if wrong is None else str(wrong)
+        if check == "loops":
+            paid = next((loop for loop in self.loops if loop.pays), None)
+            return "" if paid is None else str(paid)
+        return ""
+
+    def picture(self, check: str = "") -> str:
+        """What a robot would do that has learnt this reward perfectly, where it does not do what was meant."""
+        if self.failure is not None or self.judged.exploit is None:
+            return ""
+        way = value_iteration.follow(self.plan, self.judged.exploit, self.model.task.max_steps)
+        return value_iteration.picture(self.model, way)
+
+    def film(self, file: Path) -> None:
+        """Keeps what ``picture`` shows as a recording. Raises OSError."""
+        assert self.judged.exploit is not None, "there is no picture"
+        exploit.keep(
+            self.model,
+            value_iteration.follow(self.plan, self.judged.exploit, self.model.task.max_steps),
+            file,
+        )
+
+    def _asked(self, steps: Steps) -> Floats:
+        with self._open() as functions:
+            try:
+                return self._call(functions, steps)
+            finally:
+                self.printed = tuple(printable(line.text) for line in functions.take_output().lines)
+
+    def _open(self) -> StudentFunctions:
+        return StudentFunctions(self._file, limits=self._limits, level=self.level)
+
+    def _call(self, functions: StudentFunctions, steps: Steps) -> Floats:
+        self.steps += len(steps)
+        return self._paid(functions, transition(steps))
+
+    def _paid(self, functions: StudentFunctions, step: Transition) -> Floats:
+        """(n,) what the student's reward pays for n transitions."""
+        return np.array(functions.call_columns(FUNCTION, columns_of(step, self._names)), dtype=np.float64)
+
+
+class Examination:
+    """The one piece of evidence that there is of a reward."""
+
+    def __init__(self, assignment: Assignment, file: Path, *, level: Level, may_fall: bool) -> None:
+        self.level = level
+        while True:
+            self._exam = Exam(file, assignment, self.level)
+            failure = self._exam.failure
+            if (
+                failure is None
+                or failure.kind is not FailureKind.CONFINEMENT
+                or not may_fall
+                or self.level == 0
+            ):
+                break
+            self.level = Level(self.level - 1)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Every process has ended already."""
+
+    def evidence(self, criterion: Criterion) -> Sequence[Exam]:
+        return [self._exam]
+
+    def all(self) -> Sequence[Exam]:
+        return [self._exam]
+
+
+def signature(file: Path) -> tuple[str, ...]:
+    """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
+    try:
+        names = parameters_of(file)
+    except RewardFileError as error:
+        # Where the snapshot lies is nothing to tell.
+        message = str(error).replace(f"{file}", file.name)
+        raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
+    unknown = [name for name in names if name not in KNOWN]
+    if unknown:
+        message = f"{file.name}: {FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], KNOWN)}"
+        raise GuestError(Failure(FailureKind.IMPORT, message))
+    return names

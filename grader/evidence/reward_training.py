@@ -1,0 +1,62 @@
+"""Training with a student's reward, within a budget of steps: what was learned is judged by the true goal.
+
+The trainer, its settings, the seeds and the episodes of the exam are the grader's; the student's process only says
+what each step is worth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import fmean
+
+from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.evaluation import Examiner, seed_for
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.optional_deps import require_learner
+from kit.learning.training.presets import find_preset
+from kit.learning.training.training import make_learner
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """How one trains, and how often."""
+
+    task: str = "turn"
+    algorithm: str = "q-learning"
+    """``q-learning`` and ``sarsa`` need no extra package; the others want the extra ``learn``."""
+    steps: int = 50_000
+    seeds: int = 3
+    """Trainings, each from nothing; one alone may be lucky."""
+    episodes: int = 100
+    """Of each exam, for each case of the task."""
+
+
+class Quiet:
+    """Looks on and says nothing."""
+
+    def between(self) -> None:
+        """Nothing to do between two updates."""
+
+    def saw(self, episode: Episode) -> None:
+        """Nor after an episode."""
+
+
+def success(reward: RewardFunction, budget: Budget) -> float:
+    """The share of episodes in which the target is reached after training with ``reward``, the mean of all seeds.
+
+    Raises GuestError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
+    something that is not here.
+    """
+    algorithm, choice = find_algorithm(budget.algorithm), TaskChoice(budget.task)
+    if algorithm.neural:
+        require_learner()
+    task = choice.resolve()
+    preset = find_preset("kit", algorithm, budget.task)
+    shares = []
+    for seed in range(budget.seeds):
+        learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
+        learner.learn(budget.steps, Quiet())
+        shares.append(Examiner(task).test(learner.policy(), budget.episodes, seed_for(seed, "exam")).mean)
+    return fmean(shares)

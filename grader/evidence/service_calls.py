@@ -1,0 +1,88 @@
+"""Services of the program's own that are called while it drives, and what it answers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Final
+
+from kit.host.wire import printable
+from kit.msg.conversion import from_dict, to_dict
+from kit.msg.interfaces import find_service
+from kit.ros.execution.task import Future
+from kit.ros.graph.graph import Graph
+from kit.ros.node.client import Client
+from kit.world.yaml_section import Section
+
+SILENCE: Final = "no answer"
+NOBODY: Final = "no such service"
+
+LONGEST_ANSWER: Final = 2000
+"""Characters that are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """One call, at some time of the episode."""
+
+    name: str
+    at_s: float
+    """Simulated."""
+    service: str
+    """By full name, such as ``/driver/set_parameters``."""
+    type: str
+    request: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+
+
+def read_call(section: Section) -> Call:
+    """Notes mistakes, and finishes the section."""
+    given = section.section("request", None)
+    request: Mapping[str, Any] = {} if given is None else given.rest()
+    made = Call(
+        section.name("name"),
+        section.number("at", minimum=0),
+        section.name("service"),
+        section.name("type"),
+        MappingProxyType(dict(request)),
+    )
+    try:
+        from_dict(find_service(made.type).Request, made.request)
+    except (LookupError, ValueError, TypeError, AttributeError) as error:
+        section.error(f"no such call: {error}", "type")
+    section.finish()
+    return made
+
+
+class Caller:
+    """Makes the calls when their time has come. Never waits for an answer."""
+
+    def __init__(self, graph: Graph, calls: tuple[Call, ...]) -> None:
+        self._calls = sorted(calls, key=lambda call: call.at_s)
+        self._node = graph.create_node("grader_calls") if calls else None
+        self._clients: dict[str, Client[Any, Any]] = {}
+        self._futures: dict[str, Future[Any] | None] = {}
+
+    def look(self, time_s: float) -> None:
+        """Once a tick."""
+        while self._calls and self._calls[0].at_s <= time_s:
+            call = self._calls.pop(0)
+            assert self._node is not None
+            kind = find_service(call.type)
+            if call.service not in self._clients:
+                self._clients[call.service] = self._node.create_client(kind, call.service)
+            client = self._clients[call.service]
+            request = from_dict(kind.Request, call.request)
+            self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
+
+    def answers(self) -> Mapping[str, str]:
+        """By call, what was answered, as JSON in one line; or ``NOBODY`` or ``SILENCE``."""
+        return {name: _said(future) for name, future in self._futures.items()}
+
+
+def _said(future: Future[Any] | None) -> str:
+    if future is None:
+        return NOBODY
+    answer = future.result() if future.done() else None
+    return SILENCE if answer is None else printable(json.dumps(to_dict(answer)))[:LONGEST_ANSWER]

@@ -1,0 +1,281 @@
+"""Evidence about a training's settings: trained as they say, over several seeds; then the policy it kept is examined.
+
+No program of a student's runs. The task, its reward, the budget and the exam are the assignment's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Final
+
+from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.confidence_intervals import at_least
+from kit.learning.policies.evaluation import Examiner, seed_for
+from kit.learning.policies.policies import Policy
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.learner import Halt, Learner
+from kit.learning.training.optional_deps import require_learner
+from kit.learning.training.presets import Falling, Preset, Tabular, find_preset
+from kit.learning.training.stopping_rules import (
+    Count,
+    Counts,
+    Memory,
+    Strategy,
+    TrainUntil,
+    UntilSure,
+    accuracy,
+)
+from kit.learning.training.training import make_learner
+
+UNREACHABLE: Final = 2.0
+"""A goal for trainings that no test is to stop."""
+CONFIRMING: Final = 200
+"""Episodes of each case in the longer test of those that want to be sure."""
+PICTURE_ROWS: Final = 16
+
+
+class Stop(Enum):
+    """When a training stops."""
+
+    NEVER = "never"
+    FIRST = "first"
+    """At the first test that goes well."""
+    SURE = "sure"
+    """When a longer test makes it sure."""
+
+
+class Order(Enum):
+    """How the cases follow one another."""
+
+    MIXED = "mixed"
+    APART = "apart"
+    """First all training on the first case, then all on the next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """The kind's task: what is to be learned, and how much may be spent."""
+
+    choice: TaskChoice
+    cases: tuple[str, ...]
+    algorithms: tuple[str, ...]
+    steps: int
+    """At most, of each training."""
+    seeds: tuple[int, ...]
+    secret_seeds: tuple[int, ...]
+    """Instead of the others, where the grade is given."""
+    episodes: int
+    """Of each case in the exam of each training."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a student hands in."""
+
+    algorithm: str
+    learning_rate: Falling
+    exploration: Falling
+    discount: float
+    edges: tuple[float, ...]
+    worlds: int
+    train_on: tuple[str, ...]
+    order: Order
+    batch: int
+    """Steps between two tests."""
+    test_episodes: int
+    """In all, of each test."""
+    stop: Stop
+    goal: float
+    keeps_best: bool
+    steps: int
+    """At most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tested:
+    """One test on the way."""
+
+    steps: int
+    counts: Counts
+    kept: bool
+    """Whether the policy of this moment was the best so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class Training:
+    """What came of one training."""
+
+    number: int
+    steps: int
+    tests: tuple[Tested, ...]
+    claimed: float
+    """The accuracy that its own last word gives the policy kept; 0 if it was never tested."""
+    exam: Counts
+    """Of the policy kept, on episodes that nothing else has seen."""
+
+    @property
+    def accuracy(self) -> float:
+        return accuracy(self.exam)
+
+
+@dataclass(frozen=True, slots=True)
+class Trainings:
+    """What was found."""
+
+    budget: Budget
+    plan: Plan
+    each: tuple[Training, ...]
+
+    def pooled(self, case: str) -> Count:
+        """Of all exams."""
+        counts = [training.exam[case] for training in self.each]
+        return Count(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+
+    def surely(self, *cases: str) -> float:
+        """What the success in these cases together is not below, with 95 % confidence (Wilson)."""
+        counts = [self.pooled(case) for case in cases or self.budget.cases]
+        return at_least(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+
+    @property
+    def worst_case(self) -> str:
+        return min(self.budget.cases, key=lambda case: self.pooled(case).share)
+
+    def picture(self) -> str:
+        """The tests of the worst training, a row each."""
+        worst = min(self.each, key=lambda training: training.accuracy)
+        cases = self.budget.cases
+        rows = [f"training {worst.number}:  steps  " + "  ".join(f"{case:>12}" for case in cases)]
+        skipped = max(0, len(worst.tests) - PICTURE_ROWS)
+        for test in worst.tests[skipped:]:
+            bars = "  ".join(
+                f"{_bar(test.counts[case].share)} {test.counts[case].share:4.2f}" for case in cases
+            )
+            rows.append(f"{test.steps:18,}  {bars}{'  best so far' if test.kept else ''}")
+        bars = "  ".join(f"{_bar(worst.exam[case].share)} {worst.exam[case].share:4.2f}" for case in cases)
+        return "\n".join([*rows, f"{'exam':>18}  {bars}"])
+
+
+def _bar(share: float) -> str:
+    return f"{'#' * round(7 * share):7}"
+
+
+def train(plan: Plan, budget: Budget, seeds: tuple[int, ...]) -> Trainings:
+    """Trains as planned, once for each seed. Raises LearnerMissing."""
+    if find_algorithm(plan.algorithm).neural:
+        require_learner()
+    return Trainings(
+        budget, plan, tuple(_trained(plan, budget, seed, number) for number, seed in enumerate(seeds, 1))
+    )
+
+
+def _trained(plan: Plan, budget: Budget, seed: int, number: int) -> Training:
+    watch = _Watch(plan, budget, seed)
+    stages = [plan.train_on] if plan.order is Order.MIXED else [(case,) for case in plan.train_on]
+    learner: Learner | None = None
+    for place, on in enumerate(stages, 1):
+        learner = _learner(plan, budget, on, seed_for(seed, "training", place), learner)
+        watch.learner = learner
+        try:
+            learner.learn(plan.steps * place // len(stages), watch)
+        except Halt:
+            break
+    assert learner is not None  # a plan names at least one case
+    watch.look_once_more()
+    policy = watch.best if plan.keeps_best and watch.best is not None else learner.policy()
+    claimed = watch.best_accuracy if plan.keeps_best else watch.last_accuracy
+    exam = watch.examine(policy, budget.episodes, seed_for(seed, "exam"))
+    return Training(number, learner.steps, tuple(watch.tests), claimed, exam)
+
+
+def _learner(plan: Plan, budget: Budget, on: tuple[str, ...], seed: int, before: Learner | None) -> Learner:
+    """One who learns these cases, and knows what the one before knew."""
+    algorithm = find_algorithm(plan.algorithm)
+    choice = replace(budget.choice, on=on)
+    preset = find_preset("kit", algorithm, budget.choice.task)
+    learner = make_learner(
+        algorithm, _adapted(preset, plan, algorithm.neural), choice, choice.resolve(), seed=seed
+    )
+    if before is not None:
+        learner.load(before.save())
+    return learner
+
+
+def _adapted(preset: Preset, plan: Plan, neural: bool) -> Preset:
+    if neural:
+        return replace(preset, worlds=plan.worlds, learning_rate=plan.learning_rate, steps=plan.steps)
+    settings = Tabular(plan.learning_rate, plan.discount, plan.exploration, plan.edges)
+    return replace(preset, settings=settings, worlds=plan.worlds, steps=plan.steps)
+
+
+def _strategy(plan: Plan, cases: int) -> Strategy:
+    if plan.stop is Stop.SURE:
+        screening = -(-plan.test_episodes // cases)
+        confirming = max(CONFIRMING, screening)
+        return UntilSure(plan.batch, plan.goal, screening, confirming, patience=0)
+    goal = plan.goal if plan.stop is Stop.FIRST else UNREACHABLE
+    return TrainUntil(plan.batch, plan.test_episodes, goal)
+
+
+class _Watch:
+    """Tests the learner now and then, keeps the best policy, and stops as planned."""
+
+    learner: Learner
+
+    def __init__(self, plan: Plan, budget: Budget, seed: int) -> None:
+        self._examiner = Examiner(budget.choice.resolve())
+        self._strategy = _strategy(plan, len(budget.cases))
+        self._every, self._seed = plan.batch, seed
+        self._next, self._looks = plan.batch, 0
+        self._memory = Memory()
+        self.tests: list[Tested] = []
+        self.best: Policy | None = None
+        self.best_accuracy = self.last_accuracy = 0.0
+
+    @property
+    def cases(self) -> int:
+        return len(self._examiner.cases)
+
+    def between(self) -> None:
+        if self.learner.steps >= self._next:
+            self._next = self.learner.steps + self._every
+            self._look()
+
+    def saw(self, episode: Episode) -> None:
+        """What training does is not what counts."""
+
+    def look_once_more(self) -> None:
+        """At the end, if the last steps have not been looked at."""
+        if not self.tests or self.tests[-1].steps < self.learner.steps:
+            try:
+                self._look()
+            except Halt:
+                return
+
+    def __call__(self, episodes: int) -> Counts:
+        """A test of the present policy."""
+        self._looks += 1
+        seed = seed_for(self._seed, "test", self._looks)
+        return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
+
+    def examine(self, policy: Policy, episodes: int, seed: int) -> Counts:
+        """(policy, episodes of each case, seed) -> what came of them."""
+        result = self._examiner.test(policy, episodes, seed)
+        return {case.case: Count(case.reached, case.episodes) for case in result.cases}
+
+    def _look(self) -> None:
+        verdict = self._strategy.look(self.learner.steps, self._memory, self)
+        self._memory = verdict.memory
+        self.tests.append(Tested(self.learner.steps, verdict.counts, verdict.keep))
+        self.last_accuracy = accuracy(verdict.counts)
+        if verdict.keep:
+            self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
+        if verdict.stop:
+            raise Halt(verdict.reason)
+
+
+def by_case(training: Training) -> Mapping[str, float]:
+    """The exam's share in each case."""
+    return {case: count.share for case, count in training.exam.items()}

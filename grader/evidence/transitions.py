@@ -1,0 +1,118 @@
+"""Transitions of the model as the kit's own record: what every reward gets, the kit's and a student's, here as in
+training."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from grader.evidence.task_model import CELL, LASTS, MOVES, Flags, Floats, Integers, Model
+from kit.learning.environment.actions import Move
+from kit.learning.environment.observations import RAYS
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.transition import Transition
+
+KNOWN: Final = (
+    *(
+        "collided",
+        "reached",
+        "hit",
+        "in_target",
+        "was_in_target",
+        "move",
+        "previous_move",
+        "pose",
+        "previous_pose",
+    ),
+    *(
+        "target",
+        "to_go",
+        "previous_to_go",
+        "front",
+        "distance",
+        "previous_distance",
+        "bearing",
+        "previous_bearing",
+    ),
+    "max_steps",
+)
+"""The facts of a step that the model has. The others (the step's number, turns made so far, the lidar's rays) depend
+on what the model leaves out."""
+
+KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
+"""The kit's number of each of the model's moves; the last: none."""
+
+SIGHT: Final = 2.0
+"""m: no farther does the agent of the kit's tasks see (dissertation, section 3.1.2)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Some transitions of a model: which state, which move."""
+
+    model: Model
+    states: Integers
+    moves: Integers
+
+    def __len__(self) -> int:
+        return len(self.states)
+
+    @classmethod
+    def all(cls, model: Model) -> Steps:
+        """Every one there is, state by state."""
+        states = np.repeat(np.arange(model.states), len(MOVES))
+        return cls(model, states, np.tile(np.arange(len(MOVES)), model.states))
+
+    def at(self, index: Integers) -> Steps:
+        """Some of them, in another order."""
+        return Steps(self.model, self.states[index], self.moves[index])
+
+    @cached_property
+    def after(self) -> Integers:
+        return self.model.next[self.states, self.moves]
+
+    @property
+    def hit(self) -> Flags:
+        return self.model.hit[self.states, self.moves]
+
+    @property
+    def reached(self) -> Flags:
+        return self.model.reached[self.states, self.moves]
+
+
+def rewards_of(reward: RewardFunction, model: Model) -> Floats:
+    """(states, moves) what one of the kit's rewards pays for every transition.
+
+    What it knows of an episode's past beyond the last move is not part of the model's states: every transition stands
+    for one at an episode's beginning.
+    """
+    return np.asarray(reward(transition(Steps.all(model))), dtype=np.float64).reshape(model.states, -1)
+
+
+def transition(steps: Steps) -> Transition:
+    """The kit's record of these transitions, for one robot."""
+    model, count = steps.model, len(steps)
+    before, after = model.cell_of(steps.states), model.cell_of(steps.after)
+    front = np.minimum(model.ahead[after, model.heading_of(steps.after)], SIGHT)
+    zeros = np.zeros((count, 1), dtype=np.int64)
+    return Transition(
+        case=np.zeros(count, dtype=np.int64),
+        step=np.ones(count, dtype=np.int64),
+        max_steps=model.task.max_steps,
+        hit=steps.hit[:, None],
+        in_target=steps.reached[:, None],
+        was_in_target=zeros.astype(np.bool_),
+        move=KIT_MOVES[steps.moves][:, None],
+        previous_move=KIT_MOVES[steps.states % LASTS][:, None],
+        pose=model.pose(steps.after)[:, None, :],
+        previous_pose=model.pose(steps.states)[:, None, :],
+        target=np.broadcast_to((model.cells[model.target] + 0.5) * CELL, (count, 2)),
+        to_go=model.to_go[after][:, None],
+        previous_to_go=model.to_go[before][:, None],
+        full_turns=zeros,
+        forward_steps=zeros.astype(np.float64),
+        ranges=np.repeat(front[:, None, None], RAYS, axis=2),
+    )

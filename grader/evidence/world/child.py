@@ -1,0 +1,57 @@
+"""The process that reads and runs worlds: one question a line on standard input, one answer a line on standard output.
+
+Nothing of a student's runs in it; but a world may be huge, or slow, and then it is ended and nothing is lost.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import resource
+import sys
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from grader.evidence.world.facts import Order
+from grader.evidence.world.world_reading import facts_of
+from grader.evidence.world.world_run import run
+from kit.world.records import World
+
+
+def main() -> None:
+    """Reads the world named on the command line, then makes one run for each line."""
+    file, memory = Path(sys.argv[1]), int(sys.argv[2])
+    _limit(memory)
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever else prints, it does not print into the answers
+    facts, world = facts_of(file)
+    _say(answers, asdict(facts))
+    for line in sys.stdin:
+        _say(answers, asdict(run(_there(world), Order(**json.loads(line)))))
+
+
+def _there(world: World | None) -> World:
+    assert world is not None, "a world that cannot be read is not run"
+    return world
+
+
+def _say(answers: Any, answer: dict[str, Any]) -> None:
+    answers.write(json.dumps(answer) + "\n")
+    answers.flush()
+
+
+def _limit(memory: int) -> None:
+    """Ends with the parent, and takes no more address space than this."""
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(1, ctypes.c_ulong(9))  # PR_SET_PDEATHSIG, SIGKILL
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+"""Asking the process that reads and runs worlds, and ending it when it takes too long."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+from grader.evidence.world.facts import Order, RunFacts, WorldFacts
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.sandbox.limits import GIB
+
+READ_S: Final = 30.0
+"""Until a world is read; a start on a busy machine included."""
+MEMORY: Final = 4 * GIB
+"""Bytes of address space, most of which the simulator only reserves."""
+LONGEST_ANSWER: Final = 64_000_000
+"""Bytes."""
+
+
+class WorldProcess:
+    """One world in a process of its own. Everything raises GuestError when it takes too long or too much."""
+
+    def __init__(self, file: Path, memory: int = MEMORY) -> None:
+        self._child = subprocess.Popen(
+            [sys.executable, "-P", "-m", "grader.evidence.world.child", str(file), str(memory)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        self._rest = b""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def world(self, seconds: float = READ_S) -> WorldFacts:
+        """What was read; to be asked first, once."""
+        return WorldFacts.told(self._answer(seconds, "The world takes too long to read"))
+
+    def run(self, order: Order, seconds: float) -> RunFacts:
+        """One run, which may take so many seconds of the wall clock."""
+        assert self._child.stdin is not None
+        try:
+            self._child.stdin.write(json.dumps(asdict(order)).encode() + b"\n")
+            self._child.stdin.flush()
+        except OSError:
+            raise self._ended() from None
+        slow = f"{order.time_s:g} simulated seconds of this world take longer than {seconds:g} s"
+        return RunFacts.told(self._answer(seconds, slow))
+
+    def close(self) -> None:
+        """Ends the process and all that it started. May be called twice."""
+        if self._child.poll() is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._child.pid, signal.SIGKILL)
+        for pipe in (self._child.stdin, self._child.stdout, self._child.stderr):
+            if pipe is not None:
+                with contextlib.suppress(OSError):
+                    pipe.close()
+        self._child.wait()
+
+    def _answer(self, seconds: float, slow: str) -> Mapping[str, Any]:
+        assert self._child.stdout is not None
+        end = time.monotonic() + seconds
+        handle = self._child.stdout.fileno()
+        while b"\n" not in self._rest:
+            left = end - time.monotonic()
+            if left <= 0 or not select.select([handle], [], [], left)[0]:
+                self.close()
+                raise GuestError(
+                    Failure(FailureKind.TIMEOUT, f"{slow}: it has too many walls, rays or bodies.")
+                )
+            more = os.read(handle, 1 << 20)
+            if not more or len(self._rest) > LONGEST_ANSWER:
+                raise self._ended()
+            self._rest += more
+        line, _, self._rest = self._rest.partition(b"\n")
+        answer: Mapping[str, Any] = json.loads(line)
+        return answer
+
+    def _ended(self) -> BaseException:
+        """Why the process is no more: for want of memory, or because we have a mistake."""
+        assert self._child.stderr is not None
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._child.wait(5)
+        said = b"" if self._child.poll() is None else self._child.stderr.read(1 << 16)
+        self.close()
+        words = said.decode("utf-8", "replace").strip()
+        if "MemoryError" in words or "ArrayMemoryError" in words or self._child.returncode == -signal.SIGKILL:
+            return GuestError(Failure(FailureKind.MEMORY, "The world needs too much memory."))
+        return RuntimeError(f"the process that reads worlds has ended ({self._child.returncode}):\n{words}")

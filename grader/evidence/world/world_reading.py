@@ -1,0 +1,183 @@
+"""Reading a world that was handed in. Runs in the process that can be ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from grader.evidence.world.facts import (
+    Box,
+    Device,
+    Ends,
+    Joint,
+    Meeting,
+    Model,
+    Part,
+    Shape,
+    Triple,
+    View,
+    Walls,
+    WorldFacts,
+)
+from kit.geometry import Pose
+from kit.msg.message import type_name
+from kit.render.scene import Body, Disc, FloatArray, Scene
+from kit.render.world_text import plain_rows
+from kit.sim.loading import load
+from kit.sim.plugins.laser import LaserParams
+from kit.sim.simulation import Simulation, SimulationError
+from kit.world import records
+from kit.world.collision_rules import Thing, Touch, Touching
+from kit.world.problems import WorldError
+from kit.world.records import Circle, Layer, World
+
+COLUMNS, ROWS = 60, 16
+"""Of the picture."""
+
+
+def facts_of(file: Path) -> tuple[WorldFacts, World | None]:
+    """The world's facts, and the world itself if it can be read."""
+    try:
+        world = load(file)
+        simulation = Simulation(world)
+    except WorldError as error:
+        return WorldFacts(tuple(_without_place(str(each), file.parent) for each in error.problems)), None
+    except SimulationError as error:
+        return WorldFacts((f"{file.name}: {error}",)), None
+    return _facts(world, simulation), world
+
+
+def _without_place(problem: str, folder: Path) -> str:
+    """A problem without where the snapshot lies, which is nothing to tell, nor what only a command could allow."""
+    said = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
+    return said.removesuffix(": allow a wider one as root")
+
+
+def _facts(world: World, simulation: Simulation) -> WorldFacts:
+    touching = Touching(world)
+    maps = {layer.name: _map(layer) for layer in world.layers if layer.walls is not None}
+
+    def called(thing: Thing) -> tuple[str, str]:
+        return ("", maps[thing.body]) if thing.model is None else (thing.model, thing.body)
+
+    return WorldFacts(
+        layers=tuple(world.layer_bits),
+        walls=tuple(_walls(layer) for layer in world.layers if layer.walls is not None),
+        models=tuple(map(_model, world.models)),
+        meetings=tuple(
+            Meeting(called(a), called(b), verdict.touch is Touch.COLLIDES, verdict.why)
+            for a, b, verdict in touching.pairs()
+        ),
+        views=tuple(
+            View(laser.name, called(thing), seeing.sees, seeing.why)
+            for laser, thing, seeing in touching.views()
+        ),
+        ends=tuple(
+            Ends(model.name, end.topic, type_name(end.type), end.direction == "publish")
+            for model in world.models
+            for end in simulation.endpoints_of(model.name)
+        ),
+        picture=picture(world, simulation),
+    )
+
+
+def _map(layer: Layer) -> str:
+    assert layer.walls is not None
+    return layer.walls.file.name.partition(".")[0]
+
+
+def _walls(layer: Layer) -> Walls:
+    assert layer.walls is not None
+    points = layer.walls.segments.reshape(-1, 2)
+    box: Box | None = None
+    if len(points):
+        (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        box = left, bottom, right, top
+    return Walls(_map(layer), layer.walls.source.name, layer.names, box, len(layer.walls.local))
+
+
+def _model(model: records.Model) -> Model:
+    poses = {body.name: body.pose for body in model.bodies}
+    return Model(
+        model.name,
+        model.namespace,
+        _three(model.pose),
+        tuple(
+            Part(body.name, body.kind, _three(body.pose), tuple(map(_shape, body.footprints)))
+            for body in model.bodies
+        ),
+        tuple(_joint(joint, poses) for joint in model.joints),
+        tuple(map(_device, model.plugins)),
+    )
+
+
+def _shape(footprint: records.Footprint) -> Shape:
+    shape = footprint.shape
+    if isinstance(shape, Circle):
+        (x, y), radius = shape.center, shape.radius
+        kind, box = "circle", (x - radius, y - radius, x + radius, y + radius)
+    else:
+        xs, ys = zip(*shape.points, strict=True)
+        kind, box = "polygon", (min(xs), min(ys), max(xs), max(ys))
+    return Shape(kind, box, footprint.sensor, footprint.collision, footprint.density)
+
+
+def _joint(joint: records.Joint, poses: dict[str, Pose]) -> Joint:
+    one, other = joint.anchors
+    return Joint(
+        joint.name,
+        joint.kind,
+        (one.body, other.body),
+        (poses[one.body].point(*one.point), poses[other.body].point(*other.point)),
+    )
+
+
+def _device(plugin: records.PluginSpec) -> Device:
+    params = plugin.params
+    if isinstance(params, LaserParams):
+        rays = params.directions
+        return Device(plugin.name, plugin.type, params.sight.body, len(rays), rays[0], rays[-1], params.reach)
+    return Device(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
+
+
+def all_walls(world: World) -> FloatArray:
+    """(n, 4) every wall of the world, each once."""
+    unique = {layer.walls.file: layer.walls for layer in world.layers if layer.walls is not None}
+    return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
+
+
+def picture(
+    world: World,
+    simulation: Simulation,
+    *,
+    target: Disc | None = None,
+    trail: FloatArray | None = None,
+) -> str:
+    """The world as it stands, in plain characters."""
+    scene = Scene(
+        walls=all_walls(world),
+        bodies=tuple(_bodies(simulation)),
+        targets=() if target is None else (target,),
+        trails=() if trail is None else (trail,),
+    )
+    return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))
+
+
+def _bodies(simulation: Simulation) -> Iterator[Body]:
+    """One a model: its footprints, and the pose of its first body."""
+    outlines = simulation.outlines()
+    for name in simulation.model_names:
+        own = [each for each in outlines if each.model == name]
+        yield Body(
+            name,
+            simulation.pose(name),
+            tuple(np.array(each.points) for each in own if not each.radius),
+            tuple(Disc(*each.points[0], each.radius) for each in own if each.radius),
+            robot=any(end.direction == "subscribe" for end in simulation.endpoints_of(name)),
+        )
+
+
+def _three(pose: Pose) -> Triple:
+    return pose.x, pose.y, pose.theta

@@ -1,0 +1,203 @@
+"""Running a world that was handed in, with a driver of ours. Runs in the process that can be ended."""
+
+from __future__ import annotations
+
+import json
+import math
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from grader.evidence.world.facts import Heard, Order, RunFacts
+from grader.evidence.world.path_search import flood
+from grader.evidence.world.world_reading import all_walls, picture
+from kit.host.failure import GuestError
+from kit.host.node_process import Guest
+from kit.msg.message import Message
+from kit.msg.nav_msgs import Odometry
+from kit.msg.sensor_msgs import LaserScan
+from kit.render.scene import Disc, FloatArray
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
+from kit.run.metrics import Trip
+from kit.run.runner import Runner
+from kit.sim.simulation import Simulation
+from kit.world.catalogue import Case
+from kit.world.hull import convex_hull
+from kit.world.records import Circle, Model, World
+
+STEP: Final = 0.01
+"""s"""
+SETTLE_S: Final = 0.5
+"""Time that joints get to pull their bodies together."""
+LOOK_EVERY: Final = 5
+"""Ticks between two points of the trail, and two looks at the joints."""
+WORLD_NODE: Final = "/flatland_server"
+
+
+class Ear:
+    """Counts what the world says on each topic, and how much the readings of a laser or an odometry spread."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._counts: dict[str, int] = {}
+        self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
+        self.stop = graph.watch(self._hear)
+
+    def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+        if node.handle.full_name != WORLD_NODE:
+            return
+        count = self._counts[name] = self._counts.get(name, 0) + 1
+        if (read := _readings(message)) is not None:
+            # Welford's running mean and sum of squares; nan, for nothing hit, stays nan.
+            mean, squares = self._scans.get(name, (np.zeros_like(read), np.zeros_like(read)))
+            ahead = mean + (read - mean) / count
+            self._scans[name] = ahead, squares + (read - mean) * (read - ahead)
+
+    def heard(self) -> tuple[Heard, ...]:
+        return tuple(Heard(topic, count, self._spread(topic, count)) for topic, count in self._counts.items())
+
+    def _spread(self, topic: str, count: int) -> float:
+        if topic not in self._scans or count < 2:
+            return 0.0
+        variances = self._scans[topic][1] / (count - 1)
+        variances = variances[np.isfinite(variances)]
+        return float(math.sqrt(variances.mean())) if len(variances) else 0.0
+
+
+def _readings(message: Message) -> FloatArray | None:
+    """The numbers of a message that noise falls on: a scan's ranges, an odometry's place."""
+    if isinstance(message, LaserScan):
+        return np.array(message.ranges, dtype=np.float64)
+    if isinstance(message, Odometry):
+        at = message.pose.pose.position
+        return np.array([at.x, at.y])
+    return None
+
+
+class Eye:
+    """Remembers where the robot went, and how far joints were pulled apart."""
+
+    def __init__(self, model: Model | None, world: World) -> None:
+        self._model = model
+        self._world = world
+        self.trail: list[tuple[float, float]] = []
+        self.gap, self.widest = 0.0, ""
+
+    def accepted(self, topic: str, message: Any) -> None:
+        """Only what moves counts."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        if simulation.tick % LOOK_EVERY:
+            return
+        if self._model is not None:
+            x, y, _ = simulation.pose(self._model.name)
+            self.trail.append((x, y))
+        if simulation.tick * STEP < SETTLE_S:
+            return
+        poses = {(body.model, body.body): body.pose for body in simulation.state().bodies}
+        for model in self._world.models:
+            for joint in model.joints:
+                one, other = (poses[model.name, end.body].point(*end.point) for end in joint.anchors)
+                if (apart := math.dist(one, other)) > self.gap:
+                    self.gap, self.widest = apart, joint.name
+
+
+def run(world: World, order: Order) -> RunFacts:
+    """The world for as long as the order says, or until the target is reached."""
+    graph = Graph(log_sink=lambda record: None)
+    simulation = Simulation(world, seed=order.seed, step_size=STEP)
+    runner = Runner(simulation, graph)
+    driving = [m.name for m in world.models if any(p.type.endswith("Drive") for p in m.plugins)]
+    wanted = order.robot or next(iter(driving), "")
+    model = next((each for each in world.models if each.name == wanted), None)
+    case = None
+    if order.target is not None and model is not None:
+        case = Case("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
+    trip, eye, ear = Trip(model, case), Eye(model, world), Ear(graph)
+    runner.observers += [trip, eye]
+    problem, ticks = _drive(runner, trip, order, model, wanted in driving), simulation.tick
+    ear.stop()
+    score, radius = trip.score, 0.0 if model is None else width_of(model) / 2
+    way = closed = False
+    if model is not None:
+        way, closed = flood(all_walls(world), model.pose[:2], order.target, radius)
+    disc = None if order.target is None else Disc(*order.target, order.radius)
+    return RunFacts(
+        problem=problem,
+        seconds=ticks * STEP,
+        heard=ear.heard(),
+        reached_s=score.reached_s,
+        away=score.target_m if score.target_m is not None and math.isfinite(score.target_m) else None,
+        distance=score.distance_m,
+        bumps=score.bumps,
+        gap=eye.gap,
+        widest=eye.widest,
+        way=way,
+        closed=closed,
+        picture=picture(
+            world, simulation, target=disc, trail=np.array(eye.trail, dtype=np.float64).reshape(-1, 2)
+        ),
+    )
+
+
+def _drive(runner: Runner, trip: Trip, order: Order, model: Model | None, drives: bool) -> str:
+    """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
+    with ExitStack() as stack:
+        guest: Guest | None = None
+        if order.driver:
+            if model is None or not drives:
+                wanted = f"The model {order.robot}" if order.robot else "No model of this world"
+                return f"{wanted} has {'no' if order.robot else 'a'} drive for our driver to move."
+            try:
+                guest = Guest.start(
+                    runner.graph, Path(order.driver), args=_told(model, order), seed=order.seed
+                )
+            except GuestError as error:
+                return f"Our driver does not start: {error}"
+            runner.guests.append(stack.enter_context(guest))
+        for _ in range(round(order.time_s / STEP)):
+            runner.tick()
+            if guest is not None and guest.failure is not None:
+                return f"Our driver stopped: {guest.failure}"
+            if order.until_reached and trip.score.reached_s is not None:
+                break
+    return ""
+
+
+def _told(model: Model, order: Order) -> list[str]:
+    """What a controller is told of its place, as ``kit.run.session`` tells it."""
+    x, y, theta = model.pose
+    told = {"home": f"[{x!r}, {y!r}, {theta!r}]", "model": json.dumps(model.name)}
+    if order.target is not None:
+        told["target"] = "[{!r}, {!r}]".format(*order.target)
+    words = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
+    return ["--ros-args", *words, *(["-r", f"__ns:=/{model.namespace}"] if model.namespace else [])]
+
+
+def width_of(model: Model) -> float:
+    """The narrowest [m] that all solid footprints of the model's bodies are together, seen from any side."""
+    points: list[tuple[float, float]] = []
+    for body in model.bodies:
+        for footprint in body.footprints:
+            if footprint.sensor or not footprint.collision:
+                continue
+            shape = footprint.shape
+            corners = shape.points if not isinstance(shape, Circle) else _rim(shape)
+            points += [body.pose.point(*corner) for corner in corners]
+    hull = np.array(convex_hull(tuple(points))).reshape(-1, 2) if len(points) > 2 else np.empty((0, 2))
+    if len(hull) < 3:
+        return 0.0
+    sides = np.roll(hull, -1, axis=0) - hull
+    across = np.column_stack([-sides[:, 1], sides[:, 0]]) / np.maximum(np.hypot(*sides.T)[:, None], 1e-12)
+    return float(min(np.ptp(hull @ direction) for direction in across))
+
+
+def _rim(shape: Circle) -> list[tuple[float, float]]:
+    (x, y), radius = shape.center, shape.radius
+    turns = (math.tau * i / 16 for i in range(16))
+    return [(x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns]

@@ -1,0 +1,69 @@
+"""Gradescope's ``results.json``. Everything is plain text there: no HTML and no markup is ever switched on."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+from grader.reports.cleaning import one_line, plain
+from grader.result import Result, Status, Test, Verdict, Visibility
+
+SHOWN: Final[Mapping[Visibility, str]] = MappingProxyType(
+    {
+        Visibility.VISIBLE: "visible",
+        Visibility.AFTER_DUE: "after_due_date",
+        Visibility.AFTER_PUBLISHED: "after_published",
+        Visibility.HIDDEN: "hidden",
+    }
+)
+
+
+def write(result: Result) -> str:
+    """A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0."""
+    content: dict[str, Any] = {
+        "execution_time": round(result.timing.wall_s, 2),
+        "output": plain("\n".join(result.notices)),
+        "output_format": "text",
+        "test_output_format": "text",
+        "test_name_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "extra_data": {
+            "submission": result.submission,
+            "assignment_version": result.assignment_version,
+            "level": result.level,
+            "seeds": result.seeds,
+            "verdict": result.verdict.value,
+        },
+    }
+    if result.verdict is Verdict.BROKEN:
+        content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
+    else:
+        content["score"] = result.points
+        content["tests"] = [_test(number, test) for number, test in enumerate(result.tests, 1)]
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _test(number: int, test: Test) -> dict[str, Any]:
+    parts = [test.rationale]
+    if test.actual and test.status is not Status.PASS:
+        parts.append(f"expected {test.expected}, got {test.actual}")
+    parts += [f"hint: {hint}" for hint in test.hints[:1]]
+    if test.log and test.is_judged:
+        parts.append(f"what it printed:\n{test.log}")
+    # The picture is ours and needs no cleaning: cleaned, it would lose its shape.
+    output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
+    return {
+        "name": one_line(test.title),
+        "number": str(number),
+        "score": test.points,
+        "max_score": test.max_points,
+        "status": "passed" if test.status is Status.PASS else "failed",
+        "output": output,
+        "output_format": "text",
+        "name_format": "text",
+        "tags": [test.status.value],
+        "visibility": SHOWN[test.visibility],
+    }

@@ -1,0 +1,168 @@
+"""What a controller of one robot or two must know of its world: the floor, the robots, their topics, the target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Final
+
+from kit.fields.derived_charges import derive, differences
+from kit.fields.layout import Layout, derived_layout, layout_of, read_layout
+from kit.fields.minima import Flow
+from kit.fields.occupancy_grid import Floor, open_floor
+from kit.fields.planner import Size, Ways
+from kit.fields.trajectory import Comfort, Ride, plan_ride
+from kit.geometry import Pose, wrap_angle
+from kit.world.problems import suggestion
+from kit.world.records import Circle, Footprint, Model, World
+
+SPARE: Final = 0.01
+"""m that a robot keeps from walls at least."""
+GAP: Final = 0.3
+"""m between two robots side by side; the dissertation's."""
+ABREAST: Final = 0.5
+"""rad: so far off they may face another way, or stand behind one another, and still count as side by side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    name: str
+    odometry: str
+    """The topic that says where it is."""
+    commands: str
+    """The topic that drives it."""
+    contacts: str | None
+    """The topic that says what touches it, if anything does."""
+    reach: float
+    """From its origin to its farthest point [m]."""
+    half_width: float
+    """m"""
+
+
+@dataclass(frozen=True)
+class Course:
+    """One task for the first two robots of a world, or for one."""
+
+    floor: Floor
+    layout: Layout
+    robots: tuple[Robot, ...]
+    target: tuple[float, float]
+    target_radius: float = 0.25
+
+    @classmethod
+    def open(
+        cls,
+        world_file: Path,
+        models: Sequence[str],
+        target: tuple[float, float],
+        target_radius: float = 0.25,
+        *,
+        derived: bool = False,
+        charges: Path | None = None,
+    ) -> Course:
+        """For the first two of ``models``, the left one first. ``derived``: do not use the charges drawn by hand.
+        ``charges``: a charge file to use instead of the world's own.
+
+        Raises WorldError for a wrong file, ValueError for a world without walls, LookupError for a missing model.
+        """
+        world, floor = open_floor(world_file)
+        if charges is not None:
+            layout = read_layout(charges, floor)
+        else:
+            layout = derived_layout(floor) if derived else layout_of(world_file, floor)
+        robots = tuple(_robot(_model(world, name)) for name in models[:2])
+        return cls(floor, layout, robots, target, target_radius)
+
+    @cached_property
+    def flow(self) -> Flow:
+        """Where the charges' forces lead."""
+        return Flow.of(self.layout, self.floor, self.target, self.target_radius)
+
+    @property
+    def size(self) -> Size:
+        reach = max(robot.reach for robot in self.robots) + SPARE
+        if len(self.robots) == 1:
+            return Size(reach, reach, f"the robot {self.robots[0].name}")
+        width = GAP / 2 + max(robot.half_width for robot in self.robots) + SPARE
+        return Size(max(width, reach), reach, "two robots side by side")
+
+    def ways(self, start: tuple[float, float]) -> Ways:
+        """Ways to the target. Raises Unreachable if none leads there from ``start``."""
+        ways = Ways.to(self.floor, self.target, self.size, start)
+        ways.check(start)
+        return ways
+
+    def ride(self, poses: Sequence[Pose], limits: Comfort = Comfort()) -> Ride:
+        """From where the robots are. Raises Unreachable."""
+        start = middle_of(poses)
+        way = self.ways(start).way(start, _common_heading(poses))
+        return plan_ride(way, poses, GAP, limits)
+
+    def hand_drawn_differences(self) -> tuple[str, ...]:
+        """Where the layout differs from the one derived from the walls, in words."""
+        return differences(self.layout.charges, derive(self.floor)) if self.layout.source else ()
+
+
+def middle_of(poses: Sequence[Pose]) -> tuple[float, float]:
+    return (
+        math.fsum(pose.x for pose in poses) / len(poses),
+        math.fsum(pose.y for pose in poses) / len(poses),
+    )
+
+
+def _common_heading(poses: Sequence[Pose]) -> float | None:
+    """The heading of robots that stand side by side; None for others, and for one alone, which turns on the spot."""
+    if len(poses) == 1:
+        return None
+    left, right = poses
+    apart = wrap_angle(right.theta - left.theta)
+    heading = left.theta + 0.5 * apart
+    abeam = wrap_angle(math.atan2(left.y - right.y, left.x - right.x) - math.pi / 2 - heading)
+    return heading if max(abs(apart), abs(abeam)) <= ABREAST else None
+
+
+def _model(world: World, name: str) -> Model:
+    for model in world.models:
+        if model.name == name:
+            return model
+    names = [model.name for model in world.models]
+    raise LookupError(f"{world.file}: there is no model {name} to drive: {suggestion(name, names)}")
+
+
+def _robot(model: Model) -> Robot:
+    drive = next((plugin for plugin in model.plugins if plugin.type == "DiffDrive"), None)
+    if drive is None or not isinstance(drive.params, Mapping):
+        raise LookupError(
+            f"{model.file}: {model.name} has no DiffDrive plugin, so nothing here can drive it."
+        )
+    bumper = next((plugin for plugin in model.plugins if plugin.type == "Bumper"), None)
+    touched = (
+        str(bumper.params.get("topic", "collisions"))
+        if bumper and isinstance(bumper.params, Mapping)
+        else None
+    )
+    points = [
+        (*body.pose.point(*corner), radius)
+        for body in model.bodies
+        for corner, radius in _corners(body.footprints)
+    ]
+    return Robot(
+        model.name,
+        odometry=model.topic(str(drive.params.get("odom_pub", "odometry/filtered"))),
+        commands=model.topic(str(drive.params.get("twist_sub", "cmd_vel"))),
+        contacts=None if touched is None else model.topic(touched),
+        reach=max((math.hypot(x, y) + radius for x, y, radius in points), default=0.0),
+        half_width=max((abs(y) + radius for _, y, radius in points), default=0.0),
+    )
+
+
+def _corners(footprints: Sequence[Footprint]) -> Iterator[tuple[tuple[float, float], float]]:
+    """Points of a body, with what lies around each of them [m]."""
+    for shape in (footprint.shape for footprint in footprints):
+        if isinstance(shape, Circle):
+            yield shape.center, shape.radius
+        else:
+            yield from ((point, 0.0) for point in shape.points)

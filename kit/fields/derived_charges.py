@@ -1,0 +1,135 @@
+"""A charge layout from a map's walls, so that a new map needs no hand work.
+
+Every wall's face that looks onto the reachable floor becomes a line charge. Corners that stand out into the
+floor (more than half a turn of free space around them) become point charges, and the lines that meet there one
+composite with them; so does all that such corners join. Lines that meet in a corner that recedes stay apart and
+both act, as in the dissertation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from kit.fields.charges import Charge, CompositeCharge, LineCharge, PointCharge, members
+from kit.fields.occupancy_grid import Floor
+
+Point = tuple[float, float]
+
+SAME: Final = 6
+"""Decimals [m] to which ends that meet agree."""
+STRAIGHT: Final = 1e-3
+"""A corner that turns by less [rad] is none."""
+LIKE: Final = 0.005
+"""Lines of two layouts whose ends are nearer [m] are the same."""
+NEAR: Final = 0.05
+"""And when nearer than this [m] meant to be."""
+
+
+def derive(floor: Floor) -> tuple[Charge, ...]:
+    """Charges of strength 1 for all walls that the floor's inside ends at."""
+    faces: list[list[float]] = floor.faces().tolist()
+    meeting: dict[Point, list[int]] = defaultdict(list)
+    for number, (ax, ay, bx, by) in enumerate(faces):
+        meeting[_same(ax, ay)].append(number)
+        meeting[_same(bx, by)].append(number)
+    group = list(range(len(faces)))
+    corners: dict[Point, int] = {}
+    for place, numbers in meeting.items():
+        if _stands_out(place, [faces[number] for number in numbers], floor):
+            for number in numbers[1:]:
+                _join(group, numbers[0], number)
+            corners[place] = numbers[0]
+    return tuple(_charges(faces, [_head(group, number) for number in range(len(faces))], corners, group))
+
+
+def differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> tuple[str, ...]:
+    """Where a layout differs from the one derived from the walls, in words."""
+    own, others = list(members(charges)), list(members(derived))
+    said = []
+    for charge in own:
+        nearest = min(others, key=lambda other: _gap(charge, other), default=None)
+        gap = math.inf if nearest is None else _gap(charge, nearest)
+        if nearest is None or gap > NEAR:
+            said.append(f"{_words(charge)} stands at no wall")
+        elif gap > LIKE:
+            said.append(f"{_words(charge)} is {gap:.3f} m off {_words(nearest)}")
+    said += [
+        f"{_words(other)} has no charge"
+        for other in others
+        if min((_gap(charge, other) for charge in own), default=math.inf) > NEAR
+    ]
+    return tuple(said)
+
+
+def _charges(
+    faces: list[list[float]], heads: list[int], corners: dict[Point, int], group: list[int]
+) -> Iterator[Charge]:
+    points: dict[int, list[Point]] = defaultdict(list)
+    for place, number in corners.items():
+        points[_head(group, number)].append(place)
+    lines: dict[int, list[LineCharge]] = defaultdict(list)
+    for (ax, ay, bx, by), head in zip(faces, heads, strict=True):
+        lines[head].append(LineCharge(*_same(ax, ay), *_same(bx, by)))
+    for head, those in lines.items():
+        if points[head]:
+            yield CompositeCharge(tuple(those), tuple(PointCharge(*place) for place in points[head]))
+        else:
+            yield from those
+
+
+def _stands_out(place: Point, walls: list[list[float]], floor: Floor) -> bool:
+    """Whether more than half a turn around the place is free, and floor."""
+    directions = sorted(_from(place, wall) for wall in walls)
+    gaps = [
+        (after - before, before)
+        for before, after in zip(directions, [*directions[1:], directions[0] + math.tau], strict=True)
+    ]
+    widest, before = max(gaps)
+    if widest <= math.pi + STRAIGHT:
+        return False
+    middle = before + 0.5 * widest
+    aside = 2.0 * floor.cell
+    return bool(
+        floor.inside[floor.cell_at(place[0] + aside * math.cos(middle), place[1] + aside * math.sin(middle))]
+    )
+
+
+def _from(place: Point, wall: list[float]) -> float:
+    """The direction [rad] in which a wall leaves one of its ends."""
+    ax, ay, bx, by = wall
+    if _same(ax, ay) == place:
+        return math.atan2(by - ay, bx - ax)
+    return math.atan2(ay - by, ax - bx)
+
+
+def _same(x: float, y: float) -> Point:
+    return round(x, SAME) + 0.0, round(y, SAME) + 0.0
+
+
+def _head(group: list[int], number: int) -> int:
+    while group[number] != number:
+        number = group[number]
+    return number
+
+
+def _join(group: list[int], one: int, other: int) -> None:
+    group[_head(group, other)] = _head(group, one)
+
+
+def _gap(one: PointCharge | LineCharge, other: PointCharge | LineCharge) -> float:
+    """How far apart [m] two charges of a kind are: the larger distance of their ends."""
+    if isinstance(one, PointCharge) and isinstance(other, PointCharge):
+        return math.hypot(one.x - other.x, one.y - other.y)
+    if isinstance(one, LineCharge) and isinstance(other, LineCharge):
+        (a, b), (c, d) = one.ends, other.ends
+        return min(max(math.dist(a, c), math.dist(b, d)), max(math.dist(a, d), math.dist(b, c)))
+    return math.inf
+
+
+def _words(charge: PointCharge | LineCharge) -> str:
+    if isinstance(charge, PointCharge):
+        return f"the point ({charge.x:g}, {charge.y:g})"
+    return f"the line ({charge.ax:g}, {charge.ay:g})-({charge.bx:g}, {charge.by:g})"

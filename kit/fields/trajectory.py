@@ -1,0 +1,218 @@
+"""A ride for passengers: along a way, side by side, within limits of speed, acceleration, turning and jerk."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from kit.fields.occupancy_grid import Floats
+from kit.fields.pair import Command
+from kit.geometry import Pose, wrap_angle
+
+TICK: Final = 0.1
+"""s: as often as odometry comes."""
+ALIGNED: Final = 0.05
+"""A robot no farther off its place [m] and heading [rad] need not line up first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comfort:
+    """What a passenger bears, in a chair a quarter as large as a real one."""
+
+    speed: float = 0.3
+    """m/s: of the faster robot; the dissertation's."""
+    acceleration: float = 0.2
+    """m/s^2: of the faster robot."""
+    easing: float = 0.8
+    """s: an acceleration comes and goes over so long: jerk stays below 2 * acceleration / easing where the way is
+    straight, and below twice that where two robots take a bend."""
+    turn_rate: float = 0.8
+    """rad/s"""
+    turn_acceleration: float = 1.0
+    """rad/s^2"""
+    sideways: float = 0.15
+    """m/s^2, towards the outside of a bend."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gains:
+    """Of following a moving reference (Kanayama and others, IROS 1990, equation 11)."""
+
+    along: float = 1.0
+    """1/s"""
+    aside: float = 12.0
+    """rad/m^2"""
+    heading: float = 2.0
+    """1/s"""
+    waits_at: float = 0.1
+    """A robot farther [m] from its place makes all wait for it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ride:
+    """Where each robot should be at every tick."""
+
+    poses: Floats
+    """(ticks, robots, 3) ``x y theta``"""
+
+    @property
+    def seconds(self) -> float:
+        return (len(self.poses) - 1) * TICK
+
+    def tracks(self) -> tuple[Floats, ...]:
+        """One (ticks, 2) for each robot."""
+        return tuple(self.poses[:, robot, :2] for robot in range(self.poses.shape[1]))
+
+
+class Follower:
+    """Keeps robots on a ride. Nobody is left behind: the ride's clock waits for whoever is not at its place."""
+
+    def __init__(self, ride: Ride, gains: Gains = Gains()) -> None:
+        self._ride = ride
+        self._gains = gains
+        self.tick = 0
+
+    @property
+    def is_over(self) -> bool:
+        return self.tick >= len(self._ride.poses) - 1
+
+    def commands(self, poses: Sequence[Pose]) -> tuple[Command, ...]:
+        """For the tick that begins now, with the robots where they are."""
+        here = [Pose(*place) for place in self._ride.poses[self.tick].tolist()]
+        late = max(math.dist(pose[:2], place[:2]) for pose, place in zip(poses, here, strict=True))
+        moves = not self.is_over and late <= self._gains.waits_at
+        there = [Pose(*place) for place in self._ride.poses[self.tick + 1].tolist()] if moves else here
+        self.tick += moves
+        return tuple(self._command(pose, *places) for pose, *places in zip(poses, here, there, strict=True))
+
+    def _command(self, pose: Pose, here: Pose, there: Pose) -> Command:
+        forward, turn = twist_between(here, there, TICK)
+        error = pose.relative(here)
+        heading = wrap_angle(error.theta)
+        gains = self._gains
+        return Command(
+            forward * math.cos(heading) + gains.along * error.x,
+            turn + gains.aside * forward * error.y + gains.heading * math.sin(heading),
+        )
+
+
+def plan_ride(way: Floats, robots: Sequence[Pose], gap: float, limits: Comfort = Comfort()) -> Ride:
+    """Along a way (k, 2), one robot on it or two beside it, the left one first, ``gap`` [m] apart.
+
+    Robots that do not stand where it begins, or do not face along it, first turn and drive there, one turn, one
+    straight, one turn.
+    """
+    offsets = [0.0] if len(robots) == 1 else [gap / 2, -gap / 2]
+    middle = _timed(way, max(offsets), limits)
+    together = np.stack([_beside(middle, offset) for offset in offsets], axis=1)
+    first = [Pose(*place) for place in together[0].tolist()]
+    lines = [_line_up(robot, place, limits) for robot, place in zip(robots, first, strict=True)]
+    longest = max(map(len, lines))
+    if longest == 1:
+        return Ride(together)
+    lined = np.stack(
+        [np.concatenate([line, np.repeat(line[-1:], longest - len(line), axis=0)]) for line in lines], axis=1
+    )
+    return Ride(np.concatenate((lined, together[1:])))
+
+
+def _timed(way: Floats, aside: float, limits: Comfort) -> Floats:
+    """(ticks, 3): poses along the way at each tick, for something that reaches ``aside`` [m] to both sides."""
+    steps = np.diff(way, axis=0)
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))))
+    turned = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    middles = 0.5 * (along[1:] + along[:-1])
+    heading = np.interp(along, middles, turned)
+    bend = np.gradient(heading, along)
+    change = np.abs(np.gradient(bend, along))
+    wider = 1.0 + np.abs(bend) * aside
+    small = 1e-6
+    speed = np.minimum.reduce(
+        [
+            limits.speed / wider,
+            limits.turn_rate / (np.abs(bend) + small),
+            np.sqrt(limits.sideways / (np.abs(bend) + small)),
+            np.sqrt(limits.turn_acceleration / (change + small)),
+        ]
+    )
+    speeds = _ramped(along, speed, limits.acceleration / wider)
+    at = _eased(along, speeds, limits.easing)
+    return np.column_stack([np.interp(at, along, values) for values in (way[:, 0], way[:, 1], heading)])
+
+
+def _ramped(along: Floats, most: Floats, acceleration: Floats) -> Floats:
+    """Speeds that begin and end at rest, below ``most``, and change by no more than the acceleration allows."""
+    speeds: list[float] = most.tolist()
+    speeds[0] = speeds[-1] = 0.0
+    steps = list(pairwise(range(len(speeds))))
+    for order in (steps, [(after, before) for before, after in reversed(steps)]):
+        for one, other in order:
+            reach = 2 * float(acceleration[one]) * abs(float(along[other] - along[one]))
+            speeds[other] = min(speeds[other], math.sqrt(speeds[one] ** 2 + reach))
+    return np.array(speeds)
+
+
+def _eased(along: Floats, speeds: Floats, easing: float) -> Floats:
+    """Where along the way one is at each tick. Speed over time is averaged over ``easing``, which leaves the way as
+    long as it is and takes the corners off the acceleration."""
+    length = np.diff(along)
+    mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), 1e-3)
+    times = np.concatenate(([0.0], np.cumsum(length / mean)))
+    window = max(1, round(easing / TICK))
+    ticks = np.arange(0.0, times[-1] + TICK, TICK)
+    at = np.interp(ticks, times, along)
+    padded = np.concatenate((np.zeros(window), at, np.full(window, along[-1])))
+    return np.convolve(padded, np.ones(window) / window, mode="valid")
+
+
+def _beside(middle: Floats, offset: float) -> Floats:
+    """(ticks, 3): to the left of the way by ``offset`` [m]."""
+    x, y, theta = middle.T
+    return np.column_stack((x - offset * np.sin(theta), y + offset * np.cos(theta), theta))
+
+
+def _line_up(robot: Pose, place: Pose, limits: Comfort) -> Floats:
+    """(ticks, 3): a turn, a straight, a turn; one row alone where none is needed."""
+    poses = [tuple(robot)]
+    away = math.dist(robot[:2], place[:2])
+    heading = robot.theta
+    if away > ALIGNED:
+        towards = math.atan2(place.y - robot.y, place.x - robot.x)
+        poses += _turned(poses[-1], towards, limits)
+        x, y, heading = poses[-1]
+        for way in _straight(away, limits.speed, limits.acceleration, limits.easing):
+            poses.append((x + way * math.cos(towards), y + way * math.sin(towards), heading))
+    if abs(wrap_angle(place.theta - heading)) > ALIGNED:
+        poses += _turned(poses[-1], place.theta, limits)
+    return np.array(poses)
+
+
+def _turned(pose: tuple[float, ...], to: float, limits: Comfort) -> list[tuple[float, ...]]:
+    """On the spot, to a heading."""
+    x, y, theta = pose
+    angle = wrap_angle(to - theta)
+    sign = math.copysign(1.0, angle)
+    turns = _straight(abs(angle), limits.turn_rate, limits.turn_acceleration, limits.easing)
+    return [(x, y, theta + sign * turn) for turn in turns]
+
+
+def _straight(length: float, speed: float, acceleration: float, easing: float) -> list[float]:
+    """How far one is at each tick after the first, from rest to rest."""
+    along = np.linspace(0.0, length, 50)
+    speeds = _ramped(along, np.full(50, speed), np.full(50, acceleration))
+    return [float(way) for way in _eased(along, speeds, easing)[1:]]
+
+
+def twist_between(here: Pose, there: Pose, seconds: float) -> Command:
+    """The constant twist that leads from one pose to the other, or nearly: along the arc over their chord."""
+    step = here.relative(there)
+    half = 0.5 * wrap_angle(step.theta)
+    stretch = half / math.sin(half) if abs(half) > 1e-9 else 1.0
+    return Command(
+        math.copysign(math.hypot(step.x, step.y), step.x) * stretch / seconds, 2.0 * half / seconds
+    )

@@ -1,0 +1,57 @@
+"""The child as a launch file: says what is to be started, and what follows from what happens to it."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from kit.host.child.command_loop import Conversation
+from kit.host.child.student_module import Program
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.wire import MAX_TEXT, Json
+from kit.ros import names_folder
+from kit.ros.launch.errors import LaunchError
+from kit.ros.launch.service import LaunchService, Request
+from kit.ros.launch.sources import description_of
+
+MODULE = "launch_file"
+"""The name of the module that the file becomes."""
+
+
+def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
+    """Loads the file and carries it out, until the kit hangs up; or only tells its arguments."""
+    sys.path.insert(0, str(names_folder()))
+    service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
+    try:
+        description = description_of(program.load(MODULE))
+        if start["only_arguments"]:
+            conversation.answer("ended", _arguments(description.get_launch_arguments()))
+            return
+        requests = service.begin(description)
+        while True:
+            conversation.answer("reply", service.wake_ns, _checked(requests))
+            _, now_ns, happened = conversation.next_question()
+            requests = service.go_on(now_ns, happened)
+    except LaunchError as problem:
+        raise _told(problem, program) from None
+
+
+def _arguments(declared: list[Json]) -> list[Json]:
+    return [["argument", each.name, each.shown_default, each.description, each.choices] for each in declared]
+
+
+def _checked(requests: list[Request]) -> list[Json]:
+    """Texts no longer than a frame's reader takes."""
+    return [
+        [kind, *(part[:MAX_TEXT] if isinstance(part, str) else part for part in content)]
+        for kind, *content in requests
+    ]
+
+
+def _told(problem: LaunchError, program: Program) -> GuestError:
+    file = program.relative(problem.place.file) if problem.place else None
+    line = problem.place.line if problem.place and file else None
+    text = str(problem)
+    if problem.place and file is None:
+        text = f"{problem.place.file}:{problem.place.line}: {text}"
+    return GuestError(Failure(FailureKind.EXCEPTION, text[:MAX_TEXT], file, line))

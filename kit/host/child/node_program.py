@@ -1,0 +1,113 @@
+"""The child as a ROS 2 program: its nodes in a graph whose time and messages come from the kit."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import ModuleType
+from typing import Final
+
+from kit.host.child.command_loop import Conversation
+from kit.host.child.student_module import Program
+from kit.host.child_bridge import Embassy
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.wire import Json
+from kit.ros import names_folder, shims_folder
+from kit.ros.execution.context import set_default_graph
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
+
+SWITCH_S: Final = 0.0005
+"""How long one of a package's threads may keep the interpreter while others want it."""
+
+
+def run(program: Program, conversation: Conversation, start: dict[str, Json]) -> None:
+    """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
+    sys.path.insert(0, str(names_folder()))
+    sys.argv = [program.file, *start["args"]]
+    embassy = Embassy(conversation, start["now"])
+    set_default_graph(embassy.graph)
+    _keep_simulated_time(embassy.graph)
+    embassy.hear(start["events"])
+    try:
+        if start.get("entry"):
+            _enter(start["entry"], program)
+        else:
+            module = program.load("__main__")
+            if not embassy.has_had_nodes:
+                _begin(module, program)
+    except SystemExit as stop:
+        # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
+        if stop.code not in (None, 0) or len(program.frames(stop.__traceback__)) > 1:
+            raise
+    for thread in threading.enumerate():
+        if thread is not threading.current_thread() and not thread.daemon:
+            thread.join()
+    if not embassy.has_had_nodes:
+        raise _nothing_to_run("The program came to its end without making a node.", program)
+    embassy.end()
+
+
+def _enter(entry: str, program: Program) -> None:
+    """Calls a package's function, as the script would that an installation makes of an entry point."""
+    # Last: what is really installed comes first.
+    sys.path.append(str(shims_folder()))
+    # A thread that waits by looking again and again must not keep the others from the interpreter for long.
+    sys.setswitchinterval(SWITCH_S)
+    name, _, function = entry.partition(":")
+    module = importlib.import_module(name)
+    main = getattr(module, function, None)
+    if not callable(main):
+        raise _nothing_to_run(
+            f"There is no {function}() in {name}, which setup.py names as entry point.", program
+        )
+    result = main()
+    if result not in (None, 0):
+        raise SystemExit(result)
+
+
+def _begin(module: ModuleType, program: Program) -> None:
+    """What the file itself has not begun: as ``ros2 run`` would call it."""
+    main = getattr(module, "main", None)
+    if callable(main):
+        main()
+        return
+    classes = [cls for cls in vars(module).values() if isinstance(cls, type) and issubclass(cls, Node)]
+    own = [cls for cls in classes if cls.__module__ == module.__name__]
+    last = [cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)]
+    if len(last) != 1:
+        found = "none" if not last else " and ".join(cls.__name__ for cls in last)
+        raise _nothing_to_run(
+            f"There is no main() to call. Without one, there must be one class derived from Node; there is {found}.",
+            program,
+        )
+    import rclpy
+
+    rclpy.init()
+    make: Callable[[], Node] = last[0]
+    rclpy.spin(make())
+
+
+def _nothing_to_run(message: str, program: Program) -> GuestError:
+    return GuestError(Failure(FailureKind.EXCEPTION, message, program.relative(program.file)))
+
+
+def _keep_simulated_time(graph: Graph) -> None:
+    """``time.sleep`` waits, and ``time.time`` counts, in the time of the world, as everything here does.
+
+    A controller that uses them then behaves the same at every speed. The other clocks stay: the library's own
+    time-outs are built on them.
+    """
+
+    def sleep(seconds: float) -> None:
+        """Waits in simulated time."""
+        if seconds < 0:
+            raise ValueError("sleep length must be non-negative")
+        graph.wait(lambda: False, graph.now_ns + int(seconds * 1e9), what="time.sleep()")
+
+    time.sleep = sleep  # type: ignore[assignment]  # for any number, where the stub has a list of kinds
+    time.time_ns = lambda: graph.now_ns
+    time.time = lambda: graph.now_ns / 1e9

@@ -1,0 +1,1 @@
+"""Confinement of student processes: limits, Landlock, seccomp, namespaces, and what this machine supports."""

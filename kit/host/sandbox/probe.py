@@ -1,0 +1,71 @@
+"""Which levels of confinement this machine allows, found out by trying."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from kit.host.failure import FailureKind, GuestError
+from kit.host.sandbox import landlock
+from kit.host.sandbox.confinement import Level
+from kit.host.student_functions import StudentFunctions
+
+
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """One level of the ladder on this machine."""
+
+    level: Level
+    is_available: bool
+    reason: str
+    """What it consists of here; or why it cannot be had, and what would help."""
+
+
+def probe() -> tuple[Rung, ...]:
+    """Every level, lowest first. Starts an empty program on each: a fifth of a second in all."""
+    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+        file = Path(folder, "empty.py")
+        file.write_text("")
+        return tuple(_try(level, file) for level in Level)
+
+
+def highest() -> Level:
+    """The highest level that can be had here."""
+    return max(rung.level for rung in probe() if rung.is_available)
+
+
+def allows(level: Level) -> bool:
+    """Whether this machine can lock a program in so far; only this level is tried."""
+    with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
+        file = Path(folder, "empty.py")
+        file.write_text("")
+        return _try(level, file).is_available
+
+
+def _try(level: Level, file: Path) -> Rung:
+    try:
+        StudentFunctions(file, level=level).close()
+    except GuestError as problem:
+        if problem.failure.kind is not FailureKind.CONFINEMENT:
+            raise
+        return Rung(level, False, problem.failure.message)
+    return Rung(level, True, _MEANS[level]())
+
+
+def _limits() -> str:
+    return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
+
+
+_MEANS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
+    {
+        Level.LIMITED: _limits,
+        Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
+        Level.SEPARATE: lambda: "namespaces: no other process, no network and no other file exists for it",
+        Level.ANOTHER_USER: lambda: "a user of its own for every run",
+    }
+)

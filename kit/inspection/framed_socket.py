@@ -1,0 +1,62 @@
+"""One connection between a running world and another terminal: frames to and fro, one at a time."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+from contextlib import suppress
+from typing import Final
+
+from kit.host.sandbox.limits import MIB
+from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
+
+LARGEST_FRAME: Final = 64 * MIB
+"""Bytes. A terminal that has fallen behind gets many messages at once."""
+
+_CREDENTIALS: Final = struct.Struct("3i")
+
+
+class Line:
+    """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+
+    @property
+    def peer_user(self) -> int | None:
+        """The user at the other end, where the system tells (Linux)."""
+        if sys.platform != "linux":
+            return None
+        credentials = self._connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+        return int(_CREDENTIALS.unpack(credentials)[1])
+
+    def send(self, content: Json) -> None:
+        try:
+            self._connection.sendall(encode(content))
+        except (BrokenPipeError, ConnectionError) as problem:
+            raise EOFError from problem
+
+    def receive(self) -> Json:
+        (length,) = HEADER.unpack(self._exactly(HEADER.size))
+        if length > LARGEST_FRAME:
+            raise ProtocolError(f"a frame of {length} bytes; {LARGEST_FRAME} are allowed")
+        return decode(self._exactly(length))
+
+    def close(self) -> None:
+        """Hangs up; whoever waits at either end gets EOFError."""
+        with suppress(OSError):  # the other end may have been quicker
+            self._connection.shutdown(socket.SHUT_RDWR)
+        self._connection.close()
+
+    def _exactly(self, count: int) -> bytes:
+        data = bytearray()
+        while len(data) < count:
+            try:
+                part = self._connection.recv(min(count - len(data), MIB))
+            except ConnectionError as problem:
+                raise EOFError from problem
+            if not part:
+                raise EOFError
+            data += part
+        return bytes(data)

@@ -1,0 +1,1 @@
+"""Floor 0: all jitted code, and the arrays that it takes."""

@@ -1,0 +1,104 @@
+"""A launch without a screen: ticked until it ends by itself, or for so long, or until the user has enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Protocol
+
+from kit.launch.graph_only import Worldless
+from kit.launch.launch_run import Launch
+from kit.ros.graph.graph import Graph
+from kit.ros.log import LogRecord
+from kit.run.lockstep import Companion, Guest
+from kit.run.pacing import MAXIMUM, REAL_TIME, Pace
+
+
+class Ticker(Protocol):
+    """A runner, or what stands in for it without a world."""
+
+    guests: list[Guest]
+
+    def tick(self) -> None: ...
+
+
+@dataclass(slots=True)
+class Limit:
+    """How long a launch may go on; None: as long as it likes."""
+
+    ticks: int | None = None
+    """So many ticks, of a world or without one."""
+    until_s: float | None = None
+    """So many simulated seconds."""
+
+    @property
+    def is_set(self) -> bool:
+        return self.ticks is not None or self.until_s is not None
+
+    def is_reached(self, now_ns: int) -> bool:
+        return self.ticks == 0 or (self.until_s is not None and now_ns >= round(self.until_s * 1e9))
+
+    def ticked(self) -> None:
+        if self.ticks is not None:
+            self.ticks -= 1
+
+
+def run_plainly(
+    launch: Launch,
+    *,
+    seed: int = 0,
+    limit: Limit | None = None,
+    factor: float | None = None,
+    company: Callable[[Graph], Companion | None] = lambda graph: None,
+    log: Callable[[LogRecord], None] = lambda record: None,
+) -> None:
+    """Carries the launch out in this thread: with a limit as fast as it goes, unless ``factor`` says otherwise.
+
+    ``log`` gets what the kit's own nodes say. Raises GuestError, CannotStart, WorldError, OSError; and
+    KeyboardInterrupt after the launch file has heard of it.
+    """
+    limit = limit or Limit()
+    factor = factor or (MAXIMUM if limit.is_set else None)
+    with ExitStack() as stack:
+        stack.callback(launch.close)
+        launch.begin()
+        launch.graph.log.sink = log
+        company_there: list[Guest] = []
+        companion = company(launch.graph)
+        if companion is not None:
+            stack.callback(companion.close)
+            company_there.append(companion)
+        if launch.world is None:
+            launch.start()
+            worldless = Worldless(launch.graph)
+            worldless.guests += [launch, *company_there]
+            pace = Pace(worldless.step_size, factor or REAL_TIME)
+            _go_on(launch, worldless, pace, limit, lambda: launch.world is not None or _is_idle(launch))
+        if launch.world is not None and not launch.is_over:
+            from kit.launch.session import LaunchedSession  # only now: it brings the physics
+
+            session = stack.enter_context(LaunchedSession(launch, seed=seed))
+            launch.graph.log.sink = log
+            step_size = launch.world.step_size
+            pace = Pace(step_size, factor or launch.world.factor)
+            session.runner.on_rate = lambda rate: pace.set_factor(rate * step_size)
+            session.runner.guests += company_there
+            launch.start()
+            _go_on(launch, session.runner, pace, limit, lambda: False)
+
+
+def _go_on(launch: Launch, ticker: Ticker, pace: Pace, limit: Limit, is_enough: Callable[[], bool]) -> None:
+    try:
+        while not (launch.is_over or is_enough() or limit.is_reached(launch.graph.now_ns)):
+            pace.wait()
+            ticker.tick()
+            limit.ticked()
+    except KeyboardInterrupt:
+        launch.interrupt("ctrl-c")
+        raise
+
+
+def _is_idle(launch: Launch) -> bool:
+    """Whether nothing will happen any more by itself."""
+    return not (launch.has_programs or launch.wants_time)

@@ -1,0 +1,143 @@
+"""The relations of all slots of a world, and which slots can be one entity.
+
+Slots of the same model instances are put together where one asks nothing that another does not ask as well: giving
+the first the list of the second breaks nothing and costs nothing, so the optimum stays what it is, and the groups
+are those a person would draw: a robot, or the parts of it that differ.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping
+from itertools import combinations, product
+from typing import Final, TypeVar
+
+from kit.layers.flatland.layer_lists import LaserSlot, Slot, Slots, Spot
+from kit.layers.requirements import Relation, Sighting
+from kit.world.problems import Problem, WorldError
+from kit.world.records import Sight as View
+
+T = TypeVar("T", Relation, Sighting)
+L = TypeVar("L", str, Spot)
+
+PairWish = Callable[[Spot, Spot], Relation]
+"""What is asked of two spots that can meet."""
+
+ViewWish = Callable[[LaserSlot, tuple[str, View], Spot], Sighting]
+"""What is asked of a laser of one model and a spot that it can see."""
+
+
+class Table:
+    """The relations of all slots, before any are put together. ``rows``: the maps, then the bodies."""
+
+    def __init__(self, slots: Slots, pair: PairWish, view: ViewWish) -> None:
+        self._slots, self._pair, self._view = slots, pair, view
+        self.rows: tuple[Slot, ...] = (*slots.maps, *slots.bodies)
+        count = len(self.rows)
+        self.relation: list[list[Relation]] = [["either"] * count for _ in range(count)]
+        for i in range(count):
+            for j in range(i + 1):
+                self.relation[i][j] = self.relation[j][i] = self._between(i, j)
+        self.sighting: list[list[Sighting]] = [
+            [self._seen(laser, slot) for slot in self.rows] for laser in slots.lasers
+        ]
+
+    def _between(self, i: int, j: int) -> Relation:
+        a, b = self.rows[i], self.rows[j]
+        if not a.models and not b.models:  # maps: each needs a name, and a name belongs to one of them
+            return "collide" if i == j else "apart"
+        pairs = combinations(a.spots, 2) if i == j else product(a.spots, b.spots)
+        wishes = ((self._pair(p, q), p, q) for p, q in pairs if self._slots.can_meet(p, q))
+        return _agreed(
+            "either", wishes, lambda p, q, wish: f"{p.address} {_MUST[wish]} collide with {q.address}", a
+        )
+
+    def _seen(self, laser: LaserSlot, slot: Slot) -> Sighting:
+        wishes = (
+            (self._view(laser, use, spot), use[0], spot)
+            for use, spot in product(laser.uses, slot.spots)
+            if self._slots.can_see(use, spot)
+        )
+        return _agreed(
+            "either",
+            wishes,
+            lambda model, spot, wish: f"{model}/{laser.plugin} {_MUST[wish]} see {spot.address}",
+            slot,
+        )
+
+    def merged(self) -> list[list[int]]:
+        """The slots in groups of equal needs, first the neediest of each group."""
+        groups = {i: [i] for i in range(len(self.rows))}
+        families: defaultdict[tuple[object, int], list[int]] = defaultdict(list)
+        for i, slot in enumerate(self.rows):
+            if models := slot.models:
+                families[models, self._slots.kept_bits(slot)].append(i)
+        for family in families.values():
+            while pair := self._mergeable(family, groups):
+                strong, weak = pair
+                self._join(strong, weak)
+                groups[strong] += groups.pop(weak)
+                family.remove(weak)
+        return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
+
+    def _mergeable(self, family: list[int], groups: Mapping[int, list[int]]) -> tuple[int, int] | None:
+        """Two of the family of which the first can absorb the second."""
+        pairs = ((strong, weak) for weak in reversed(family) for strong in family if strong != weak)
+        return next((pair for pair in pairs if self._can_absorb(*pair, groups)), None)
+
+    def _join(self, strong: int, weak: int) -> None:
+        """Makes the needs of ``strong`` those of both."""
+        for relation in ("apart", "collide"):
+            if relation in (self.relation[strong][weak], self.relation[weak][weak]):
+                self.relation[strong][strong] = relation
+        for w, relation in enumerate(self.relation[weak]):
+            if relation == "apart" and w != strong:
+                self.relation[strong][w] = self.relation[w][strong] = "apart"
+        for seen in self.sighting:
+            if seen[weak] == "blind":
+                seen[strong] = "blind"
+
+    def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
+        """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
+        if self._asks_nothing(strong) and self._asks_nothing(weak):
+            return True  # both have an empty list, and keep it
+        own, shared = self.relation[weak][weak], self.relation[strong][weak]
+        if shared == "apart" or (
+            own not in ("either", self.relation[strong][strong]) and shared != "collide"
+        ):
+            return False
+        mine, its = self.relation[weak], self.relation[strong]
+        return all(mine[w] in ("either", its[w]) for w in groups if w not in (strong, weak)) and all(
+            seen[weak] in ("either", seen[strong]) for seen in self.sighting
+        )
+
+    def _asks_nothing(self, i: int) -> bool:
+        if any(spot.category for spot in self.rows[i].spots):
+            return False
+        return "collide" not in self.relation[i] and all(seen[i] != "sees" for seen in self.sighting)
+
+
+_MUST: Final[Mapping[Relation | Sighting, str]] = {
+    "collide": "must",
+    "apart": "must not",
+    "sees": "must",
+    "blind": "must not",
+    "either": "may",
+}
+
+
+def _agreed(
+    open_: T, wishes: Iterable[tuple[T, L, Spot]], in_words: Callable[[L, Spot, T], str], slot: Slot
+) -> T:
+    """What all wishes come to: yes or no, if any says so. Raises WorldError if some say the one and some the other."""
+    said: dict[T, tuple[L, Spot]] = {}
+    for wish, who, spot in wishes:
+        if wish != open_:
+            said.setdefault(wish, (who, spot))
+    if len(said) > 1:
+        words = ", and ".join(in_words(*who, wish) for wish, who in said.items())
+        problem = (
+            f"contradiction: {words}, but one list of layers serves both: give one of them a file of its own"
+        )
+        raise WorldError([Problem(slot.place, problem)])
+    return next(iter(said), open_)

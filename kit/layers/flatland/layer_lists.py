@@ -1,0 +1,197 @@
+"""Every list of layer names in the files of a Flatland world, and what in the world it decides.
+
+A *slot* is one such list: the ``name`` of an entry of ``layers``, the ``layers`` of a footprint, or those of a
+laser. Flatland has no layers per model instance: all instances of a model file share its lists, so whoever plans
+plans slots, not bodies. A *spot* is a footprint of one instance (or the walls of an entry), and every spot is
+decided by one slot.
+
+What can happen between two spots if they share a layer, and what a laser could see, is asked of
+``kit.world.collision_rules``; here stands only which spots are meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from kit.world.collision_rules import Surface, Thing, Touch, Touching, contains
+from kit.world.loading import load_world
+from kit.world.plugin_reader import DeviceReader, ModelScope
+from kit.world.records import Footprint, Model, Place, Sight, World
+from kit.world.yaml_section import REQUIRED, Section
+
+REFLECTANCE: Final = "reflectance"
+"""The layer whose name means something to lasers: what is in it shines. It is kept as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A footprint of a model instance, or the walls of an entry of ``layers``."""
+
+    thing: Thing
+    """The body with this footprint alone, as if everything were in one layer."""
+    category: int
+    """The layers it is in today, as bits."""
+    footprint: Footprint | None
+    number: int
+    """Which footprint of its body, from 0."""
+
+    @property
+    def model(self) -> str:
+        return self.thing.model or ""
+
+    @property
+    def address(self) -> str:
+        return f"{self.model}/{self.thing.body}[{self.number}]" if self.footprint else self.thing.name
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One list of layer names in a file."""
+
+    place: Place
+    """Of the mapping that holds the list."""
+    written: tuple[str, ...]
+    """As it stands there, or ``("all",)`` where nothing does."""
+    spots: tuple[Spot, ...] = ()
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """The model instances that share the list, in order; none for a map."""
+        return tuple(dict.fromkeys(spot.model for spot in self.spots if spot.model))
+
+
+@dataclass(frozen=True, slots=True)
+class LaserSlot:
+    """The list of a laser: which plugin of which model instances, and what each looks at."""
+
+    place: Place
+    written: tuple[str, ...]
+    plugin: str
+    uses: tuple[tuple[str, Sight], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _LaserParams:
+    """What the planner reads of a laser."""
+
+    layers: tuple[str, ...]
+    sight: Sight
+
+
+@dataclass(frozen=True)
+class Slots:
+    """All slots of one world."""
+
+    world: World
+    maps: tuple[Slot, ...]
+    bodies: tuple[Slot, ...]
+    lasers: tuple[LaserSlot, ...]
+    one_model_never_collides: bool = False
+    _touching: Touching = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_touching", Touching(self.world))
+
+    def can_meet(self, a: Spot, b: Spot) -> bool:
+        """Whether anything happens between two spots that share a layer."""
+        if self.one_model_never_collides and a.model and a.model == b.model:
+            return False
+        return self._touching.between(a.thing, b.thing).touch is not Touch.PASSES
+
+    def why_not(self, a: Spot, b: Spot) -> str:
+        """Why nothing happens between two spots that cannot meet, in words."""
+        if self.one_model_never_collides and a.model and a.model == b.model:
+            return "bodies of one model never collide, as you say"
+        return self._touching.between(a.thing, b.thing).why
+
+    def can_see(self, use: tuple[str, Sight], spot: Spot) -> bool:
+        """Whether a laser that watches one of the spot's layers can see it."""
+        model, sight = use
+        if spot.footprint is None:
+            return True
+        own = spot.model == model and spot.thing.body == sight.body
+        return not spot.footprint.sensor and not (own and contains(spot.footprint, sight.origin))
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """Layers whose name has a meaning of its own, which must go on to hold what they hold."""
+        return (REFLECTANCE,) if REFLECTANCE in self.world.layer_bits else ()
+
+    def kept_bits(self, slot: Slot) -> int:
+        """The kept layers that a slot is in."""
+        return slot.spots[0].category & sum(self.world.layer_bits[name] for name in self.kept)
+
+
+def read_world(
+    path: Path, *, root: Path | None = None, environment: Mapping[str, str] | None = None
+) -> World:
+    """A world as the planner needs it: every plugin is let pass, and a laser says what it looks at.
+
+    Raises WorldError with all that is wrong. ``root`` is the folder the world may not leave, by default its own;
+    ``environment`` the variables that ``env()`` in its files may read, by default none.
+    """
+    return load_world(path, devices=_Devices(), root=root, environment=environment)
+
+
+def slots_of(world: World, *, one_model_never_collides: bool = False) -> Slots:
+    """The slots of a world that ``read_world`` has read."""
+    maps = tuple(
+        Slot(
+            layer.place,
+            layer.names,
+            (Spot(Thing(None, layer.name, False, frozenset({Surface(1, 1, False)})), layer.bits, None, 0),),
+        )
+        for layer in world.layers
+        if layer.walls is not None
+    )
+    bodies: dict[Place, Slot] = {}
+    lasers: dict[Place, LaserSlot] = {}
+    for model in world.models:
+        for place, written, spot in _spots(model):
+            old = bodies.get(place, Slot(place, written))
+            bodies[place] = Slot(place, written, (*old.spots, spot))
+        for plugin in model.plugins:
+            if isinstance(params := plugin.params, _LaserParams):
+                uses = lasers[plugin.place].uses if plugin.place in lasers else ()
+                use = (model.name, params.sight)
+                lasers[plugin.place] = LaserSlot(plugin.place, params.layers, plugin.name, (*uses, use))
+    return Slots(world, maps, tuple(bodies.values()), tuple(lasers.values()), one_model_never_collides)
+
+
+def _spots(model: Model) -> Iterator[tuple[Place, tuple[str, ...], Spot]]:
+    for body in model.bodies:
+        for number, footprint in enumerate(body.footprints):
+            surface = Surface(1, 1 if footprint.collision else 0, footprint.sensor)
+            thing = Thing(model.name, body.name, body.kind == "dynamic", frozenset({surface}))
+            yield footprint.place, footprint.layers, Spot(thing, footprint.category, footprint, number)
+
+
+class _Devices(Mapping[str, DeviceReader]):
+    """Readers for every type of plugin there may be: of lasers what matters here, of all others nothing."""
+
+    def __getitem__(self, type_: str) -> DeviceReader:
+        return _read_laser if type_ == "Laser" else _read_other
+
+    def __contains__(self, type_: object) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("Laser",))
+
+    def __len__(self) -> int:
+        return 1
+
+
+def _read_laser(section: Section, scope: ModelScope) -> object:
+    body = scope.body(section, "body", REQUIRED)
+    sight = Sight(body, scope.layers(section), section.pose("origin", Sight(body, 0).origin))
+    params = _LaserParams(section.texts("layers", ("all",)), sight)
+    section.rest()
+    return params
+
+
+def _read_other(section: Section, scope: ModelScope) -> object:
+    return section.rest()

@@ -1,0 +1,294 @@
+"""A plan written back into the user's own world and model files: previewed, applied at once, and checked.
+
+Only lists of layer names are touched (``yamltext``). A model file serves every world that names it, so a file
+that another world names as well is left alone, like one that cannot be edited without a guess; and because half a
+patch would be a broken world, nothing is written unless every file can be.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+from kit.layers.flatland.layer_lists import slots_of
+from kit.layers.flatland.requirement_binding import bind
+from kit.layers.flatland.world_planning import WorldPlan
+from kit.layers.flatland.yaml_edits import AddItem, Change, DropItem, SetList, Unsafe, edited, flow
+from kit.layers.reading import Requirements
+from kit.workspace import write_atomically
+from kit.world.collision_rules import Touching
+from kit.world.documents import MAX_YAML_BYTES
+from kit.world.files import Unusable, read_bytes
+from kit.world.problems import WorldError
+from kit.world.records import Place, World
+
+_ALL: Final = ("all",)
+_MAX_NEIGHBOURS: Final = 2000
+
+
+class PatchError(Exception):
+    """A patch that was not applied, or was taken back; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilePatch:
+    """One file as it is and as it shall be."""
+
+    path: Path
+    before: bytes
+    after: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class LeftAlone:
+    """One file that is not patched: why, and what to write in it by hand."""
+
+    path: Path
+    reason: str
+    by_hand: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    files: tuple[FilePatch, ...]
+    left_alone: tuple[LeftAlone, ...]
+
+    def diff(self) -> str:
+        """What would change, as a unified diff. Line ends as in the files."""
+        return "".join(_diff(file) for file in self.files)
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """One change, where it belongs, what to do in words, and why the planner cannot do it, if it cannot."""
+
+    place: Place
+    change: Change
+    words: str
+    objection: str = ""
+
+
+def patch_of(plan: WorldPlan, *, root: Path | None = None, also_shared: bool = False) -> Patch:
+    """The patch that makes a world's files say what a plan says.
+
+    ``root``: where else to look for worlds that share a model file. ``also_shared``: patch such files as well.
+    """
+    if plan.changes_nothing:
+        return Patch((), ())
+    by_file: defaultdict[Path, list[_Wanted]] = defaultdict(list)
+    for wanted in _wanted(plan):
+        by_file[wanted.place.file].append(wanted)
+    world = plan.world_case.slots.world
+    files: list[FilePatch] = []
+    left: list[LeftAlone] = []
+    for path, changes in sorted(by_file.items()):
+        try:
+            if path != world.file and not also_shared and (others := _other_users(path, world, root)):
+                raise Unsafe(
+                    f"{', '.join(map(str, others[:3]))} names it too, and would change along with it"
+                )
+            if objections := [wanted.objection for wanted in changes if wanted.objection]:
+                raise Unsafe(objections[0])
+            files.append(_file_patch(path, [wanted.change for wanted in changes]))
+        except Unsafe as reason:
+            left.append(LeftAlone(path, str(reason), tuple(wanted.words for wanted in changes)))
+    return Patch(tuple(files), tuple(left))
+
+
+def apply(patch: Patch, wrong: Callable[[], Sequence[str]]) -> None:
+    """Writes every file of the patch, each atomically, then asks ``wrong`` what is not as it should be.
+
+    If anything is, or a file cannot be written or has changed meanwhile, every file gets its old content back and
+    PatchError says why. A patch that leaves a file alone is not applied. (A kill between two files leaves each
+    of them whole, the earlier new and the later old: the preview says which.)
+    """
+    if patch.left_alone:
+        raise PatchError(f"{patch.left_alone[0].path} has to be changed by hand, so no file was written")
+    done: list[FilePatch] = []
+    try:
+        for file in patch.files:
+            if _content(file.path) != file.before:
+                raise PatchError(f"{file.path} has changed since it was read")
+            done.append(file)
+            _write(file.path, file.after)
+        try:
+            problems = list(wrong())
+        except WorldError as error:
+            problems = [str(error)]
+        if problems:
+            raise PatchError(f"the result would not do what was asked: {problems[0]}")
+    except (OSError, Unsafe) as error:
+        _take_back(done)
+        raise PatchError(f"{error}: nothing was changed") from error
+    except BaseException:
+        _take_back(done)
+        raise
+
+
+def differences(before: World, after: World, *, one_model_never_collides: bool = False) -> list[str]:
+    """In what two states of a world differ: who touches whom, which laser sees whom, which walls there are."""
+    found = []
+    old, new = Touching(before), Touching(after)
+    if [thing.name for thing in old.things] != [thing.name for thing in new.things]:
+        return ["the bodies and walls are no longer the same"]
+    for (a, b, was), (_, _, now) in zip(old.pairs(), new.pairs(), strict=True):
+        if one_model_never_collides and a.model is not None and a.model == b.model:
+            continue
+        if was.touch != now.touch:
+            found.append(f"{a.name} {was.touch.value} {b.name} before, and {now.touch.value} it after")
+    for (laser, thing, saw), (_, _, sees) in zip(old.views(), new.views(), strict=True):
+        if saw.sees != sees.sees:
+            found.append(f"{laser.name} {'sees' if sees.sees else 'no longer sees'} {thing.name}")
+    return found
+
+
+def recheck(
+    plan: WorldPlan, reread: Callable[[], World], *, requirements: Requirements | None = None
+) -> Callable[[], Sequence[str]]:
+    """The check of what the files say by then: what was asked, with as many names as planned.
+
+    ``reread`` loads the world again. Asked is what the requirements say; without any, that the world behaves as it did.
+    """
+    slots = plan.world_case.slots
+    never = slots.one_model_never_collides
+
+    def wrong() -> Sequence[str]:
+        world = reread()
+        if requirements is None:
+            found = differences(slots.world, world, one_model_never_collides=never)
+        else:
+            now = bind(requirements, slots_of(world, one_model_never_collides=never))
+            found = [str(breach) for breach in now.wrong]
+        if len(world.layer_bits) != plan.size:
+            found.append(f"the world names {len(world.layer_bits)} layers, not {plan.size}")
+        return found
+
+    return wrong
+
+
+# What has to be written
+
+
+def _wanted(plan: WorldPlan) -> Iterator[_Wanted]:
+    case, assignment = plan.world_case.case, plan.assignment
+    every = frozenset(layer.name for layer in assignment.layers)
+    for entity in case.entities:
+        for slot in plan.world_case.entities[entity.name]:
+            key = "name" if entity.kind == "map" else "layers"
+            yield from _set_list(slot.place, key, slot.written, assignment.layers_of(entity.name), every)
+    for name, laser in plan.world_case.lasers.items():
+        yield from _set_list(laser.place, "layers", laser.written, assignment.watches[name], every)
+    yield from _free_layers(plan)
+
+
+def _set_list(
+    place: Place, key: str, written: tuple[str, ...], names: tuple[str, ...], every: frozenset[str]
+) -> Iterator[_Wanted]:
+    means = every if written == _ALL and key == "layers" else frozenset(written)
+    if means == frozenset(names) and (names or written != _ALL):
+        return
+    objection = ""
+    if names == _ALL and key == "layers":
+        objection = 'a layer is called "all", which by itself means every layer: give it another name'
+    stay = [name for name in written if name in names]
+    ordered = (*stay, *(name for name in names if name not in stay))
+    change = SetList((place.line, place.column), key, ordered)
+    yield _Wanted(place, change, f"{place}: {key}: {flow(ordered)}", objection)
+
+
+def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:
+    """Entries without a map: what is planned for them, what is no longer needed, what is missing."""
+    world = plan.world_case.slots.world
+    maps = {entity.name for entity in plan.world_case.case.entities if entity.kind == "map"}
+    free = [layer.name for layer in plan.assignment.layers if layer.members.isdisjoint(maps)]
+    entries = [layer for layer in world.layers if layer.walls is None]
+    known = {name for entry in entries for name in entry.names}
+    fresh = tuple(name for name in free if name not in known)
+    for entry in entries:
+        names = tuple(name for name in entry.names if name in free) + fresh
+        fresh = ()
+        place = entry.place
+        if not names:
+            yield _Wanted(
+                place, DropItem((place.line, place.column)), f"{place}: remove this entry of layers"
+            )
+        else:
+            yield from _set_list(place, "name", entry.names, names, frozenset())
+    if fresh:
+        yield _Wanted(
+            Place(world.file), AddItem("layers", fresh), f"{world.file}: add to layers: - name: {flow(fresh)}"
+        )
+
+
+# Files
+
+
+def _file_patch(path: Path, changes: Sequence[Change]) -> FilePatch:
+    before = _content(path)
+    try:
+        text = before.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise Unsafe("it is not a text in UTF-8") from error
+    mark = "\ufeff" if text.startswith("\ufeff") else ""
+    after = mark + edited(text.removeprefix(mark), changes)
+    if not os.access(path, os.W_OK):
+        raise Unsafe("it may not be written")
+    return FilePatch(path, before, after.encode("utf-8"))
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return read_bytes(path, MAX_YAML_BYTES)
+    except Unusable as error:
+        raise Unsafe(str(error)) from error
+
+
+def _write(path: Path, content: bytes) -> None:
+    mode = path.stat().st_mode
+    write_atomically(path, content)
+    path.chmod(mode)
+
+
+def _take_back(done: Sequence[FilePatch]) -> None:
+    for file in done:
+        _write(file.path, file.before)
+
+
+def _other_users(path: Path, world: World, root: Path | None) -> list[Path]:
+    """Other world files nearby that name a file: beside the world, beside the file, and in the folders below these."""
+    folders = dict.fromkeys(folder for folder in (world.file.parent, path.parent, root) if folder is not None)
+    near = (
+        file
+        for folder in folders
+        for pattern in ("*.yaml", "*.yml", "*/*.yaml", "*/*.yml")
+        for file in folder.glob(pattern)
+    )
+    named = re.compile(rb"(?<![\w.-])" + re.escape(path.name.encode()))
+    own = {world.file.resolve(), path.resolve()}
+    found = []
+    for file in dict.fromkeys(candidate.resolve() for candidate in islice(near, _MAX_NEIGHBOURS)):
+        if file not in own:
+            try:
+                text = read_bytes(file, MAX_YAML_BYTES)
+            except Unusable:
+                continue
+            if named.search(text) and b"models:" in text:
+                found.append(file)
+    return sorted(found)
+
+
+def _diff(file: FilePatch) -> str:
+    before, after = (
+        content.decode("utf-8").splitlines(keepends=True) for content in (file.before, file.after)
+    )
+    lines = difflib.unified_diff(before, after, str(file.path), str(file.path))
+    return "".join(
+        line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
+    )

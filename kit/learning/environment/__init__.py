@@ -1,0 +1,1 @@
+"""Tasks as environments: observations, actions, rewards, and the batch engine."""

@@ -1,0 +1,337 @@
+"""Many worlds of one task as arrays, stepped by compiled loops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.kernels import kernels
+from kit.learning.environment.batch_map import Ground
+from kit.learning.environment.case_arrays import Courses
+from kit.learning.environment.observations import FAR_TARGET, RAYS
+from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
+from kit.learning.environment.tasks import Task
+from kit.learning.environment.transition import Array, Transition, bearing, distance
+from kit.world.catalogue import Case, MapCard
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Numbers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+EVERYONE = slice(None)
+NO_MOVE = -1
+FULL_TURN = 2.0 * np.pi
+
+EPISODE = 32
+"""Every episode of a world has 2 to the power of this many random numbers to itself."""
+START = 1 << 31
+"""Those from here on are for its start, those before for the noise of its scans."""
+ROOM = -(-RAYS // 32) * 32
+"""A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
+
+
+class RewardError(Exception):
+    """A reward function gave something else than one finite number for each world."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """What a step of all worlds gave. A world whose episode has ended is in its next one already.
+
+    The arrays are the caller's to keep.
+    """
+
+    observations: Singles
+    """(n, size): of the running episodes."""
+    rewards: Singles
+    """(n,)"""
+    terminated: Flags
+    """(n,)"""
+    truncated: Flags
+    """(n,)"""
+    final_observations: Singles
+    """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
+    transition: Transition
+    """Of n worlds, before the reset."""
+    terms: dict[str, Array]
+    """(n,) each: the reward by named term; empty for a student's reward."""
+
+    @property
+    def ended(self) -> Flags:
+        """(n,)"""
+        return self.terminated | self.truncated
+
+
+@dataclass(slots=True, eq=False)
+class State:
+    """Where ``n`` worlds with r robots each are. A step makes a new one; only a reset writes into it."""
+
+    episode: Numbers
+    """(n,)"""
+    case: Numbers
+    """(n,)"""
+    target: Floats
+    """(n, 2)"""
+    step: Numbers
+    """(n,) steps of this episode so far."""
+    pose: Floats
+    """(n, r, 3)"""
+    free: Floats
+    """(n, r): no wall is nearer [m], for sure; 0 where unknown."""
+    to_go: Floats
+    """(n, r)"""
+    turned: Floats
+    """(n, r) rad, since the robot last turned to the other side."""
+    forward_steps: Floats
+    """(n, r)"""
+    move: Numbers
+    """(n, r) the last one, NO_MOVE at the start."""
+    in_target: Flags
+    """(n, r)"""
+
+    @classmethod
+    def of(cls, n: int, robots: int) -> State:
+        """Room for so many."""
+        shape = n, robots
+        none, nowhere, no = np.zeros(n, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.bool_)
+        places = np.zeros((n, 2)), np.zeros((n, robots, 3))
+        return cls(
+            *(none, none.copy(), places[0], none.copy(), places[1], nowhere, nowhere.copy(), nowhere.copy()),
+            *(nowhere.copy(), np.full(shape, NO_MOVE, dtype=np.int64), no),
+        )
+
+    def copy(self) -> State:
+        return State(*(getattr(self, field.name).copy() for field in fields(self)))
+
+
+class BatchEnv:
+    """``n`` worlds of a task. World i depends on (task, seed, first + i) and its own actions alone: it is the same
+    to the bit alone or among many.
+
+    Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
+    every case gets equally many episodes; or, if ``stay``, number ``first + i``, so that they get equally many steps.
+    ``reward``: instead of the task's own. ``restart``: whether a world whose episode has ended begins its next one
+    in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
+    """
+
+    render_mode: None = None
+    """A batch draws nothing; ``kit.learning.environment.env`` draws one world."""
+
+    def __init__(
+        self,
+        task: Task,
+        n: int,
+        seed: int = 0,
+        *,
+        reward: RewardFunction | None = None,
+        first: int = 0,
+        restart: bool = True,
+        stay: bool = False,
+    ) -> None:
+        self.task = task
+        self.n = n
+        self.cases: tuple[Case, ...] = tuple(case for _, case in task.courses())
+        self.observation_space = task.observation.space(task.robots)
+        self.action_space = task.actions.space(task.robots)
+        self._reward: RewardFunction = task.reward if reward is None else reward
+        self._courses = Courses(task)
+        self._single, self._sectors = task.observation.tables(task.robots)
+        self._codes, self._twists = task.actions.codes, task.actions.twists
+        self._first = first
+        self._restart = restart
+        self._own: Numbers | None = (first + np.arange(n)) % len(self.cases) if stay else None
+        self._keys = self._sown(seed)
+        self._state = State.of(n, task.robots)
+        self._state.episode -= 1  # the first reset leads to number 0
+
+    @property
+    def state(self) -> State:
+        """Where every world is now; not to be written to."""
+        return self._state
+
+    def place(self, case: int) -> tuple[MapCard, Ground]:
+        """The map of a case, by its number."""
+        return self._courses.places[case]
+
+    @property
+    def stays(self) -> bool:
+        """Whether worlds stay with their cases."""
+        return self._own is not None
+
+    def deal(self, shares: Floats) -> None:
+        """Shares out anew the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
+        change, each when its episode is over. ValueError where worlds do not stay."""
+        if self._own is None:
+            raise ValueError("worlds that take the cases in turn cannot be dealt")
+        exact = np.asarray(shares) * self.n
+        wanted = np.floor(exact).astype(np.int64)
+        wanted[np.argsort(wanted - exact, kind="stable")[: self.n - wanted.sum()]] += 1
+        own, free = self._own.copy(), []
+        for world, case in enumerate(own):
+            wanted[case] -= 1
+            if wanted[case] < 0:
+                free.append(world)
+        own[free] = np.repeat(np.arange(len(wanted)), np.maximum(wanted, 0))
+        self._own = own
+
+    # Beginning
+
+    def reset(self, seed: int | None = None, *, cases: Numbers | None = None) -> Singles:
+        """(n, size) the first observations of new episodes, in every world.
+
+        ``seed``: starts everything anew, else the worlds go on to their next episodes. ``cases``: (n,) numbers
+        of the cases that these episodes run, instead of those dealt in turn.
+        """
+        self._state = self._state.copy()
+        if seed is not None:
+            self._keys = self._sown(seed)
+            self._state.episode[:] = 0
+        else:
+            self._state.episode += 1
+        self._start(np.arange(self.n), cases)
+        return self._look(EVERYONE)[1]
+
+    def _sown(self, seed: int) -> Numbers:
+        """(n,) where each world's randomness comes from."""
+        keys = [int(kernels.random_bits(seed, self._first + i)) >> 1 for i in range(self.n)]
+        return np.array(keys, dtype=np.int64)
+
+    def _start(self, which: Numbers, cases: Numbers | None = None) -> None:
+        """Puts the worlds ``which`` at the start of their present episodes."""
+        state, courses = self._state, self._courses
+        turns = (self._first + which + state.episode[which]) % len(self.cases)
+        dealt = turns if self._own is None else self._own[which]
+        case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
+        start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE) + START)
+        state.case[which] = case
+        state.target[which] = start.targets
+        state.step[which] = 0
+        state.pose[which] = start.poses
+        state.free[which] = 0.0
+        state.to_go[which] = courses.to_go(case, start.poses)
+        state.turned[which] = 0.0
+        state.forward_steps[which] = 0.0
+        state.move[which] = NO_MOVE
+        state.in_target[which] = self._arrived(start.poses, start.targets)
+
+    # One step
+
+    def step(self, actions: NDArray[np.integer]) -> Step:
+        """Every world does one step; ``actions``: (n,), or (n, robots) where the space is MultiDiscrete.
+
+        Raises ValueError for actions that are not in the space, and RewardError.
+        """
+        if len(actions) != self.n:
+            raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
+        transition, final = self._advance(self.task.actions.chosen(actions, self.task.robots))
+        rewards, terms = self._rewarded(transition)
+        terminated, truncated = transition.collided | transition.reached, transition.timed_out
+        if self.task.timeout_terminal:
+            terminated, truncated = terminated | truncated, np.zeros_like(truncated)
+        over = np.flatnonzero(transition.ended)
+        observations = self._restarted(over, final) if len(over) and self._restart else final
+        return Step(observations, rewards, terminated, truncated, final, transition, terms)
+
+    def _advance(self, choices: Numbers) -> tuple[Transition, Singles]:
+        """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
+        task, courses, old = self.task, self._courses, self._state
+        twists = self._twists[choices]
+        pose, free, hit = old.pose.copy(), old.free.copy(), np.zeros(old.free.shape, dtype=np.bool_)
+        maps, dt = courses.map_of[old.case], task.step_time / task.checks
+        for _ in range(task.checks):
+            kernels.drive_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
+        turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
+        self._state = new = State(
+            episode=old.episode,
+            case=old.case,
+            target=old.target,
+            step=old.step + 1,
+            pose=pose,
+            free=free,
+            to_go=courses.to_go(old.case, pose),
+            turned=np.where(old.turned * turn < 0.0, turn, old.turned + turn),
+            forward_steps=old.forward_steps + FORWARD_SHARE[move],
+            move=move,
+            in_target=self._arrived(pose, old.target),
+        )
+        ranges, seen = self._look(EVERYONE)
+        transition = Transition(
+            case=new.case,
+            step=new.step,
+            max_steps=task.max_steps,
+            hit=hit,
+            in_target=new.in_target,
+            was_in_target=old.in_target,
+            move=new.move,
+            previous_move=old.move,
+            pose=new.pose,
+            previous_pose=old.pose,
+            target=new.target,
+            to_go=new.to_go,
+            previous_to_go=old.to_go,
+            full_turns=(np.abs(new.turned) / FULL_TURN).astype(np.int64),
+            forward_steps=new.forward_steps,
+            ranges=ranges[:, :, :RAYS],
+        )
+        return transition, seen
+
+    def _restarted(self, over: Numbers, final: Singles) -> Singles:
+        """The observations, with those of the next episodes of the worlds ``over``."""
+        self._state = self._state.copy()
+        self._state.episode[over] += 1
+        self._start(over)
+        observations = final.copy()
+        observations[over] = self._look(over)[1]
+        return observations
+
+    def _arrived(self, poses: Floats, targets: Floats) -> Flags:
+        """(m, robots): who is in the target."""
+        task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
+        kernels.arrivals(
+            self._courses.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
+        )
+        return inside
+
+    # What agents see and earn
+
+    def _look(self, which: Numbers | slice) -> tuple[Singles, Singles]:
+        """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
+        see of it."""
+        seen, state, courses = self.task.observation, self._state, self._courses
+        maps, poses = courses.map_of[state.case[which]], state.pose[which]
+        ranges = np.empty((*poses.shape[:2], ROOM), dtype=np.float32)
+        sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
+        drawn = (state.episode[which] << EPISODE) + state.step[which] * ranges.shape[1]
+        kernels.look_worlds(
+            *(courses.fleet, maps, poses, self._keys[which], drawn),
+            *(seen.clip, self._single, self._sectors, ranges, sensed),
+        )
+        sensed *= np.float32(seen.scale)
+        if seen.target:
+            pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
+            sensed[:, :, first] = np.minimum(distance(pose, target), FAR_TARGET) * seen.scale
+            sensed[:, :, first + 1] = bearing(pose, target) / np.pi
+        if seen.arrived:
+            sensed[:, :, -1] = state.in_target[which]
+        return ranges, sensed.reshape(len(sensed), -1)
+
+    def _rewarded(self, transition: Transition) -> tuple[Singles, dict[str, Array]]:
+        """(n,) rewards, and what each term adds."""
+        if isinstance(self._reward, Reward):
+            terms = self._reward.terms(transition)
+            return np.asarray(sum(terms.values()), dtype=np.float32), terms
+        rewards = np.asarray(self._reward(transition))
+        if rewards.shape != (self.n,) or rewards.dtype.kind not in "fiub":
+            raise RewardError(
+                f"the reward must be {self.n} numbers, one for each world: this is an array of shape "
+                f"{rewards.shape} and type {rewards.dtype}"
+            )
+        rewards = rewards.astype(np.float32)
+        if not np.isfinite(rewards).all():
+            raise RewardError(
+                f"the reward is {rewards[~np.isfinite(rewards)][0]}: it must be a finite number"
+            )
+        return rewards, {}

@@ -1,0 +1,213 @@
+"""What the batch engine knows of a world: walls, hulls, lidars. It refuses what it cannot represent, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.geometry import Pose
+from kit.kernels import kernels
+from kit.kernels.lidar_index import beams, in_blocks, views
+from kit.learning.environment.wall_culling import within_reach
+from kit.sim.keys import SpeedLimits
+from kit.sim.loading import load
+from kit.sim.plugins.bumper import BumperParams
+from kit.sim.plugins.diff_drive import DiffDriveParams
+from kit.sim.plugins.laser import LaserParams
+from kit.world.catalogue import MapCard
+from kit.world.collision_rules import contains
+from kit.world.records import Body, Layer, Model, Polygon, World
+
+FEW_WALLS = 64
+"""So many are looked at one by one: to sort out those out of sight costs more. Measured."""
+
+Corners = tuple[tuple[float, float], ...]
+
+
+class Unsupported(ValueError):
+    """The batch engine cannot represent a world; the message names the feature and where it stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """What must be alike for all robots of a batch."""
+
+    hull: tuple[Corners, ...]
+    """Convex polygons, counter-clockwise, in the robot's frame [m]."""
+    seen: tuple[bool, ...]
+    """Which of them the other robot's lidar sees."""
+    directions: tuple[float, ...]
+    """Of the lidar's rays, in the robot's frame [rad]."""
+    reach: float
+    noise: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """One map, as the batch engine sees it."""
+
+    name: str
+    walls: NDArray[np.float64]
+    """(n, 4) ``x1 y1 x2 y2`` [m]: touched by every robot and seen by every lidar. Those that none can ever see or
+    touch are left out."""
+    robot: Robot
+    starts: tuple[Pose, ...]
+    """Where the world file puts the robots."""
+
+
+@cache
+def ground(card: MapCard) -> Ground:
+    """The map's ground. Raises Unsupported, and WorldError if its files are wrong."""
+    return ground_of(load(card.world_file, root=card.root), card.name, (card.robot, card.partner))
+
+
+def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
+    """The same for a world, whose models ``robots`` drive."""
+    driving = [model for wanted in robots if wanted for model in world.models if model.name == wanted]
+    if len(driving) not in (1, 2):
+        raise Unsupported(f"{name}: the batch engine drives one robot or two, not {len(driving)}")
+    for plugin in world.plugins:
+        raise Unsupported(f"{plugin.place}: the batch engine has no {plugin.type} of the whole world")
+    for model in world.models:
+        if model not in driving:
+            _check_scenery(model)
+    made = [_robot(model, watcher) for model, watcher in zip(driving, reversed(driving), strict=True)]
+    if made[1:] and made[0] != made[1]:
+        raise Unsupported(f"{driving[1].place}: the batch engine wants two robots alike")
+    touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
+    seen = [_walls(world, _laser(model).sight.bits) for model in driving]
+    for each in (*touched, *seen):
+        if each != touched[0]:
+            raise Unsupported(f"{world.file}: the batch engine wants walls that every robot touches and sees")
+    if len(driving) == 2:
+        _check_pair(driving[0], driving[1])
+        _check_pair(driving[1], driving[0])
+    ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
+    starts = tuple(model.pose for model in driving)
+    walls = within_reach(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
+    return Ground(name, walls, made[0], starts)
+
+
+def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.Fleet:
+    """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
+
+    Raises Unsupported if the robots differ.
+    """
+    first = grounds[0]
+    for other in grounds[1:]:
+        if other.robot != first.robot or len(other.starts) != len(first.starts):
+            raise Unsupported(
+                f"the batch engine wants robots alike: those of {first.name} and {other.name} differ"
+            )
+    parts = [in_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in grounds]
+    offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
+    starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
+    hulls, robot_of = _hulls(first.robot, len(first.starts))
+    return kernels.Fleet(
+        walls=kernels.Segments(
+            np.concatenate([part.ends for part in parts]),
+            np.concatenate([*starts, offsets[-1:]]).astype(np.int64),
+            np.concatenate([part.discs for part in parts]),
+        ),
+        blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
+        views=views(each.walls if len(each.walls) <= FEW_WALLS else None for each in grounds),
+        hulls=hulls,
+        sight=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
+        robot_of=robot_of,
+        radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
+        beams=beams(first.robot.directions),
+        reach=first.robot.reach,
+        noise=first.robot.noise if noise is None else noise,
+    )
+
+
+def _hulls(robot: Robot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:
+    """Every robot's polygons in its own frame, and whose each corner is."""
+    sizes = [len(polygon) for polygon in robot.hull]
+    corners = np.array([corner for polygon in robot.hull for corner in polygon])
+    nothing = np.zeros(0, dtype=np.int64)
+    shapes = kernels.Shapes(
+        circles=np.zeros((0, 3)),
+        circle_bits=nothing,
+        corners=np.tile(corners, (robots, 1)),
+        starts=np.cumsum([0, *(sizes * robots)], dtype=np.int64),
+        polygon_bits=np.repeat(1 << np.arange(robots, dtype=np.int64), len(sizes)),
+    )
+    return shapes, np.repeat(np.arange(robots, dtype=np.int64), len(corners))
+
+
+def _check_scenery(model: Model) -> None:
+    """What neither moves nor touches may stand about: a beacon."""
+    for body in model.bodies:
+        if body.kind != "static":
+            raise Unsupported(f"{body.place}: the batch engine moves robots only, not the body {body.name}")
+        for footprint in body.footprints:
+            if footprint.category:
+                raise Unsupported(
+                    f"{footprint.place}: the batch engine knows walls and robots, no {body.name}"
+                )
+
+
+def _body(model: Model) -> Body:
+    if len(model.bodies) != 1 or model.joints:
+        what = model.joints[0] if model.joints else model.bodies[1]
+        raise Unsupported(f"{what.place}: the batch engine has no joints, and one body to a robot")
+    return model.bodies[0]
+
+
+def _laser(model: Model) -> LaserParams:
+    lasers = [plugin.params for plugin in model.plugins if isinstance(plugin.params, LaserParams)]
+    if len(lasers) != 1:
+        raise Unsupported(f"{model.place}: the batch engine wants a robot with one Laser, not {len(lasers)}")
+    return lasers[0]
+
+
+def _robot(model: Model, watcher: Model) -> Robot:
+    """``watcher``: whose lidar may see it."""
+    body, laser = _body(model), _laser(model)
+    if body.kind != "dynamic" or body.pose != Pose() or laser.sight.origin != Pose():
+        raise Unsupported(f"{body.place}: the batch engine wants a dynamic body with its lidar at the origin")
+    # A lidar does not see the hull in which it stands.
+    watched = (footprint for footprint in body.footprints if footprint.category & laser.sight.bits)
+    if not all(contains(footprint, laser.sight.origin) for footprint in watched):
+        raise Unsupported(f"{body.place}: the batch engine wants a robot whose lidar does not see itself")
+    drives = [plugin for plugin in model.plugins if isinstance(plugin.params, DiffDriveParams)]
+    for plugin in model.plugins:
+        if not isinstance(plugin.params, LaserParams | DiffDriveParams | BumperParams):
+            raise Unsupported(f"{plugin.place}: the batch engine has no {plugin.type}")
+    if len(drives) != 1:
+        raise Unsupported(
+            f"{model.place}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
+        )
+    params = drives[0].params
+    assert isinstance(params, DiffDriveParams)
+    if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
+        raise Unsupported(f"{drives[0].place}: the batch engine's motors have no limits")
+    sight = _laser(watcher).sight.bits
+    seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
+    return Robot(tuple(_polygons(body)), seen, laser.directions, laser.reach, laser.noise)
+
+
+def _polygons(body: Body) -> Iterator[Corners]:
+    for footprint in body.footprints:
+        if footprint.sensor or not footprint.mask:
+            raise Unsupported(f"{footprint.place}: the batch engine wants all footprints colliding")
+        if not isinstance(footprint.shape, Polygon):
+            raise Unsupported(f"{footprint.place}: the batch engine has no round footprints")
+        yield footprint.shape.points
+
+
+def _walls(world: World, bits: int) -> tuple[Layer, ...]:
+    return tuple(layer for layer in world.layers if layer.walls is not None and layer.bits & bits)
+
+
+def _check_pair(one: Model, other: Model) -> None:
+    """Every part of one touches every part of the other, and it sees some of it."""
+    mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).sight.bits
+    touch = all(each.mask & part.mask for each in mine for part in theirs)
+    if not touch or not any(sees & part.category for part in theirs):
+        raise Unsupported(f"{one.place}: the batch engine wants robots that touch and see each other")

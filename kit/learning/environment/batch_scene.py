@@ -1,0 +1,31 @@
+"""One world of a batch, to be drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kit.geometry import Pose
+from kit.learning.environment.batch import BatchEnv
+from kit.render.scene import Body, Disc, FloatArray, Scene
+
+ROBOTS = ("left", "right")
+
+
+def scene_of(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
+    """What there is to see of one world now. ``trails``: (k, 2) per robot, where each has been."""
+    state = batch.state
+    card, ground = batch.place(int(state.case[world]))
+    poses = [Pose(*pose) for pose in state.pose[world].tolist()]
+    names = (card.robot,) if len(poses) == 1 else ROBOTS
+    bodies = tuple(
+        Body(
+            name,
+            pose,
+            tuple(np.array([pose.point(*corner) for corner in corners]) for corners in ground.robot.hull),
+            robot=True,
+        )
+        for name, pose in zip(names, poses, strict=True)
+    )
+    x, y = state.target[world].tolist()
+    target = Disc(x, y, batch.task.target_radius)
+    return Scene(walls=ground.walls, bodies=bodies, targets=(target,), trails=trails)

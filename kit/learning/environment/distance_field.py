@@ -1,0 +1,99 @@
+"""How far it still is to a target, along the shortest way that keeps clear of walls; for rewards only."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch_map import Ground
+
+Grid = NDArray[np.float64]
+
+CELL = 0.025
+"""m"""
+CLEAR = 0.13
+"""Nearer to a wall than this [m] a metre counts for more: the reach of the robot's hull."""
+DEAREST = 4.0
+"""How many metres one metre along a wall counts for."""
+STEPS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy)
+
+
+class Table(NamedTuple):
+    """Lengths of ways, at the middles of square cells."""
+
+    values: NDArray[np.float32]
+    """(rows, columns) [m]"""
+    corner: tuple[float, float]
+    """The middle of the first cell."""
+
+
+@cache
+def ways(
+    ground: Ground, target: tuple[float, float], clear: float = CLEAR, dearest: float = DEAREST
+) -> Table:
+    """The length of the way to ``target`` from everywhere on the map, keeping ``clear`` [m] of walls where it can.
+
+    Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
+    times the mean price of its ends.
+    """
+    points = np.concatenate([ground.walls.reshape(-1, 2), np.array([target])])
+    corner = points.min(axis=0) - 2 * CELL
+    columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - corner) / CELL).astype(int) + 1
+    x, y = corner[0] + CELL * np.arange(columns), corner[1] + CELL * np.arange(rows)
+    room = _clearance(x, y, ground.walls)
+    price = 1.0 + (dearest - 1.0) * np.maximum(0.0, 1.0 - room / clear)
+    # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
+    price[room < CELL / math.sqrt(2)] = math.inf
+    lengths = np.full((rows, columns), math.inf)
+    start = round((target[1] - corner[1]) / CELL), round((target[0] - corner[0]) / CELL)
+    lengths[start] = 0.0
+    return Table(_filled(_relaxed(lengths, price)).astype(np.float32), (float(corner[0]), float(corner[1])))
+
+
+def _clearance(x: Grid, y: Grid, walls: Grid) -> Grid:
+    """(rows, columns): distance to the nearest wall."""
+    nearest = np.full((len(y), len(x)), math.inf)
+    for ax, ay, bx, by in walls.tolist():
+        dx, dy = bx - ax, by - ay
+        length2 = dx * dx + dy * dy
+        along = (x - ax)[None, :] * dx + (y - ay)[:, None] * dy
+        share = np.clip(along / length2, 0.0, 1.0) if length2 else 0.0 * along
+        away = np.hypot((x - ax)[None, :] - share * dx, (y - ay)[:, None] - share * dy)
+        np.minimum(nearest, away, out=nearest)
+    return nearest
+
+
+def _relaxed(lengths: Grid, price: Grid) -> Grid:
+    """Every cell's least sum of a neighbour's length and the step to it, until nothing changes."""
+    rows, columns = lengths.shape
+    padded_price = np.pad(price, 1, constant_values=math.inf)
+    tolls = [
+        0.5
+        * CELL
+        * math.hypot(dx, dy)
+        * (price + padded_price[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns])
+        for dx, dy in STEPS
+    ]
+    padded = np.pad(lengths, 1, constant_values=math.inf)
+    inner = padded[1:-1, 1:-1]
+    while True:
+        before = inner.copy()
+        for (dx, dy), toll in zip(STEPS, tolls, strict=True):
+            np.minimum(inner, padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] + toll, out=inner)
+        if np.array_equal(inner, before):
+            return before
+
+
+def _filled(lengths: Grid) -> Grid:
+    """Cells beside walls take their neighbours' lengths, so that one can interpolate there; others the greatest."""
+    rows, columns = lengths.shape
+    for _ in range(4):
+        padded = np.pad(lengths, 1, constant_values=math.inf)
+        around = [padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] for dx, dy in STEPS]
+        lengths = np.where(np.isinf(lengths), np.min(around, axis=0) + DEAREST * CELL, lengths)
+    finite = np.isfinite(lengths)
+    return np.where(finite, lengths, lengths[finite].max())

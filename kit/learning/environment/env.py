@@ -1,0 +1,194 @@
+"""The tasks as Gymnasium environments: one world, on the same compiled loops as many."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_scene import scene_of
+from kit.learning.environment.episode_stats import Outcome
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Task, UnknownTask
+from kit.render.image import draw, image_camera
+from kit.render.trail import Trail
+from kit.render.world_text import plain_rows, report
+from kit.world.problems import quoted, suggestion
+
+Observation = NDArray[np.floating[Any] | np.integer[Any]]
+"""float32, which gymnasium's Box does not tell apart."""
+Action = np.int64 | NDArray[np.int64]
+
+PIXELS = (480, 480)
+CHARACTERS = (78, 22)
+
+
+class TaskEnv(gymnasium.Env[Observation, Action]):
+    """One world of a task. Subclasses are the registered environments; their docstrings are their task cards."""
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 5}  # noqa: RUF012 as gymnasium has it
+    default: ClassVar[Task] = TURN
+
+    def __init__(
+        self,
+        task: Task | None = None,
+        *,
+        reward: RewardFunction | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """``task``: a variant, such as ``replace(TURN, timeout_terminal=True)`` or ``HALLWAY.on("doors")``.
+        ``reward``: instead of the task's own; it gets a transition of one world, in arrays of length 1."""
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            modes = self.metadata["render_modes"]
+            raise ValueError(
+                f"there is no render mode {quoted(render_mode)}: {suggestion(render_mode, modes)}"
+            )
+        self.task = self.default if task is None else task
+        self.render_mode = render_mode
+        self.metadata = {**self.metadata, "render_fps": round(1.0 / self.task.step_time)}
+        self._reward = reward
+        self._batch: BatchEnv | None = None
+        self.observation_space = self.task.observation.space(self.task.robots)
+        self.action_space = self.task.actions.space(self.task.robots)
+        self._trails = [Trail() for _ in range(self.task.robots)]
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
+        super().reset(seed=seed)
+        batch = self._begun(seed)
+        case = self._number((options or {}).get("case"))
+        observations = batch.reset(seed, cases=None if case is None else np.array([case]))
+        for trail in self._trails:
+            trail.clear()
+        self._leave_trail()
+        return observations[0], {"case": batch.cases[int(batch.state.case[0])].name}
+
+    def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """``info``: ``case``; ``terms``, the reward by named term; ``is_success`` and, at the end, ``outcome``."""
+        if self._batch is None:
+            raise gymnasium.error.ResetNeeded("call reset() before the first step()")
+        step = self._batch.step(np.asarray(action)[None])
+        self._leave_trail()
+        transition = step.transition
+        info: dict[str, Any] = {
+            "case": self._batch.cases[int(transition.case[0])].name,
+            "terms": {name: float(value[0]) + 0.0 for name, value in step.terms.items()},
+            "is_success": bool(transition.reached[0]),
+        }
+        if self.task.robots > 1:
+            info["adjacent"] = bool(transition.adjacent[0])
+        if transition.ended[0]:
+            info["outcome"] = Outcome.of(transition, 0).value
+        ends = bool(step.terminated[0]), bool(step.truncated[0])
+        return step.final_observations[0], float(step.rewards[0]), *ends, info
+
+    def render(self) -> Any:
+        """(height, width, 3) uint8 for ``rgb_array``; for ``ansi`` a text: the world in characters, then in words."""
+        if self.render_mode is None or self._batch is None:
+            return None
+        scene = scene_of(self._batch, 0, tuple(trail.points for trail in self._trails))
+        if self.render_mode == "rgb_array":
+            return draw(scene, image_camera(scene.bounds, *PIXELS))
+        return "\n".join((*plain_rows(scene, *CHARACTERS), report(scene), ""))
+
+    def _begun(self, seed: int | None) -> BatchEnv:
+        """The world, which is built when it is first needed: an unseeded one by a seed of chance."""
+        if self._batch is None:
+            seed = int(self.np_random.integers(2**31)) if seed is None else seed
+            self._batch = BatchEnv(self.task, 1, seed, reward=self._reward, restart=False)
+        return self._batch
+
+    def _number(self, case: object) -> int | None:
+        names = [each.name for _, each in self.task.courses()] if case is not None else []
+        if case is not None and case not in names:
+            raise UnknownTask(
+                f"task {self.task.name} has no case {quoted(str(case))}: {suggestion(str(case), names)}"
+            )
+        return None if case is None else names.index(str(case))
+
+    def _leave_trail(self) -> None:
+        assert self._batch is not None
+        for trail, (x, y, _) in zip(self._trails, self._batch.state.pose[0].tolist(), strict=True):
+            trail.add(x, y)
+
+
+class TurnEnv(TaskEnv):
+    """Round one corner and back again: ``RobotKit/Turn-v0`` (dissertation, section 5.2.2).
+
+    A corridor 0.84 m wide turns by 90 degrees. The robot drives from one end to the other; in the next episode start
+    and target change places, so that both a left and a right turn must be learnt.
+
+    Observation: Box (9,) float32. The lidar's 91 rays in 9 sectors, from straight behind over the right, ahead (number
+    4) and the left back to straight behind; of each the shortest range [m], at most 2, times 0.5.
+
+    Actions: Discrete (3), each for 0.1 s: forward 0.5 m/s; turn left, turn right 1.57 rad/s.
+
+    Reward: algorithm 3 of the dissertation, times 0.01: forward +1.5, collision -200, target 400 and a point for each
+    step left, time out -300 less what moving forward earned.
+
+    Start: within 0.05 m and 0.2 rad of the map's.
+
+    End: terminated by a collision or when the hull is within 0.2 m of the target; truncated after 200 steps.
+
+    ``task=TURN_SEED`` is the dissertation's own: ranges up to 10 m and rewards as they are, no noise at the start, and
+    a time out that terminates.
+    """
+
+    default = TURN
+
+
+class HallwayEnv(TaskEnv):
+    """Fifteen hallways: ``RobotKit/Hallway-v0`` (dissertation, chapter 3).
+
+    Straight on, through doors, round obstacles, round turns and curves of 90 and 180 degrees, to either side. Each
+    episode is on the next case; ``task=HALLWAY.on("doors", "straight")`` chooses some, by name or by group.
+
+    Observation: Box (17,) float32, ranges [m], at most 2, times 0.5: the rays ahead, 8 degrees left of it and right of
+    it, left, right; then the shortest range of each of 12 sectors: straight behind (60 degrees), behind on the right,
+    nine of 20 degrees from right to left, behind on the left.
+
+    Actions: Discrete (7), each for 0.2 s: stop, forward, back (0.3 m/s), left, right (1.05 rad/s), forward and left,
+    forward and right.
+
+    Reward: algorithm 1 of the dissertation, times 0.01. Its terms are in ``info``.
+
+    Start: up to 0.3 m to either side, any heading; the target up to 0.3 m to either side.
+
+    End: terminated by a collision or when the hull is within 0.25 m of the target; truncated after 200 steps.
+
+    ``task=HALLWAY_SEED`` is the dissertation's own: rewards as they are, and a time out that terminates.
+    """
+
+    default = HALLWAY
+
+
+class WheelchairsEnv(TaskEnv):
+    """Two wheelchairs side by side: ``RobotKit/Wheelchairs-v0`` (dissertation, chapter 4).
+
+    One agent drives both, down a corridor and round turns and curves of 90 and 180 degrees, to either side. Each
+    episode is on the next case.
+
+    Observation: Box (38,) float32: 19 numbers of the left wheelchair, 19 of the right one. Each: the five rays of
+    ``RobotKit/Hallway-v0``, two rays to the side where the other one should be, the 12 sectors; times 6, for a
+    centimetre decides whether two are side by side.
+
+    Actions: MultiDiscrete (4, 4), each for 0.2 s: stop, forward 0.3 m/s, left, right 1.05 rad/s.
+
+    Reward: progress of both along the way [m], -0.07 for every step and up to as much back for being side by side, -2
+    for a collision, +2 when both are in the target. Its terms are in ``info``, and so is whether the two are adjacent.
+
+    Start: side by side, 0.4 m apart, each within 0.05 m and 0.1 rad.
+
+    End: terminated by a collision or when both are within 0.4 m of the target at the same time; truncated after 300
+    steps.
+
+    ``task=WHEELCHAIRS_SEED`` is the dissertation's own: one of 16 actions, algorithm 2, no noise at the start, and a
+    time out that terminates; ``WHEELCHAIRS_SEED_49`` its first attempt.
+    """
+
+    default = WHEELCHAIRS

@@ -1,0 +1,82 @@
+"""Episodes, added up step by step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch import BatchEnv, Step
+from kit.learning.environment.transition import Transition
+
+
+class Outcome(Enum):
+    """How an episode ended."""
+
+    REACHED = "reached"
+    COLLIDED = "collided"
+    TIMED_OUT = "timed out"
+
+    @classmethod
+    def of(cls, transition: Transition, world: int) -> Outcome:
+        """Of a world whose episode this transition ended."""
+        if transition.collided[world]:
+            return cls.COLLIDED
+        return cls.REACHED if transition.reached[world] else cls.TIMED_OUT
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """One episode, from start to end."""
+
+    world: int
+    case: str
+    outcome: Outcome
+    steps: int
+    reward: float
+    """The sum over all steps."""
+    terms: dict[str, float]
+    """The same by named term; empty for a student's reward."""
+    adjacency: float
+    """The share of steps in which two robots were side by side, as their rays tell."""
+
+
+class Tally:
+    """Adds up what the worlds of a BatchEnv earn, and tells of the episodes that end.
+
+    Begins where the worlds begin: make a new one after a reset.
+    """
+
+    def __init__(self, batch: BatchEnv) -> None:
+        self._names = [case.name for case in batch.cases]
+        self._pair = batch.task.robots > 1
+        self._reward = np.zeros(batch.n)
+        self._adjacent = np.zeros(batch.n)
+        self._terms: dict[str, NDArray[np.float64]] = {}
+
+    def add(self, step: Step) -> list[Episode]:
+        """Takes one step of all worlds; returns the episodes that it ended."""
+        self._reward += step.rewards
+        for name, value in step.terms.items():
+            self._terms[name] = self._terms.get(name, 0.0) + value
+        if self._pair:
+            self._adjacent += step.transition.adjacent
+        over = np.flatnonzero(step.ended)
+        episodes = [self._episode(int(world), step.transition) for world in over]
+        for sums in (self._reward, self._adjacent, *self._terms.values()):
+            sums[over] = 0.0
+        return episodes
+
+    def _episode(self, world: int, transition: Transition) -> Episode:
+        steps = int(transition.step[world])
+        return Episode(
+            world=world,
+            case=self._names[int(transition.case[world])],
+            outcome=Outcome.of(transition, world),
+            steps=steps,
+            reward=float(self._reward[world]),
+            terms={name: float(sums[world]) for name, sums in self._terms.items()},
+            adjacency=float(self._adjacent[world]) / steps,
+        )

@@ -1,0 +1,34 @@
+"""What left and right become in a mirror: what is learned on one side is known on the other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch_map import Unsupported
+from kit.learning.environment.tasks import Task
+
+
+class Mirror:
+    """How a task's observations and actions look in a mirror. Raises Unsupported where its two sides are not alike."""
+
+    def __init__(self, task: Task) -> None:
+        try:
+            self._order, self._signs = task.observation.mirrored(task.robots)
+            self._moves = task.actions.mirrored()
+        except ValueError as error:
+            raise Unsupported(f"task {task.name} has no mirror image: {error}") from None
+        self._task = task
+
+    def observations(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(n, size), of (n, size)."""
+        mirrored: NDArray[np.float32] = seen[..., self._order] * self._signs
+        return mirrored
+
+    def actions(self, actions: NDArray[np.integer]) -> NDArray[np.integer]:
+        """Of the same shape. The left one of two robots is the right one in a mirror."""
+        task = self._task
+        choices = self._moves[task.actions.chosen(actions, task.robots)][:, ::-1]
+        if task.robots > 1 and task.actions.one_number:
+            choices = choices[:, :1] * len(self._moves) + choices[:, 1:]
+        return choices.reshape(actions.shape)

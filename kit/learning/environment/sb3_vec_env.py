@@ -1,0 +1,128 @@
+"""The batch engine as a vector environment of stable-baselines3 (needs the extra ``learn``)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_stats import Episode, Outcome, Tally
+from kit.learning.environment.mirror import Mirror
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.tasks import Task
+
+
+class BatchVecEnv(VecEnv):
+    """A BatchEnv (``.batch``) for the algorithms of stable-baselines3, which needs no Monitor around it.
+
+    A world resets itself in the step in which its episode ends, as all vector environments of that library do. The
+    ``info`` of that step then holds ``terminal_observation`` (what was seen before the reset), ``TimeLimit.truncated``,
+    ``episode`` (``r`` the sum of rewards, ``l`` steps, ``t`` seconds since the start, as Monitor gives them), ``case``,
+    ``outcome``, ``terms`` (the reward by named term) and, for two robots, ``adjacency``.
+    """
+
+    def __init__(self, batch: BatchEnv) -> None:
+        self.batch = batch
+        self._tally = Tally(batch)
+        self._actions: NDArray[np.integer] = np.zeros(0, dtype=np.int64)
+        self._started = time.perf_counter()
+        super().__init__(batch.n, batch.observation_space, batch.action_space)
+
+    def reset(self) -> VecEnvObs:
+        """Begins new episodes; from the start of the seed, if ``seed`` was called."""
+        seed = self._seeds[0]
+        self._reset_seeds()
+        self._reset_options()
+        self._tally = Tally(self.batch)
+        return self.batch.reset(None if seed is None else int(seed))
+
+    def step_async(self, actions: NDArray[np.integer]) -> None:
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        step = self.batch.step(self._actions)
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for episode in self._tally.add(step):
+            info = infos[episode.world]
+            info |= self._told(episode)
+            info["terminal_observation"] = step.final_observations[episode.world]
+            info["TimeLimit.truncated"] = bool(step.truncated[episode.world])
+        return step.observations, step.rewards, step.ended, infos
+
+    def _told(self, episode: Episode) -> dict[str, Any]:
+        seconds = time.perf_counter() - self._started
+        told: dict[str, Any] = {
+            "episode": {"r": episode.reward, "l": episode.steps, "t": seconds},
+            "case": episode.case,
+            "outcome": episode.outcome.value,
+            "is_success": episode.outcome is Outcome.REACHED,
+            "terms": episode.terms,
+        }
+        return told | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
+
+    def close(self) -> None:
+        """There is nothing to close."""
+
+    # All worlds share their attributes: there is one object behind them.
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        return [getattr(self.batch, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        raise AttributeError(f"the worlds of a batch are one: {attr_name} cannot be set for some of them")
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
+    ) -> list[Any]:
+        raise AttributeError(
+            f"the worlds of a batch are one: {method_name} cannot be called for some of them"
+        )
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: VecEnvIndices = None) -> list[bool]:
+        return [False] * len(list(self._get_indices(indices)))
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """A picture of every world."""
+        return [None] * self.num_envs
+
+
+class HalfMirrored(VecEnvWrapper):
+    """Of every case, each second world is seen in a mirror, and driven so. The worlds themselves are as they were."""
+
+    def __init__(self, venv: BatchVecEnv) -> None:
+        super().__init__(venv)
+        self._mirror = Mirror(venv.batch.task)
+        self._which = np.flatnonzero(np.arange(venv.num_envs) // len(venv.batch.cases) % 2)
+
+    def _mirrored(self, observations: Any) -> NDArray[np.float32]:
+        seen: NDArray[np.float32] = observations.copy()
+        seen[self._which] = self._mirror.observations(seen[self._which])
+        return seen
+
+    def reset(self) -> VecEnvObs:
+        return self._mirrored(self.venv.reset())
+
+    def step_async(self, actions: NDArray[np.integer]) -> None:
+        driven = actions.copy()
+        driven[self._which] = self._mirror.actions(actions[self._which])
+        self.venv.step_async(driven)
+
+    def step_wait(self) -> VecEnvStepReturn:
+        observations, rewards, dones, infos = self.venv.step_wait()
+        for number in self._which[dones[self._which]]:
+            info = infos[number]
+            info["terminal_observation"] = self._mirror.observations(info["terminal_observation"])
+        return self._mirrored(observations), rewards, dones, infos
+
+
+def make_vec(
+    task: Task, n: int, seed: int = 0, reward: RewardFunction | None = None, *, stay: bool = False
+) -> BatchVecEnv:
+    """``n`` worlds of the task for stable-baselines3; the rest as for ``BatchEnv``."""
+    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, stay=stay))

@@ -1,0 +1,75 @@
+"""Which task a run learns, in words that fit into a file: a task by name, its cases, and what was changed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Literal
+
+from kit.learning.environment.rewards import REWARDS, SCALE
+from kit.learning.environment.tasks import Task, UnknownTask, find_task
+from kit.world.problems import quoted, suggestion
+
+
+@dataclass(frozen=True, slots=True)
+class TaskChoice:
+    """A task of ``TASKS``, by name, and what is different from it. None leaves a setting as it is."""
+
+    task: str
+    on: tuple[str, ...] = ()
+    """Cases or groups of cases; all where empty."""
+    measured_to: Literal["hull", "axle"] | None = None
+    tells_target: bool | None = None
+    tells_arrived: bool | None = None
+    reward: str | None = None
+    """Another one of ``REWARDS``. It stays small where the task's own is small."""
+    scale: float | None = None
+    """Of the reward."""
+    one_number: bool | None = None
+    """Whether a pair's moves are one number."""
+    timeout_terminal: bool | None = None
+
+    def resolve(self) -> Task:
+        """The task. UnknownTask if something has no such name."""
+        task = find_task(self.task)
+        if self.on:
+            task = task.on(*self.on)
+        observation, actions, reward = task.observation, task.actions, task.reward
+        if self.reward is not None:
+            if self.reward not in REWARDS:
+                raise UnknownTask(
+                    f"there is no reward {quoted(self.reward)}: {suggestion(self.reward, REWARDS)}"
+                )
+            other = REWARDS[self.reward]
+            scale = 1.0 if other.small else SCALE if reward.small else reward.scale
+            reward = replace(other, scale=scale)
+        if self.scale is not None:
+            reward = replace(reward, scale=self.scale)
+        if self.tells_target is not None:
+            observation = replace(observation, target=self.tells_target)
+        if self.tells_arrived is not None:
+            observation = replace(observation, arrived=self.tells_arrived)
+        if self.one_number is not None:
+            actions = replace(actions, one_number=self.one_number)
+        task = replace(task, observation=observation, actions=actions, reward=reward)
+        if self.measured_to is not None:
+            task = replace(task, measured_to=self.measured_to)
+        if self.timeout_terminal is not None:
+            task = replace(task, timeout_terminal=self.timeout_terminal)
+        return task
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able: what differs from nothing."""
+        return {name: value for name, value in asdict(self).items() if value not in (None, ())}
+
+    @classmethod
+    def from_dict(cls, data: Any) -> TaskChoice:
+        """Of ``as_dict``. ValueError for anything else."""
+        known = {field.name for field in fields(cls)}
+        if not isinstance(data, dict) or "task" not in data or set(data) - known:
+            raise ValueError("no choice of a task")
+        return cls(**{**data, "on": tuple(data.get("on", ()))})
+
+    @property
+    def title(self) -> str:
+        """``hallway on doors``."""
+        return f"{self.task} on {', '.join(self.on)}" if self.on else self.task

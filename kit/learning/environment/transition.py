@@ -1,0 +1,170 @@
+"""What one step did: the record that rewards are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from kit.fields.adjacency import by_rays, graded
+from kit.learning.environment.observations import AHEAD, SIDE_RAYS
+
+Array: TypeAlias = Any
+"""A numpy array; for one world, where nothing is left of its shape, numpy's number."""
+
+DIAGONAL = 2
+"""So many rays (8 degrees) beside straight ahead."""
+
+
+@dataclass(frozen=True, eq=False)
+class Transition:
+    """What one step did: everything a reward may depend on. Metres, seconds, radians.
+
+    Shapes: ``...`` is ``()`` for one world and ``(n,)`` for many; R is the number of robots, the left one first.
+    """
+
+    case: Array
+    """(...) int: number of the case."""
+    step: Array
+    """(...) int: steps of this episode, this one included."""
+    max_steps: int
+    hit: Array
+    """(..., R) bool: who met a wall or the other robot."""
+    in_target: Array
+    """(..., R) bool"""
+    was_in_target: Array
+    """(..., R) bool: the same, before the step."""
+    move: Array
+    """(..., R) int: what each robot did, a ``Move``."""
+    previous_move: Array
+    """(..., R) int: what it did the step before; -1 in the first."""
+    pose: Array
+    """(..., R, 3) ``x y theta``"""
+    previous_pose: Array
+    """(..., R, 3): the same, before the step."""
+    target: Array
+    """(..., 2) ``x y``"""
+    to_go: Array
+    """(..., R) to the target's usual place, along the shortest way that keeps clear of walls."""
+    previous_to_go: Array
+    """(..., R)"""
+    full_turns: Array
+    """(..., R) int: whole turns, without ever turning to the other side."""
+    forward_steps: Array
+    """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
+    ranges: Array
+    """(..., R, 91) what each robot's lidar reads, as far as the agent sees."""
+
+    @property
+    def robots(self) -> int:
+        return int(self.hit.shape[-1])
+
+    @cached_property
+    def collided(self) -> Array:
+        """(...) bool"""
+        return self.hit[..., 0] if self.robots == 1 else self.hit.any(axis=-1)
+
+    @cached_property
+    def reached(self) -> Array:
+        """(...) bool: every robot is in the target, and none has collided."""
+        there = self.in_target[..., 0] if self.robots == 1 else self.in_target.all(axis=-1)
+        return there & ~self.collided
+
+    @cached_property
+    def timed_out(self) -> Array:
+        """(...) bool: that was the last step, without the two above."""
+        return (self.step >= self.max_steps) & ~self.collided & ~self.reached
+
+    @cached_property
+    def ended(self) -> Array:
+        """(...) bool: the episode is over, in one of these three ways."""
+        return self.collided | self.reached | (self.step >= self.max_steps)
+
+    @cached_property
+    def front(self) -> Array:
+        """(..., R) range straight ahead."""
+        return self.ranges[..., AHEAD]
+
+    @cached_property
+    def front_left(self) -> Array:
+        """(..., R) range 8 degrees to the left of ahead."""
+        return self.ranges[..., AHEAD + DIAGONAL]
+
+    @cached_property
+    def front_right(self) -> Array:
+        """(..., R)"""
+        return self.ranges[..., AHEAD - DIAGONAL]
+
+    @cached_property
+    def nearest(self) -> Array:
+        """(..., R) the shortest range of all."""
+        return self.ranges.min(axis=-1)
+
+    @cached_property
+    def distance(self) -> Array:
+        """(..., R) from the middle of the robot's axle to the target."""
+        return distance(self.pose, self.target)
+
+    @cached_property
+    def previous_distance(self) -> Array:
+        """(..., R): the same, before the step."""
+        return distance(self.previous_pose, self.target)
+
+    @cached_property
+    def bearing(self) -> Array:
+        """(..., R) of the target, from straight ahead, to the left positive, in [-pi, pi)."""
+        return bearing(self.pose, self.target)
+
+    @cached_property
+    def previous_bearing(self) -> Array:
+        """(..., R): the same, before the step."""
+        return bearing(self.previous_pose, self.target)
+
+    @cached_property
+    def adjacent(self) -> Array:
+        """(...) bool: two robots side by side, as four rays tell (dissertation, equations 4.7 to 4.9). Walls can
+        look the same. False for one robot."""
+        if self.robots == 1:
+            return np.zeros(np.shape(self.step), dtype=np.bool_)
+        left, right = self.ranges[..., 0, list(SIDE_RAYS[0])], self.ranges[..., 1, list(SIDE_RAYS[1])]
+        return by_rays(left, right)
+
+    @cached_property
+    def abreast(self) -> Array:
+        """(...) how well two robots stand side by side by their poses, 0 to 1: 1 where each is straight abeam of the
+        other and both face the same way. 0 for one robot."""
+        if self.robots == 1:
+            return np.zeros(np.shape(self.step))
+        return graded(self.pose[..., 0, :], self.pose[..., 1, :])
+
+    def at(self, index: Any) -> Transition:
+        """The transition of one world, or of some, out of many."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Transition(**{name: v if name == "max_steps" else v[index] for name, v in values.items()})
+
+
+FACTS = tuple(
+    sorted(
+        {field.name for field in fields(Transition)}
+        | {name for name, value in vars(Transition).items() if isinstance(value, property | cached_property)}
+    )
+)
+"""Everything that a transition tells, by name."""
+
+
+def distance(pose: Array, target: Array) -> Array:
+    """(..., R) from poses (..., R, 3) to targets (..., 2) [m]."""
+    return np.hypot(target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1])
+
+
+def bearing(pose: Array, target: Array) -> Array:
+    """(..., R) of targets (..., 2), from ahead of poses (..., R, 3), in [-pi, pi)."""
+    dx, dy = target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1]
+    return wrapped(np.arctan2(dy, dx) - pose[..., 2])
+
+
+def wrapped(angle: Array) -> Array:
+    """The same direction [rad], in [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi

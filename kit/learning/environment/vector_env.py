@@ -1,0 +1,61 @@
+"""The batch engine as a vector environment of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_stats import Tally
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.tasks import Task
+
+Observations = NDArray[np.float32]
+
+
+class BatchVectorEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
+    """``num_envs`` worlds of a task. A world resets itself in the step in which its episode ends (autoreset mode
+    ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
+    """
+
+    def __init__(
+        self, num_envs: int, task: Task, *, reward: RewardFunction | None = None, seed: int | None = None
+    ) -> None:
+        """``reward``: instead of the task's own. ``seed``: by chance if None."""
+        self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
+        self.num_envs = num_envs
+        chance = int(np.random.default_rng().integers(2**31))
+        self.batch = BatchEnv(task, num_envs, chance if seed is None else seed, reward=reward)
+        self.single_observation_space = self.batch.observation_space
+        self.single_action_space = self.batch.action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._tally = Tally(self.batch)
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Begins new episodes. One seed is enough: each world has its own randomness by its number."""
+        if isinstance(seed, list):
+            raise ValueError("give one seed: each world has its own randomness by its number")
+        self._tally = Tally(self.batch)
+        return self.batch.reset(seed), {}
+
+    def step(
+        self, actions: NDArray[np.int64]
+    ) -> tuple[Observations, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        step = self.batch.step(np.asarray(actions))
+        info: dict[str, Any] = {}
+        for episode in self._tally.add(step):
+            final = {
+                "episode": {"r": episode.reward, "l": episode.steps},
+                "case": episode.case,
+                "outcome": episode.outcome.value,
+            }
+            seen = step.final_observations[episode.world]
+            info = self._add_info(info, {"final_obs": seen, "final_info": final}, episode.world)
+        return step.observations, step.rewards, step.terminated, step.truncated, info

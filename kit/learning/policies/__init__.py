@@ -1,0 +1,1 @@
+"""Trained policies: arrays, evaluation, and deployment as a node."""

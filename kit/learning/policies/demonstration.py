@@ -1,0 +1,127 @@
+"""The newest policy at the wheel: one episode after the other in one world, for somebody to watch.
+
+Needs no torch: the learner leaves its policy as plain arrays. A newer one takes over between two episodes.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_scene import scene_of
+from kit.learning.environment.episode_stats import Outcome
+from kit.learning.policies.policies import Player, Policy
+from kit.learning.training.runs import Run
+from kit.render.scene import Scene
+from kit.render.trail import Trail
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """What there is to see between two steps."""
+
+    scene: Scene
+    case: str
+    step: int
+    trained: int
+    """Steps of training behind the policy."""
+    kept: bool
+    """The policy that was kept as the best one; else the newest one."""
+    outcome: Outcome | None
+    """At the end of the episode."""
+
+
+class Demonstration:
+    """Drives episode after episode of a run's task, case after case."""
+
+    def __init__(self, run: Run, *, greedy: bool = True, seed: int = 0) -> None:
+        self.case: str | None = None
+        """The case of the next episodes; None: one after the other."""
+        self._run = run
+        self._rng = None if greedy else np.random.default_rng(seed)
+        self._seed = seed
+        self._stamp: tuple[Path, int, int] | None = None
+        self._policy: Policy | None = None
+        self._player: Player | None = None
+        self._batch: BatchEnv | None = None
+        self._fresh = np.ones(1, dtype=np.bool_)
+        self._trails: list[Trail] = []
+        self._outcome: Outcome | None = None
+
+    @property
+    def step_time(self) -> float:
+        """Seconds of the robot's time that a step takes."""
+        assert self._batch is not None
+        return self._batch.task.step_time
+
+    @property
+    def over(self) -> bool:
+        """Whether the episode has ended."""
+        return self._outcome is not None
+
+    def begin(self, *, kept: bool = False) -> bool:
+        """Begins the next episode, with the newest policy, or with the best one; False if there is none yet.
+
+        PolicyError if it is damaged.
+        """
+        if not self._take_newest(kept):
+            return False
+        assert self._policy is not None
+        batch = self._batch
+        if batch is None:
+            batch = self._batch = BatchEnv(self._policy.trained_on.resolve(), 1, self._seed, restart=False)
+        names = [case.name for case in batch.cases]
+        cases = np.array([names.index(self.case)]) if self.case in names else None
+        self._observations = batch.reset(cases=cases)
+        self._player = self._policy.player(1, self._rng)
+        self._fresh = np.ones(1, dtype=np.bool_)
+        self._trails = [Trail() for _ in range(batch.task.robots)]
+        self._outcome = None
+        self._leave_trail(batch)
+        return True
+
+    def step(self) -> None:
+        """The robots do one step."""
+        assert self._batch is not None
+        assert self._player is not None
+        step = self._batch.step(self._player.act(self._observations, self._fresh))
+        self._observations, self._fresh = step.observations, np.zeros(1, dtype=np.bool_)
+        self._leave_trail(self._batch)
+        if step.ended[0]:
+            self._outcome = Outcome.of(step.transition, 0)
+
+    def moment(self) -> Moment:
+        """What there is to see now."""
+        assert self._batch is not None
+        assert self._policy is not None
+        assert self._stamp is not None
+        state = self._batch.state
+        return Moment(
+            scene_of(self._batch, 0, tuple(trail.points for trail in self._trails)),
+            self._batch.cases[int(state.case[0])].name,
+            int(state.step[0]),
+            self._policy.steps,
+            self._stamp[0] == self._run.best_policy,
+            self._outcome,
+        )
+
+    def _take_newest(self, kept: bool) -> bool:
+        """Reads the policy's file, if it is another one than before."""
+        files = self._run.newest_policy, self._run.best_policy
+        for file in reversed(files) if kept else files:
+            with suppress(FileNotFoundError):
+                found = file.stat()
+                stamp = file, found.st_mtime_ns, found.st_size
+                if stamp != self._stamp:
+                    self._policy = self._run.policy(newest=not kept)
+                    self._stamp = stamp
+                return True
+        return False
+
+    def _leave_trail(self, batch: BatchEnv) -> None:
+        for trail, (x, y, _) in zip(self._trails, batch.state.pose[0].tolist(), strict=True):
+            trail.add(x, y)

@@ -1,0 +1,211 @@
+"""How good a policy is: success case by case, on episodes that nothing else has seen, and how sure that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_stats import Episode, Outcome, Tally
+from kit.learning.environment.rewards import RewardFunction
+from kit.learning.environment.tasks import Task
+from kit.learning.policies.confidence_intervals import Interval, wilson
+from kit.learning.policies.policies import Policy
+from kit.world.catalogue import Case
+
+AT_ONCE = 1024
+"""About so many worlds side by side: more is not faster."""
+
+
+def seed_for(seed: int, purpose: str, number: int = 0) -> int:
+    """A seed of its own for each use of a run's seed, so that no two uses see the same episodes."""
+    words = np.random.SeedSequence((seed, number, *purpose.encode())).generate_state(1)
+    return int(words[0])
+
+
+@dataclass(frozen=True, slots=True)
+class CaseResult:
+    """What came of a case's episodes."""
+
+    case: str
+    group: str
+    outcomes: tuple[int, int, int]
+    """How many ended in each ``Outcome``."""
+    steps: float
+    """Mean length of those that reached the target; NaN where none has."""
+    reward: float
+    """Mean sum over an episode."""
+    adjacency: float
+    """Mean share of an episode's steps that two robots were side by side; NaN for one robot."""
+
+    @property
+    def episodes(self) -> int:
+        return sum(self.outcomes)
+
+    @property
+    def reached(self) -> int:
+        return self.outcomes[0]
+
+    @property
+    def share(self) -> float:
+        return self.reached / self.episodes
+
+    @property
+    def interval(self) -> Interval:
+        """Where the true share lies, with 95 % confidence."""
+        return wilson(self.reached, self.episodes)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of a test of all cases."""
+
+    task: str
+    greedy: bool
+    cases: tuple[CaseResult, ...]
+
+    @property
+    def mean(self) -> float:
+        """Of the cases' shares."""
+        return float(np.mean([case.share for case in self.cases]))
+
+    @property
+    def worst(self) -> CaseResult:
+        """The case that goes worst: a mean hides it."""
+        return min(self.cases, key=lambda case: case.share)
+
+    @property
+    def reward(self) -> float:
+        """Mean sum over an episode, of all cases."""
+        return float(np.mean([case.reward for case in self.cases]))
+
+    @property
+    def pair(self) -> bool:
+        """Whether two robots drove."""
+        return not np.isnan(self.cases[0].adjacency)
+
+    def groups(self) -> dict[str, float]:
+        """Mean share by group of cases; those without one are left out."""
+        names = dict.fromkeys(case.group for case in self.cases if case.group)
+        return {
+            name: float(np.mean([case.share for case in self.cases if case.group == name])) for name in names
+        }
+
+    def rows(self) -> list[str]:
+        """An aligned table: a row for each case, then the mean and the worst."""
+        width = max(len("case"), *(len(case.case) for case in self.cases))
+        head = f"{'case':{width}}  success  95 % interval  collided  timed out  steps"
+        rows = [head + ("  adjacent" if self.pair else "")]
+        for case in self.cases:
+            low, high = case.interval
+            _, collided, timed_out = (count / case.episodes for count in case.outcomes)
+            steps = f"{case.steps:5.0f}" if case.reached else "    -"
+            row = f"{case.case:{width}}  {case.share:7.3f}  {low:.3f} to {high:.3f}  {collided:8.3f}  {timed_out:9.3f}  {steps}"
+            rows.append(row + (f"  {case.adjacency:8.2f}" if self.pair else ""))
+        worst = self.worst
+        rows.append(f"{'mean':{width}}  {self.mean:7.3f}")
+        rows.append(
+            f"{'worst':{width}}  {worst.share:7.3f}  in {worst.case}, {worst.episodes} episodes each, {self.manner}"
+        )
+        return rows
+
+    @property
+    def manner(self) -> str:
+        return "greedy" if self.greedy else "sampled"
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; NaN as None."""
+        return {
+            "task": self.task,
+            "greedy": self.greedy,
+            "mean": self.mean,
+            "worst": self.worst.share,
+            "worst_case": self.worst.case,
+            "groups": self.groups(),
+            "cases": {
+                case.case: {
+                    **dict(zip(("reached", "collided", "timed_out"), case.outcomes, strict=True)),
+                    "share": case.share,
+                    "interval": list(case.interval),
+                    "steps": None if np.isnan(case.steps) else case.steps,
+                    "reward": case.reward,
+                    "adjacency": None if np.isnan(case.adjacency) else case.adjacency,
+                }
+                for case in self.cases
+            },
+        }
+
+
+class Examiner:
+    """Tests policies on a task. Keeps its worlds from one test to the next."""
+
+    def __init__(self, task: Task, reward: RewardFunction | None = None) -> None:
+        self.task = task
+        self._reward = reward
+        self._cases = tuple(case for _, case in task.courses())
+        self._batches: dict[int, BatchEnv] = {}
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        return tuple(case.name for case in self._cases)
+
+    def test(self, policy: Policy, episodes: int, seed: int, *, greedy: bool = True) -> Result:
+        """Of at least ``episodes`` of each case, whose randomness comes from ``seed``.
+
+        Every world drives the same number of episodes, so short ones do not count more often than long ones.
+        Raises PolicyError if the policy does not fit the task.
+        """
+        policy.fits(self.task)
+        rounds = -(-episodes * len(self._cases) // AT_ONCE)
+        n = len(self._cases) * -(-episodes // rounds)
+        batch = self._batch(n)
+        player = policy.player(n, None if greedy else np.random.default_rng(seed_for(seed, "moves")))
+        left, sums = np.full(n, rounds), {case.name: _Sums() for case in self._cases}
+        observations, fresh, tally = batch.reset(seed=seed), np.ones(n, dtype=np.bool_), Tally(batch)
+        with threadpool_limits(1, user_api="blas"):
+            while left.any():
+                step = batch.step(player.act(observations, fresh))
+                for episode in tally.add(step):
+                    if left[episode.world]:
+                        left[episode.world] -= 1
+                        sums[episode.case].add(episode)
+                observations, fresh = step.observations, step.ended
+        pair = self.task.robots > 1
+        return Result(
+            self.task.name, greedy, tuple(sums[case.name].result(case, pair) for case in self._cases)
+        )
+
+    def _batch(self, n: int) -> BatchEnv:
+        if n not in self._batches:
+            self._batches[n] = BatchEnv(self.task, n, reward=self._reward)
+        return self._batches[n]
+
+
+@dataclass(slots=True)
+class _Sums:
+    """Over the episodes of one case."""
+
+    outcomes: dict[Outcome, int] = field(default_factory=lambda: dict.fromkeys(Outcome, 0))
+    steps: int = 0
+    """Of those that reached the target."""
+    reward: float = 0.0
+    adjacency: float = 0.0
+
+    def add(self, episode: Episode) -> None:
+        self.outcomes[episode.outcome] += 1
+        self.steps += episode.steps if episode.outcome is Outcome.REACHED else 0
+        self.reward += episode.reward
+        self.adjacency += episode.adjacency
+
+    def result(self, case: Case, pair: bool) -> CaseResult:
+        reached, collided, timed_out = self.outcomes.values()
+        episodes = reached + collided + timed_out
+        return CaseResult(
+            *(case.name, case.group, (reached, collided, timed_out)),
+            steps=self.steps / reached if reached else np.nan,
+            reward=self.reward / episodes,
+            adjacency=self.adjacency / episodes if pair else np.nan,
+        )

@@ -1,0 +1,297 @@
+"""Policies as plain arrays: what training leaves behind, and all that playing needs. No torch.
+
+A policy is the rule that chooses actions. Here it is a brain, which gives every action a score for what is seen, and
+a way to choose by these scores: the best (greedy), or by chance (sampled), as the algorithm did while it learned.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from kit.learning.environment.task_spec import TaskChoice
+from kit.workspace import write_atomically
+
+Singles: TypeAlias = NDArray[np.float32]
+Integers: TypeAlias = NDArray[np.int64]
+Activation = Literal["tanh", "relu"]
+
+
+class PolicyError(Exception):
+    """A policy's file is damaged, or the policy does not fit the task; the message says which and what to do."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layer:
+    """A linear layer: ``x @ weights + bias``."""
+
+    weights: Singles
+    """(inputs, outputs)"""
+    bias: Singles
+    """(outputs,)"""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lstm:
+    """A layer with memory (Hochreiter and Schmidhuber 1997), its gates in torch's order: in, forget, cell, out."""
+
+    seen: Layer
+    """(inputs, 4 * h)"""
+    kept: Layer
+    """(h, 4 * h)"""
+
+    @property
+    def size(self) -> int:
+        return len(self.kept.weights)
+
+    def step(self, x: Singles, memory: Singles) -> tuple[Singles, Singles]:
+        """(n, h) outputs and the next memory, from inputs (n, inputs) and memory (n, 2, h): hidden, cell."""
+        gates = x @ self.seen.weights + self.seen.bias + memory[:, 0] @ self.kept.weights + self.kept.bias
+        enter, forget, cell, out = np.split(gates, 4, axis=1)
+        kept = _sigmoid(forget) * memory[:, 1] + _sigmoid(enter) * np.tanh(cell)
+        hidden = _sigmoid(out) * np.tanh(kept)
+        return hidden, np.stack((hidden, kept), axis=1)
+
+
+def _sigmoid(x: Singles) -> Singles:
+    """Written with tanh, which does not overflow."""
+    y: Singles = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
+    return y
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Network:
+    """A feed-forward network, perhaps with a memory in front."""
+
+    layers: tuple[Layer, ...]
+    activation: Activation
+    """Between the layers, not after the last."""
+    lstm: Lstm | None = None
+
+    @property
+    def inputs(self) -> int:
+        return len((self.lstm.seen if self.lstm else self.layers[0]).weights)
+
+    @property
+    def outputs(self) -> int:
+        return len(self.layers[-1].bias)
+
+    @property
+    def memory(self) -> int:
+        return self.lstm.size if self.lstm else 0
+
+    def scores(self, observations: Singles, memory: Singles) -> tuple[Singles, Singles]:
+        """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
+        x = observations
+        if self.lstm is not None:
+            x, memory = self.lstm.step(x, memory)
+        for layer in self.layers[:-1]:
+            x = x @ layer.weights + layer.bias
+            x = np.tanh(x) if self.activation == "tanh" else np.maximum(x, np.float32(0))
+        last = self.layers[-1]
+        return x @ last.weights + last.bias, memory
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """One row of scores for each state; a state is in which bins a few of the inputs lie."""
+
+    used: Integers
+    """(k,) which inputs count."""
+    edges: Singles
+    """(b - 1,) between the bins, rising."""
+    values: Singles
+    """(b ** k, outputs)"""
+    inputs: int
+
+    @property
+    def outputs(self) -> int:
+        return int(self.values.shape[1])
+
+    @property
+    def memory(self) -> int:
+        return 0
+
+    def states(self, observations: Singles) -> Integers:
+        """(n,) row numbers, from (n, inputs)."""
+        bins = np.searchsorted(self.edges, observations[:, self.used], side="right")
+        weights = (len(self.edges) + 1) ** np.arange(len(self.used))[::-1]
+        states: Integers = bins @ weights
+        return states
+
+    def scores(self, observations: Singles, memory: Singles) -> tuple[Singles, Singles]:
+        """(n, outputs); a table has no memory."""
+        return self.values[self.states(observations)], memory
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """How a sampled policy departs from the best action."""
+
+    kind: Literal["softmax", "epsilon"]
+    """In proportion to exp(score / amount), or anything at all with probability ``amount``."""
+    amount: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Policy:
+    """Which actions for which observations."""
+
+    brain: Network | Table
+    choices: tuple[int, ...]
+    """How many actions there are to choose from: one number, or one for each robot."""
+    chance: Chance
+    trained_on: TaskChoice
+    steps: int
+    """How long it has learned."""
+
+    def fits(self, task: Any) -> None:
+        """PolicyError if it cannot play ``task`` (a ``Task``)."""
+        sees = task.observation.size * task.robots
+        choices = choices_of(task.actions.space(task.robots))
+        if (sees, choices) != (self.brain.inputs, self.choices):
+            raise PolicyError(
+                f"this policy was trained on {self.trained_on.title}: it sees {self.brain.inputs} numbers and chooses "
+                f"from {_listed(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
+                f"{_listed(choices)}. Play it on the task it was trained on, or train another."
+            )
+
+    def player(self, n: int, rng: np.random.Generator | None = None) -> Player:
+        """One who plays ``n`` worlds: greedily, or, given a source of chance, sampled."""
+        return Player(self, n, rng)
+
+
+def _listed(choices: tuple[int, ...]) -> str:
+    return " x ".join(map(str, choices))
+
+
+def choices_of(space: spaces.Space[Any]) -> tuple[int, ...]:
+    """How many actions a Discrete or MultiDiscrete space has to choose from, number by number."""
+    if isinstance(space, spaces.Discrete):
+        return (int(space.n),)
+    if isinstance(space, spaces.MultiDiscrete):
+        return tuple(int(count) for count in space.nvec)
+    raise PolicyError(f"a policy chooses from discrete actions, not from {space}")
+
+
+class Player:
+    """A policy at play in ``n`` worlds, with its memory of their episodes."""
+
+    def __init__(self, policy: Policy, n: int, rng: np.random.Generator | None = None) -> None:
+        self.policy = policy
+        self._rng = rng
+        self.memory: Singles = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
+        """(n, 2, h)"""
+
+    def act(self, observations: Singles, fresh: NDArray[np.bool_] | None = None) -> Integers:
+        """(n,) actions, or (n, robots) of them; ``fresh`` (n,): where an episode has just begun."""
+        if fresh is not None:
+            self.memory[fresh] = 0.0
+        scores, self.memory = self.policy.brain.scores(
+            np.asarray(observations, dtype=np.float32), self.memory
+        )
+        choices = self.policy.choices
+        parts = np.split(scores, np.cumsum(choices)[:-1], axis=1)
+        chosen = np.stack([self._choose(part) for part in parts], axis=1)
+        return chosen[:, 0] if len(choices) == 1 else chosen
+
+    def _choose(self, scores: Singles) -> Integers:
+        best: Integers = scores.argmax(axis=1)
+        if self._rng is None:
+            return best
+        chance = self.policy.chance
+        if chance.kind == "epsilon":
+            anything = self._rng.integers(scores.shape[1], size=len(scores))
+            return np.where(self._rng.random(len(scores)) < chance.amount, anything, best)
+        # The greatest of score plus Gumbel noise is drawn in proportion to exp(score).
+        noisy: Integers = (scores / chance.amount + self._rng.gumbel(size=scores.shape)).argmax(axis=1)
+        return noisy
+
+
+FORMAT = 1
+
+
+def save_policy(policy: Policy, file: Path) -> None:
+    """Writes it, atomically, as an ``.npz`` of plain arrays and one text. OSError if it cannot be written."""
+    write_atomically(file, to_bytes(policy))
+
+
+def to_bytes(policy: Policy) -> bytes:
+    """What ``save_policy`` writes."""
+    about = {
+        "format": FORMAT,
+        "choices": policy.choices,
+        "chance": [policy.chance.kind, policy.chance.amount],
+        "task": policy.trained_on.as_dict(),
+        "steps": policy.steps,
+        "activation": getattr(policy.brain, "activation", None),
+        "inputs": policy.brain.inputs,
+    }
+    text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
+        for name, array in {"about": text, **_arrays(policy.brain)}.items():
+            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
+                np.lib.format.write_array(member, array, allow_pickle=False)
+    return buffer.getvalue()
+
+
+def _arrays(brain: Network | Table) -> dict[str, NDArray[Any]]:
+    if isinstance(brain, Table):
+        return {"used": brain.used, "edges": brain.edges, "values": brain.values}
+    layers = [*((brain.lstm.seen, brain.lstm.kept) if brain.lstm else ()), *brain.layers]
+    names = [*(("seen", "kept") if brain.lstm else ()), *(str(number) for number in range(len(brain.layers)))]
+    named: dict[str, NDArray[Any]] = {}
+    for name, layer in zip(names, layers, strict=True):
+        named[f"weights_{name}"], named[f"bias_{name}"] = layer.weights, layer.bias
+    return named
+
+
+def load_policy(file: Path) -> Policy:
+    """Reads what ``save_policy`` wrote. PolicyError if the file is damaged; FileNotFoundError if there is none."""
+    try:
+        with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+        return _policy(arrays)
+    except FileNotFoundError:
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
+        raise PolicyError(
+            f"{file}: not a policy, or a damaged one ({error}). `kit runs` lists those there are."
+        ) from None
+
+
+def _policy(arrays: dict[str, NDArray[Any]]) -> Policy:
+    about = json.loads(arrays["about"].tobytes())
+    if about["format"] != FORMAT:
+        raise ValueError(f"format {about['format']}, this kit reads {FORMAT}")
+    kind, amount = about["chance"]
+    return Policy(
+        _table(arrays, about["inputs"]) if "values" in arrays else _network(arrays, about["activation"]),
+        tuple(about["choices"]),
+        Chance(kind, float(amount)),
+        TaskChoice.from_dict(about["task"]),
+        int(about["steps"]),
+    )
+
+
+def _table(arrays: dict[str, NDArray[Any]], inputs: int) -> Table:
+    return Table(arrays["used"], arrays["edges"], arrays["values"], inputs)
+
+
+def _network(arrays: dict[str, NDArray[Any]], activation: str) -> Network:
+    def layer(name: str) -> Layer:
+        return Layer(arrays[f"weights_{name}"], arrays[f"bias_{name}"])
+
+    count = sum(name.removeprefix("weights_").isdigit() for name in arrays)
+    known: Activation = next(each for each in get_args(Activation) if each == activation)
+    lstm = Lstm(layer("seen"), layer("kept")) if "weights_seen" in arrays else None
+    return Network(tuple(layer(str(number)) for number in range(count)), known, lstm)

@@ -1,0 +1,1 @@
+"""Training runs: learners, settings, schedules, files on disk."""

@@ -1,0 +1,111 @@
+"""Every algorithm that can learn a task, one row each: the discrete-action ones of stable-baselines3 and sb3-contrib,
+and the kit's own (Boltzmann exploration, and two tables for teaching).
+
+A new algorithm is one more row, with its settings in ``presets.py``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Literal
+
+from kit.world.problems import quoted, suggestion
+
+Family = Literal["rollouts", "replay", "search", "table"]
+"""How it learns: from what its present policy just did; from a memory of all it did; by trying changed networks
+for whole episodes; or a number for each state and action, without a network."""
+
+
+class UnknownAlgorithm(LookupError):
+    """No algorithm has that name; the message offers the nearest one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Algorithm:
+    """One way to learn."""
+
+    name: str
+    title: str
+    family: Family
+    module: str
+    cls: str
+    policy: str = "MlpPolicy"
+    several: bool = True
+    """Whether it can choose several numbers at once, one for each robot."""
+    maker: Literal["stable-baselines3", "sb3-contrib", "kit"] = "stable-baselines3"
+
+    @property
+    def neural(self) -> bool:
+        """Whether it needs the extra ``learn``."""
+        return self.family != "table"
+
+    def load(self) -> Any:
+        """The class. ImportError without the extra ``learn``."""
+        return getattr(import_module(self.module), self.cls)
+
+
+_SB3, _CONTRIB = "stable_baselines3", "sb3_contrib"
+
+ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
+    {
+        row.name: row
+        for row in (
+            Algorithm("ppo", "Proximal policy optimisation", "rollouts", _SB3, "PPO"),
+            Algorithm("a2c", "Advantage actor-critic", "rollouts", _SB3, "A2C"),
+            Algorithm("dqn", "Deep Q-network, any action now and then", "replay", _SB3, "DQN", several=False),
+            Algorithm(
+                *("boltzmann-dqn", "Deep Q-network, better actions more often (the seed's)", "replay"),
+                *("kit.learning.training.exploration", "BoltzmannDQN"),
+                several=False,
+                maker="kit",
+            ),
+            Algorithm(
+                *("qrdqn", "Deep Q-network that learns how returns are spread", "replay", _CONTRIB, "QRDQN"),
+                several=False,
+                maker="sb3-contrib",
+            ),
+            Algorithm(
+                "trpo", "Trust region policy optimisation", "rollouts", _CONTRIB, "TRPO", maker="sb3-contrib"
+            ),
+            Algorithm(
+                *("recurrent-ppo", "PPO with a memory", "rollouts", _CONTRIB, "RecurrentPPO"),
+                policy="MlpLstmPolicy",
+                maker="sb3-contrib",
+            ),
+            Algorithm(
+                *("maskable-ppo", "PPO that can be forbidden actions", "rollouts", _CONTRIB, "MaskablePPO"),
+                maker="sb3-contrib",
+            ),
+            Algorithm(
+                *("ars", "Augmented random search, no gradients", "search", _CONTRIB, "ARS"),
+                several=False,
+                maker="sb3-contrib",
+            ),
+            Algorithm(
+                *("q-learning", "A table, learned from the best next action", "table"),
+                *("kit.learning.training.tabular", "QLearning"),
+                several=False,
+                maker="kit",
+            ),
+            Algorithm(
+                *("sarsa", "A table, learned from the next action really taken", "table"),
+                *("kit.learning.training.tabular", "Sarsa"),
+                several=False,
+                maker="kit",
+            ),
+        )
+    }
+)
+"""By the word that ``kit train --algo`` takes."""
+
+
+def find_algorithm(name: str) -> Algorithm:
+    """UnknownAlgorithm if there is none of that name."""
+    if name not in ALGORITHMS:
+        raise UnknownAlgorithm(
+            f"there is no algorithm {quoted(name)}: {suggestion(name, ALGORITHMS)}. There are: {', '.join(ALGORITHMS)}."
+        )
+    return ALGORITHMS[name]

@@ -1,0 +1,138 @@
+"""Trained on one group of cases, tested on all (dissertation, table 3.5). Made once, resumable at any time.
+
+Every group is a run of its own in the table's folder; those that have ended are not run again. Two are trained at
+once: one learner keeps one core busy.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from kit.learning.policies.evaluation import Examiner, seed_for
+from kit.learning.training.runs import Run, RunConfig, RunError, new_run
+from kit.learning.training.worker import start
+from kit.workspace import write_atomically
+
+ALL = "all"
+SEED_MEANS: Mapping[str, float] = MappingProxyType(
+    {"doors": 0.797, "obstacles": 0.674, "90_turns": 0.711, "180_turns": 0.711, ALL: 0.825}
+)
+"""The dissertation's means over all 15 cases, by the group trained on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One group trained on."""
+
+    group: str
+    steps: int
+    seconds: float
+    shares: Mapping[str, float]
+    """By case tested on."""
+
+    @property
+    def mean(self) -> float:
+        return float(np.mean([*self.shares.values()]))
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation over the cases, as the dissertation gives it (of a sample)."""
+        return float(np.std([*self.shares.values()], ddof=1)) if len(self.shares) > 1 else 0.0
+
+
+def groups_of(config: RunConfig) -> tuple[str, ...]:
+    """The task's groups of more than one case, and all cases together."""
+    groups = [case.group for _, case in config.choice.resolve().courses() if case.group]
+    return (*(group for group in dict.fromkeys(groups) if groups.count(group) > 1), ALL)
+
+
+def crosstable(
+    folder: Path,
+    config: RunConfig,
+    groups: Sequence[str],
+    *,
+    episodes: int = 500,
+    at_once: int | None = None,
+    tell: Callable[[str], None] = lambda text: None,
+) -> tuple[Column, ...]:
+    """Trains what is missing and tests what is untested; the columns in the order of ``groups``.
+
+    ``folder`` holds the runs and is made if it is missing. ``tell`` hears of what is done. UnknownTask for a group
+    that is none; RunError where a training fails, or the folder holds the table of something else.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    configs = {group: _trained_on(config, group) for group in groups}
+    for each in configs.values():
+        each.choice.resolve()
+    with ThreadPoolExecutor(at_once or max(1, os.cpu_count() or 1)) as pool:
+        futures = {pool.submit(_train, folder, group, each): group for group, each in configs.items()}
+        for future in as_completed(futures):
+            summary = future.result().summary()
+            tell(f"trained on {futures[future]}: {summary.steps:,} steps, {summary.seconds:.0f} s")
+    return tuple(_column(Run(folder / group), config, episodes) for group in groups)
+
+
+def _trained_on(config: RunConfig, group: str) -> RunConfig:
+    on = config.choice.on if group == ALL else (group,)
+    return replace(config, choice=replace(config.choice, on=on))
+
+
+def _train(folder: Path, group: str, config: RunConfig) -> Run:
+    """The group's run, at its end."""
+    run = Run(folder / group)
+    if not (run.folder / "config.json").exists():
+        run = new_run(folder, config, group)
+    elif run.config() != config:
+        raise RunError(f"{run.folder} was trained with other settings. Give this table another --name.")
+    if run.summary().state not in ("finished", "failed"):
+        start(run).wait()
+    summary = run.summary()
+    if summary.state != "finished":
+        raise RunError(
+            f"{group}: training is {summary.state}. {summary.reason} See {run.log}; the same command goes on."
+        )
+    return run
+
+
+def _column(run: Run, config: RunConfig, episodes: int) -> Column:
+    """The run's policy on all cases; tested once, then read."""
+    file = run.folder / f"tested-{episodes}.json"
+    if file.exists():
+        stored: dict[str, Any] = json.loads(file.read_bytes())
+    else:
+        examiner = Examiner(config.choice.resolve())
+        result = examiner.test(run.policy(), episodes, seed_for(config.seed, "crosstable"))
+        stored = {case.case: case.share for case in result.cases}
+        write_atomically(file, json.dumps(stored).encode())
+    summary = run.summary()
+    return Column(run.name, summary.steps, summary.seconds, stored)
+
+
+def rows_of(columns: Sequence[Column], compare: Mapping[str, float] = SEED_MEANS) -> list[str]:
+    """An aligned table: a row for each case tested on; means, and those of ``compare`` below."""
+    cases = list(columns[0].shares)
+    width = max(len("dissertation"), *(len(case) for case in cases))
+    wide = [max(9, len(column.group)) for column in columns]
+
+    def row(head: str, cells: Sequence[str]) -> str:
+        return "  ".join([f"{head:{width}}", *(f"{cell:>{w}}" for cell, w in zip(cells, wide, strict=True))])
+
+    rows = [row("tested on", [column.group for column in columns])]
+    rows += [row(case, [f"{column.shares[case]:.3f}" for column in columns]) for case in cases]
+    rows.append(row("mean", [f"{column.mean:.3f}" for column in columns]))
+    rows.append(row("spread", [f"{column.spread:.3f}" for column in columns]))
+    rows.append(row("steps", [f"{column.steps:,}" for column in columns]))
+    rows.append(row("seconds", [f"{column.seconds:.0f}" for column in columns]))
+    if any(column.group in compare for column in columns):
+        means = [f"{compare[column.group]:.3f}" if column.group in compare else "" for column in columns]
+        rows.append(row("dissertation", means))
+    return rows

@@ -1,0 +1,220 @@
+"""A learner with a neural network: any algorithm of the table that stable-baselines3's classes make (needs the extra
+``learn``)."""
+
+from __future__ import annotations
+
+import copy
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.vec_env import VecEnvWrapper
+from torch import nn
+
+from kit.learning.environment.episode_stats import Episode, Outcome
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.export import chance_of, network_of
+from kit.learning.policies.policies import Policy, choices_of
+from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.learner import Watcher
+from kit.learning.training.presets import Falling, Preset, Replay, Rollouts
+
+SLOWER = 0.5
+"""By this the learning rate is multiplied each time a learner had to go back."""
+FUSED: Mapping[str, Mapping[str, Any]] = {
+    "ppo": {"fused": True, "eps": 1e-5},
+    "maskable-ppo": {"fused": True, "eps": 1e-5},
+    "recurrent-ppo": {"fused": True, "eps": 1e-5},
+    "trpo": {"fused": True, "eps": 1e-5},
+    "dqn": {"fused": True},
+    "boltzmann-dqn": {"fused": True},
+    "qrdqn": {"fused": True},
+}
+"""Those that learn by Adam: a step in one call, instead of ten for each layer. The rest is as the library has it."""
+ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU}
+LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking": False}}
+"""The tasks forbid no action anywhere."""
+
+
+class _Watched(VecEnvWrapper):
+    """Tells the watcher of every episode that ends."""
+
+    watcher: Watcher | None = None
+
+    def reset(self) -> Any:
+        return self.venv.reset()
+
+    def step_wait(self) -> Any:
+        observations, rewards, dones, infos = self.venv.step_wait()
+        if self.watcher is not None:
+            for number in np.flatnonzero(dones):
+                self.watcher.saw(_episode(int(number), infos[number]))
+        return observations, rewards, dones, infos
+
+
+def _episode(world: int, info: Mapping[str, Any]) -> Episode:
+    """As ``BatchVecEnv`` tells of it."""
+    return Episode(
+        world,
+        info["case"],
+        Outcome(info["outcome"]),
+        info["episode"]["l"],
+        info["episode"]["r"],
+        info["terms"],
+        info.get("adjacency", 0.0),
+    )
+
+
+class _Between(BaseCallback):
+    """Calls the watcher where the policy stands still: before each stretch of driving."""
+
+    def __init__(self, watcher: Watcher, entropy: Falling | None) -> None:
+        super().__init__()
+        self._watcher = watcher
+        self._entropy = entropy
+
+    def _on_rollout_start(self) -> None:
+        if self._entropy is not None:
+            self.model.ent_coef = self._entropy.at(self.model._current_progress_remaining)
+        self._watcher.between()
+
+    def _on_step(self) -> bool:
+        return True
+
+
+class DeepLearner:
+    """Wraps one model. torch runs on one thread: more are no faster here, and results would depend on their number."""
+
+    def __init__(
+        self,
+        algorithm: Algorithm,
+        preset: Preset,
+        choice: TaskChoice,
+        venv: Any,
+        seed: int,
+        tensorboard: Path | None = None,
+    ) -> None:
+        """``venv``: a ``BatchVecEnv``. ``tensorboard``: a folder for its files."""
+        torch.set_num_threads(1)
+        self._algorithm = algorithm
+        self._preset = preset
+        self._choice = choice
+        self._env = _Watched(venv)
+        self._slower = 1.0
+        network: dict[str, Any] = {"net_arch": list(preset.layers)}
+        if preset.activation is not None:
+            network["activation_fn"] = ACTIVATIONS[preset.activation]
+        if preset.memory is not None:
+            network["lstm_hidden_size"] = preset.memory
+        if algorithm.name in FUSED:
+            network["optimizer_kwargs"] = dict(FUSED[algorithm.name])
+        keywords = preset.keywords()
+        if preset.learning_rate is not None:
+            keywords["learning_rate"] = self._rate
+        self._model = algorithm.load()(
+            *(algorithm.policy, self._env),
+            policy_kwargs=network,
+            seed=seed,
+            device="cpu",
+            tensorboard_log=None if tensorboard is None else str(tensorboard),
+            **keywords,
+        )
+
+    def _rate(self, left: float) -> float:
+        assert self._preset.learning_rate is not None
+        return self._slower * self._preset.learning_rate.at(left)
+
+    @property
+    def steps(self) -> int:
+        return int(self._model.num_timesteps)
+
+    def learn(self, steps: int, watcher: Watcher) -> None:
+        settings = self._preset.settings
+        entropy = settings.ent_coef if isinstance(settings, Rollouts) else None
+        self._env.watcher = watcher
+        self._model.learn(
+            max(0, steps - self.steps),
+            _Between(watcher, entropy),
+            reset_num_timesteps=False,
+            tb_log_name="training",
+            **LEARN_OPTIONS.get(self._algorithm.name, {}),
+        )
+
+    def deal(self, shares: NDArray[np.float64]) -> None:
+        batch = self._env.unwrapped.batch
+        if batch.stays:
+            batch.deal(shares)
+
+    def policy(self) -> Policy:
+        return Policy(
+            network_of(self._model),
+            choices_of(self._model.action_space),
+            chance_of(self._model),
+            self._choice,
+            self.steps,
+        )
+
+    def remember(self) -> Any:
+        return copy.deepcopy(self._model.get_parameters())
+
+    def recall(self, known: Any) -> None:
+        self._put(copy.deepcopy(known))
+        self._slower *= SLOWER
+
+    def _put(self, parameters: Any) -> None:
+        self._model.set_parameters(parameters, device="cpu")
+        if self._algorithm.family == "search":  # it keeps a copy of its own
+            self._model.weights = nn.utils.parameters_to_vector(self._model.policy.parameters()).detach()
+
+    def save(self) -> dict[str, bytes]:
+        parameters = io.BytesIO()
+        torch.save(self._model.get_parameters(), parameters)
+        counts = {
+            "algorithm": self._algorithm.name,
+            "steps": self.steps,
+            "updates": int(self._model._n_updates),
+            "slower": self._slower,
+        }
+        parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
+        if isinstance(self._preset.settings, Replay):
+            parts["replay.npz"] = _replay_bytes(self._model.replay_buffer)
+        return parts
+
+    def load(self, parts: Mapping[str, bytes]) -> None:
+        counts = json.loads(parts["learner.json"])
+        if counts["algorithm"] != self._algorithm.name:
+            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+        known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
+        self._put(known)
+        self._model.num_timesteps = int(counts["steps"])
+        self._model._n_updates = int(counts["updates"])
+        self._slower = float(counts["slower"])
+        if "replay.npz" in parts:
+            _fill_replay(self._model.replay_buffer, parts["replay.npz"])
+
+
+REPLAYED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+
+
+def _replay_bytes(buffer: Any) -> bytes:
+    """What a replay buffer holds."""
+    filled = buffer.buffer_size if buffer.full else buffer.pos
+    file = io.BytesIO()
+    place = np.array([buffer.pos, int(buffer.full)])
+    np.savez(file, place, *(getattr(buffer, name)[:filled] for name in REPLAYED))
+    return file.getvalue()
+
+
+def _fill_replay(buffer: Any, data: bytes) -> None:
+    with np.load(io.BytesIO(data), allow_pickle=False) as stored:
+        pos, full = stored["arr_0"].tolist()
+        for number, name in enumerate(REPLAYED, start=1):
+            values = stored[f"arr_{number}"]
+            getattr(buffer, name)[: len(values)] = values
+    buffer.pos, buffer.full = pos, bool(full)

@@ -1,0 +1,236 @@
+"""Where a training stands, kept up event by event: curves, outcomes, cases, rewards, the time that is left.
+
+Whoever shows a run reads each event once, however long the run is.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.episode_stats import Outcome
+from kit.learning.training.events import Ended, Event, Examined, Progress, Started
+from kit.learning.training.run_text import line_of, shares_of
+from kit.learning.training.runs import Order, RunConfig, Summary, summarise
+from kit.learning.training.training import chosen_preset
+
+RECENT = 10
+"""Batches of training, about five seconds: over so many the present figures are taken."""
+
+Floats: TypeAlias = NDArray[np.float64]
+Counts: TypeAlias = tuple[int, ...]
+"""How many episodes ended in each ``Outcome``, in its order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a run is about, and how far it may go."""
+
+    title: str
+    cases: tuple[str, ...]
+    steps: int
+    """At most."""
+    goal: float | None
+    """The success at which it stops; None if it goes to its last step."""
+    greedy: bool
+    """Whether its tests play the best action, not one by chance."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Batches:
+    """What training brought: one row for each batch of episodes."""
+
+    steps: Floats
+    """(n,), rising."""
+    outcomes: NDArray[np.int64]
+    """(n, 3) episodes, in the order of ``Outcome``."""
+    reward: Floats
+    """(n,) mean sum over an episode."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Looks:
+    """What the tests found: one row for each."""
+
+    steps: Floats
+    """(n,), rising."""
+    mean: Floats
+    """(n,) share of episodes that reached the target, mean over the cases."""
+    worst: Floats
+    """(n,) of the worst case."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaseStanding:
+    """One case: a map and a direction."""
+
+    name: str
+    trained: Counts
+    """Of late, in training."""
+    tested: Counts
+    """In the last test; all 0 before it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """All there is to show of a run, at one moment."""
+
+    plan: Plan
+    summary: Summary
+    batches: Batches
+    looks: Looks
+    cases: tuple[CaseStanding, ...]
+    rate: float
+    """Steps a second in training, of late."""
+    left_s: float | None
+    """To the last step, tests included; None where nothing is known. A goal may be reached earlier."""
+    reward: float | None
+    """Mean sum over an episode, of late; likewise below."""
+    length: float | None
+    """Steps."""
+    adjacency: float | None
+    """Of two robots: mean share of steps side by side."""
+    terms: dict[str, float]
+    """The reward by named term."""
+    note: str
+    """What happened last, but for progress."""
+
+
+def plan_of(config: RunConfig) -> Plan:
+    """UnknownTask or UnknownAlgorithm if the run is of a kit that knew others."""
+    preset = chosen_preset(config)
+    strategy = preset.strategy
+    goal: float | None = getattr(strategy, "goal", None)
+    words = [config.choice.title, config.algorithm, f"preset {config.preset}", f"seed {config.seed}"]
+    return Plan(
+        ", ".join(words),
+        tuple(case.name for _, case in config.choice.resolve().courses()),
+        preset.steps,
+        None if config.keep_training else goal,
+        strategy.greedy,
+    )
+
+
+class Logbook:
+    """Takes a run's events one after the other, and says at any time where the run stands."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._last: dict[tuple[type[Event], bool], Event] = {}
+        """The last of every kind, the newest last: what a summary needs."""
+        self._batches: list[tuple[int, Counts, float]] = []
+        self._looks: list[tuple[int, float, float]] = []
+        self._recent: deque[Progress] = deque(maxlen=RECENT)
+        self._tested: dict[str, Counts] = {}
+        self._note = ""
+
+    def add(self, event: Event) -> None:
+        """Takes the next event."""
+        kind = type(event), isinstance(event, Examined) and event.kept
+        self._last.pop(kind, None)
+        self._last[kind] = event
+        match event:
+            case Started():
+                self._begin_again(event.steps)
+            case Progress():
+                self._recent.append(event)
+                outcomes = _sum(event.episodes.values())
+                if event.reward is not None:
+                    self._batches.append((event.steps, outcomes, event.reward))
+            case Examined():
+                shares = list(shares_of(event).values())
+                self._looks.append((event.steps, sum(shares) / len(shares), min(shares)))
+                self._tested = {case: tuple(counts) for case, counts in event.cases.items()}
+            case _:
+                pass
+        if not isinstance(event, Progress):
+            self._note = _told(event)
+
+    def standing(self, *, alive: bool, order: Order) -> Standing:
+        """Where the run stands, given whether somebody trains it and what that one was asked to do."""
+        summary = summarise(tuple(self._last.values()), alive=alive, order=order)
+        return Standing(
+            plan=self._plan,
+            summary=summary,
+            batches=self._as_batches(),
+            looks=Looks(*np.array(self._looks, dtype=np.float64).reshape(-1, 3).T),
+            cases=tuple(
+                CaseStanding(
+                    name,
+                    _sum(each.episodes[name] for each in self._recent if name in each.episodes),
+                    self._tested.get(name, _sum(())),
+                )
+                for name in self._plan.cases
+            ),
+            rate=_mean([(1, each.rate) for each in self._recent]) or 0.0,
+            left_s=self._left() if summary.state in ("running", "paused") else None,
+            reward=self._of_late("reward"),
+            length=self._of_late("length"),
+            adjacency=self._of_late("adjacency"),
+            terms=self._terms(),
+            note=self._note,
+        )
+
+    def _begin_again(self, steps: int) -> None:
+        """A killed run goes on from its last checkpoint: what came after that is not part of it any more."""
+        self._batches = [each for each in self._batches if each[0] <= steps]
+        self._looks = [each for each in self._looks if each[0] <= steps]
+        self._recent.clear()
+
+    def _as_batches(self) -> Batches:
+        steps = np.array([steps for steps, _, _ in self._batches], dtype=np.float64)
+        outcomes = np.array([counts for _, counts, _ in self._batches], dtype=np.int64)
+        reward = np.array([reward for _, _, reward in self._batches], dtype=np.float64)
+        return Batches(steps, outcomes.reshape(-1, len(Outcome)), reward)
+
+    def _left(self) -> float | None:
+        if len(self._recent) < 2:
+            return None
+        first, last = self._recent[0], self._recent[-1]
+        gone = last.seconds - first.seconds
+        if gone <= 0 or last.steps <= first.steps:
+            return None
+        return max(0, self._plan.steps - last.steps) * gone / (last.steps - first.steps)
+
+    def _of_late(self, name: str) -> float | None:
+        values = ((_episodes(each), getattr(each, name)) for each in self._recent)
+        return _mean([(count, value) for count, value in values if value is not None])
+
+    def _terms(self) -> dict[str, float]:
+        names = dict.fromkeys(name for each in self._recent for name in each.terms)
+        means = {
+            name: _mean([(_episodes(each), each.terms[name]) for each in self._recent if name in each.terms])
+            for name in names
+        }
+        return {name: mean for name, mean in means.items() if mean is not None}
+
+
+def _told(event: Event) -> str:
+    """In one line, without steps and seconds, which stand elsewhere."""
+    if isinstance(event, Ended):
+        return f"{event.how}: {event.reason}"
+    if isinstance(event, Examined):
+        line = line_of(event)
+        return line[line.index("TEST") :]
+    return line_of(event)
+
+
+def _episodes(progress: Progress) -> int:
+    return sum(map(sum, progress.episodes.values()))
+
+
+def _sum(counts: Iterable[Sequence[int]]) -> Counts:
+    total = [0] * len(Outcome)
+    for each in counts:
+        total = [one + other for one, other in zip(total, each, strict=True)]
+    return tuple(total)
+
+
+def _mean(weighed: list[tuple[int, float]]) -> float | None:
+    weight = sum(count for count, _ in weighed)
+    return sum(count * value for count, value in weighed) / weight if weight else None

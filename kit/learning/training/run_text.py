@@ -1,0 +1,101 @@
+"""Runs in words: one line for an event, a row for a run, a table for several."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from kit.learning.environment.episode_stats import Outcome
+from kit.learning.policies.evaluation import Result
+from kit.learning.training.events import Ended, Event, Examined, Noted, Progress, Started
+from kit.learning.training.runs import Run, RunError, Summary
+
+
+def line_of(event: Event) -> str:
+    """What happened, in one line."""
+    match event:
+        case Started():
+            return f"started at step {event.steps:,}" if event.steps else "started"
+        case Progress():
+            return _progress(event)
+        case Examined():
+            return _tested(event)
+        case Noted():
+            return event.text
+        case Ended():
+            return f"{event.how} after {event.steps:,} steps and {event.seconds:.1f} s: {event.reason}"
+
+
+def _progress(event: Progress) -> str:
+    ends = [sum(counts[place] for counts in event.episodes.values()) for place in range(len(Outcome))]
+    total = sum(ends)
+    parts = [f"{event.steps:>11,} steps  {event.seconds:7.1f} s  {event.rate:8,.0f} steps/s"]
+    if total:
+        parts.append(
+            ", ".join(f"{end / total:.0%} {kind.value}" for end, kind in zip(ends, Outcome, strict=True))
+        )
+    if event.reward is not None:
+        parts.append(f"reward {event.reward:.2f}")
+    return "  ".join(parts)
+
+
+def _tested(event: Examined) -> str:
+    shares = shares_of(event)
+    case = min(shares, key=lambda name: shares[name])
+    mean = sum(shares.values()) / len(shares)
+    kept = ", kept" if event.kept else ""
+    reason = f"; {event.reason}" if event.reason else ""
+    return (
+        f"{event.steps:>11,} steps  {event.seconds:7.1f} s  TEST mean {mean:.3f}, worst {shares[case]:.3f} "
+        f"({case}){kept}{reason}"
+    )
+
+
+def shares_of(event: Examined) -> dict[str, float]:
+    """By case: how many of the episodes reached the target."""
+    return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
+
+
+def table_of(runs: Sequence[Run]) -> list[str]:
+    """A row for each run."""
+    width = max([len("run"), *(len(run.name) for run in runs)])
+    rows = [f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst"]
+    for run in runs:
+        try:
+            summary = run.summary()
+        except (RunError, OSError) as error:
+            rows.append(f"{run.name:{width}}  damaged: {error}")
+            continue
+        rows.append(
+            f"{run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  {_best(summary)}"
+        )
+    return rows
+
+
+def _best(summary: Summary) -> str:
+    if summary.best is None:
+        return "         -      -"
+    shares = shares_of(summary.best).values()
+    return f"     {sum(shares) / len(shares):5.3f}  {min(shares):5.3f}"
+
+
+def side_by_side(results: dict[str, Result]) -> list[str]:
+    """A row for each case, a column for each policy."""
+    cases = list(dict.fromkeys(case.case for result in results.values() for case in result.cases))
+    width = max(len("worst"), *(len(case) for case in cases))
+    columns = [max(7, len(name)) for name in results]
+    rows = ["  ".join([f"{'case':{width}}", *(f"{n:>{w}}" for n, w in zip(results, columns, strict=True))])]
+    shares = [{case.case: case.share for case in result.cases} for result in results.values()]
+    for case in cases:
+        found = [
+            f"{share[case]:>{w}.3f}" if case in share else " " * w
+            for share, w in zip(shares, columns, strict=True)
+        ]
+        rows.append("  ".join([f"{case:{width}}", *found]))
+    ends = {
+        "mean": [each.mean for each in results.values()],
+        "worst": [each.worst.share for each in results.values()],
+    }
+    for name, values in ends.items():
+        found = [f"{value:>{w}.3f}" for value, w in zip(values, columns, strict=True)]
+        rows.append("  ".join([f"{name:{width}}", *found]))
+    return rows

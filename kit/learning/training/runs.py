@@ -1,0 +1,333 @@
+"""Training runs on disk: a folder each, which the learner writes and everybody else reads.
+
+``config.json`` what is learned and how; ``events.jsonl`` what happened; ``checkpoint.zip`` and ``checkpoint.old.zip``
+from which training can go on; ``newest.npz`` and ``best.npz`` policies that need no torch; ``control`` what the learner
+is asked to do; ``lock`` held by the learner while it lives; ``log.txt`` what it printed.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import io
+import json
+import re
+import time
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any, Literal, get_args
+
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.training.events import Ended, Event, EventReader, Examined, Progress, Started
+from kit.workspace import write_atomically
+from kit.world.problems import quoted, suggestion
+
+Order = Literal["go", "pause", "stop"]
+"""What a face may ask of a learner."""
+PresetName = Literal["kit", "seed"]
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
+LOOK_S = 0.2
+"""Whoever looks whether a run is alive holds its lock for a moment: a learner waits so long."""
+
+
+def _taken(lock: IO[bytes]) -> bool:
+    """Locks the file for this process alone; False if another one keeps it."""
+    until = time.monotonic() + LOOK_S
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            if time.monotonic() >= until:
+                return False
+            time.sleep(LOOK_S / 20)
+        else:
+            return True
+
+
+class RunError(Exception):
+    """A run is missing, damaged or busy, or cannot be written; the message says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunConfig:
+    """What is learned, and how."""
+
+    choice: TaskChoice
+    algorithm: str = "ppo"
+    preset: PresetName = "kit"
+    seed: int = 0
+    steps: int | None = None
+    """Instead of the preset's."""
+    worlds: int | None = None
+    learning_rate: float | None = None
+    """Constant, instead of the preset's."""
+    goal: float | None = None
+    """Instead of the strategy's."""
+    keep_training: bool = False
+    """Use the dissertation's first strategy: to the last step, whatever tests say."""
+    reward_file: str | None = None
+    """A student's reward, instead of the task's."""
+    mirrored: bool = False
+    """Half of the worlds are seen in a mirror: what is learned on one side is known on the other."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able."""
+        values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
+        return {"choice": self.choice.as_dict(), **values}
+
+    @classmethod
+    def from_dict(cls, data: Any) -> RunConfig:
+        """Of ``as_dict``. ValueError for anything else."""
+        try:
+            return cls(**{**data, "choice": TaskChoice.from_dict(data["choice"])})
+        except (TypeError, KeyError) as error:
+            raise ValueError(f"no configuration of a run: {error}") from None
+
+
+State = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Where a run stands."""
+
+    state: State
+    steps: int = 0
+    seconds: float = 0.0
+    rate: float = 0.0
+    tested: Examined | None = None
+    """The last test."""
+    best: Examined | None = None
+    """That of the best policy."""
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run's folder."""
+
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        return self.folder.name
+
+    @property
+    def events_file(self) -> Path:
+        return self.folder / "events.jsonl"
+
+    @property
+    def checkpoints(self) -> tuple[Path, Path]:
+        """The newer one, the older one."""
+        return self.folder / "checkpoint.zip", self.folder / "checkpoint.old.zip"
+
+    @property
+    def newest_policy(self) -> Path:
+        return self.folder / "newest.npz"
+
+    @property
+    def best_policy(self) -> Path:
+        return self.folder / "best.npz"
+
+    @property
+    def reward(self) -> Path:
+        """The student's reward, if ``RunConfig.reward_file`` names one: as it was when the run began."""
+        return self.folder / "reward.py"
+
+    @property
+    def log(self) -> Path:
+        return self.folder / "log.txt"
+
+    @property
+    def last_words(self) -> str:
+        """The last line that the newest process printed: why it ended, where it could not write that among the events."""
+        try:
+            lines = self.log.read_text(errors="replace").split("\n")
+        except FileNotFoundError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+    def config(self) -> RunConfig:
+        """RunError if it is missing or damaged."""
+        file = self.folder / "config.json"
+        try:
+            return RunConfig.from_dict(json.loads(file.read_bytes()))
+        except FileNotFoundError:
+            raise RunError(f"{self.folder}: no run; its config.json is missing.") from None
+        except (ValueError, OSError) as error:
+            raise RunError(f"{file}: damaged ({error}). Start a new run with `kit train`.") from None
+
+    def policy(self, *, newest: bool = False) -> Policy:
+        """The best policy, or the newest one. PolicyError if it is damaged, RunError if there is none yet."""
+        for file in (
+            (self.newest_policy, self.best_policy) if newest else (self.best_policy, self.newest_policy)
+        ):
+            with suppress(FileNotFoundError):
+                return load_policy(file)
+        raise RunError(
+            f"{self.name} has no policy yet: nothing has been tested. Let it train a little longer."
+        )
+
+    # What the learner is asked to do
+
+    def ask(self, order: Order) -> None:
+        """Tells the learner, which obeys between two updates."""
+        write_atomically(self.folder / "control", order.encode())
+
+    def asked(self) -> Order:
+        """The newest order."""
+        with suppress(OSError, UnicodeDecodeError):
+            text = (self.folder / "control").read_text().strip()
+            return next((order for order in get_args(Order) if order == text), "go")
+        return "go"
+
+    # Who is at it
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Keeps others from training this run; the system lets go when the process ends, however it does.
+
+        RunError if somebody is at it.
+        """
+        with (self.folder / "lock").open("ab") as lock:
+            if not _taken(lock):
+                raise RunError(f"{self.name} is being trained already. `kit watch {self.name}` shows it.")
+            yield
+
+    @property
+    def alive(self) -> bool:
+        """Whether a learner is at it."""
+        try:
+            with (self.folder / "lock").open("rb") as lock:
+                fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                return False
+        except FileNotFoundError:
+            return False
+        except OSError:
+            return True
+
+    # What has happened
+
+    def events(self) -> tuple[Event, ...]:
+        return tuple(EventReader(self.events_file).new())
+
+    def summary(self) -> Summary:
+        """Where it stands."""
+        found = summarise(self.events(), alive=self.alive, order=self.asked())
+        return replace(found, reason=self.last_words) if found.state == "interrupted" else found
+
+    # Checkpoints
+
+    def save_checkpoint(self, parts: Mapping[str, bytes]) -> None:
+        """Writes the parts as one file; the one before stays as the older one. OSError if the disk is full."""
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w") as archive:  # its checksums tell a damaged file
+            for name, data in parts.items():
+                archive.writestr(name, data)
+        newer, older = self.checkpoints
+        if newer.exists():
+            newer.replace(older)
+        write_atomically(newer, buffer.getvalue())
+
+    def load_checkpoint(self) -> tuple[dict[str, bytes], str] | None:
+        """The parts of the newest checkpoint that is whole, and what is wrong with a newer one; None if there is
+        no checkpoint. RunError if all are damaged."""
+        damage = ""
+        for file in self.checkpoints:
+            try:
+                with zipfile.ZipFile(file) as archive:
+                    return {name: archive.read(name) for name in archive.namelist()}, damage
+            except FileNotFoundError:
+                continue
+            except (zipfile.BadZipFile, OSError, EOFError) as error:
+                damage = f"{file.name} is damaged ({error})"
+        if damage:
+            raise RunError(
+                f"{self.folder}: {damage}, and there is no other. The policies in it are whole; to train on, start a "
+                "new run with `kit train`."
+            )
+        return None
+
+
+def summarise(events: tuple[Event, ...], *, alive: bool, order: Order) -> Summary:
+    """Where a run with these events stands."""
+    steps, seconds, rate, reason = 0, 0.0, 0.0, ""
+    tested: Examined | None = None
+    best: Examined | None = None
+    state: State = "interrupted" if events else "new"
+    for event in events:
+        match event:
+            case Started():
+                state, steps = "interrupted", event.steps
+            case Progress():
+                steps, seconds, rate = event.steps, event.seconds, event.rate
+            case Examined():
+                tested = event
+                best = event if event.kept else best
+            case Ended():
+                state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
+            case _:
+                pass
+    if alive:
+        state = "paused" if order == "pause" else "running"
+    return Summary(state, steps, seconds, rate, tested, best, reason)
+
+
+def new_run(folder: Path, config: RunConfig, name: str | None = None) -> Run:
+    """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken."""
+    if name is not None and not NAME.fullmatch(name):
+        raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
+    made = _make(folder, name) if name is not None else _make_free(folder, _usual_name(config))
+    if config.reward_file is not None:  # the run keeps its own: the student goes on writing
+        write_atomically(Run(made).reward, Path(config.reward_file).read_bytes())
+    write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
+    return Run(made)
+
+
+def _usual_name(config: RunConfig) -> str:
+    parts = [config.choice.task, *config.choice.on, config.algorithm, config.preset]
+    return "-".join([*parts, str(config.seed)])[:90]
+
+
+def _make(folder: Path, name: str) -> Path:
+    try:
+        (folder / name).mkdir()
+    except FileExistsError:
+        raise RunError(
+            f"there is a run {name} already. Name this one otherwise with --name, or go on with it: "
+            f"`kit train --resume {name}`."
+        ) from None
+    return folder / name
+
+
+def _make_free(folder: Path, name: str) -> Path:
+    """The first of name, name-2, name-3, ... that nobody has taken."""
+    number = 1
+    while True:
+        try:
+            return _make(folder, name if number == 1 else f"{name}-{number}")
+        except RunError:
+            number += 1
+
+
+def all_runs(folder: Path) -> tuple[Run, ...]:
+    """Every run in the folder, the one begun last first."""
+    files = [(file.stat().st_mtime, file.parent) for file in folder.glob("*/config.json")]
+    return tuple(Run(each) for _, each in sorted(files, reverse=True))
+
+
+def find_run(folder: Path, name: str | None = None) -> Run:
+    """The run of that name, or, without one, the one begun last. RunError if there is none."""
+    runs = {run.name: run for run in all_runs(folder)}
+    if name is None:
+        if not runs:
+            raise RunError("There are no runs yet. `kit train turn` starts one.")
+        return next(iter(runs.values()))
+    if name in runs:
+        return runs[name]
+    if not runs:
+        raise RunError(f"There is no run {quoted(name)}, nor any other. `kit train turn` starts one.")
+    raise RunError(f"There is no run {quoted(name)}: {suggestion(name, runs)}")

@@ -1,0 +1,215 @@
+"""When to test, when to stop, which policy to keep: the dissertation's two strategies, and a sound one.
+
+A strategy looks at a policy now and then, on episodes that it was not trained on. The dissertation stops at the first
+test that goes well; with 20 episodes and many tests that is often luck. ``UntilSure`` does not fall for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Protocol, TypeAlias
+
+from kit.learning.policies.confidence_intervals import Interval, at_least, wilson
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Episodes of one case that were tried, and how many reached the target."""
+
+    reached: int
+    episodes: int
+    adjacency: float = 0.0
+    """Mean share of steps that two robots were side by side."""
+
+    @property
+    def share(self) -> float:
+        return self.reached / self.episodes if self.episodes else 0.0
+
+
+Counts: TypeAlias = Mapping[str, Count]
+"""By the case's name."""
+
+
+class Test(Protocol):
+    """Tries the present policy on episodes that neither training nor an earlier test has seen."""
+
+    @property
+    def cases(self) -> int:
+        """How many cases there are."""
+
+    def __call__(self, episodes: int) -> Counts:
+        """Of at least so many episodes in all, equally many of each case."""
+
+
+def accuracy(counts: Counts) -> float:
+    """The share of all episodes that reached the target."""
+    episodes = sum(count.episodes for count in counts.values())
+    return sum(count.reached for count in counts.values()) / episodes if episodes else 0.0
+
+
+def worst(counts: Counts) -> float:
+    """The share in the case that goes worst."""
+    return min((count.share for count in counts.values()), default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a strategy must remember from one look to the next; it goes into every checkpoint."""
+
+    best: tuple[float, ...] | None = None
+    """How good the policy kept is; the greater, the better."""
+    best_low: float = 0.0
+    """What that policy's accuracy is not below, as far as its test tells."""
+    best_steps: int = 0
+    confirmations: int = 0
+    returns: int = 0
+    """How often training went back to the policy kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What follows from a look."""
+
+    counts: Counts
+    """Of the test that counted most."""
+    memory: Memory
+    keep: bool
+    """This policy is the best so far."""
+    stop: bool = False
+    go_back: bool = False
+    """Training goes on from the policy kept: this one has forgotten."""
+    reason: str = ""
+
+
+class Strategy(Protocol):
+    """How a run is watched over."""
+
+    @property
+    def every(self) -> int:
+        """Steps of training between two looks."""
+
+    @property
+    def greedy(self) -> bool:
+        """Whether policies are tested by their best actions; else as they explore."""
+
+    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+        """After so many steps."""
+
+
+def _likely(counts: Counts) -> float:
+    """What the worst case's share is likely not below: of two policies without a failure the one that was tested
+    longer is the better one."""
+    return min((at_least(count.reached, count.episodes) for count in counts.values()), default=0.0)
+
+
+def _mark(counts: Counts, enough: float = 1.0) -> tuple[float, ...]:
+    """How good a policy is. The worst case counts first, up to ``enough``; then how much two robots are side by side;
+    then all episodes."""
+    beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
+    return min(_likely(counts), enough), beside, accuracy(counts)
+
+
+def _remembered(counts: Counts, steps: int, memory: Memory, enough: float = 1.0) -> tuple[Memory, bool]:
+    """The memory with this test in it, and whether this policy is the best so far. Ties go to the newer one."""
+    mark = _mark(counts, enough)
+    if memory.best is not None and mark < memory.best:
+        return memory, False
+    low = _pooled(counts).low
+    return replace(memory, best=mark, best_low=low, best_steps=steps), True
+
+
+def _pooled(counts: Counts) -> Interval:
+    """Where the true accuracy is all but certain to lie."""
+    reached = sum(count.reached for count in counts.values())
+    return wilson(reached, sum(count.episodes for count in counts.values()), 0.99)
+
+
+@dataclass(frozen=True, slots=True)
+class TrainThenTest:
+    """The dissertation's first strategy (section 3.1.4): train for all the steps there are, whatever tests say.
+
+    Tested every so often nevertheless, as in its figures 3.5 to 3.8. The newest policy counts, not the best.
+    """
+
+    every: int
+    episodes: int = 100
+    greedy: bool = True
+
+    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+        counts = test(self.episodes)
+        return Verdict(counts, replace(memory, best=_mark(counts), best_steps=steps), keep=True)
+
+
+@dataclass(frozen=True, slots=True)
+class TrainUntil:
+    """The dissertation's second strategy: train a batch, test, stop at the first accuracy that is high enough."""
+
+    every: int
+    episodes: int = 100
+    goal: float = 0.8
+    greedy: bool = True
+
+    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+        counts = test(self.episodes)
+        memory, keep = _remembered(counts, steps, memory)
+        share = accuracy(counts)
+        if share >= self.goal:
+            return Verdict(counts, memory, True, stop=True, reason=f"accuracy {share:.2f} in a test")
+        return Verdict(counts, memory, keep)
+
+
+@dataclass(frozen=True, slots=True)
+class UntilSure:
+    """Stop when every single case is sure to be good enough; keep the best policy; go back if one has forgotten.
+
+    A look is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
+    one counts: each case's share must be at least the goal with a confidence that is shared out among the cases and
+    among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that trying often does not help.
+    """
+
+    every: int
+    goal: float = 0.95
+    screening: int = 40
+    """Episodes of each case in a short test."""
+    confirming: int = 500
+    """And in a long one."""
+    confidence: float = 0.95
+    go_back_after: float = 0.3
+    """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
+    patience: int = 3
+    """So often it goes back at most: else a learner could be held for ever where it cannot get better."""
+    to_the_end: bool = False
+    """Train on all the same: where two robots drive, success comes first and side by side last."""
+    enough: float = 1.0
+    """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
+    greedy: bool = True
+
+    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+        counts = test(self.screening * test.cases)
+        if worst(counts) >= self.goal:
+            counts = test(self.confirming * test.cases)
+            memory = replace(memory, confirmations=memory.confirmations + 1)
+            low = self._surely(counts, memory.confirmations)
+            if low >= self.goal and not self.to_the_end:
+                memory, _ = _remembered(counts, steps, replace(memory, best=None))
+                return Verdict(
+                    counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
+                )
+        remembered, keep = _remembered(counts, steps, memory, self.enough)
+        if not keep and self._forgotten(counts, memory):
+            return Verdict(
+                *(counts, replace(memory, returns=memory.returns + 1), False),
+                go_back=True,
+                reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
+            )
+        return Verdict(counts, remembered, keep)
+
+    def _surely(self, counts: Counts, attempt: int) -> float:
+        """What no case's share is below, all in all with the wanted confidence."""
+        wrong = (1 - self.confidence) / (attempt * (attempt + 1)) / len(counts)
+        return min(at_least(count.reached, count.episodes, 1 - wrong) for count in counts.values())
+
+    def _forgotten(self, counts: Counts, memory: Memory) -> bool:
+        far_below = _pooled(counts).high < memory.best_low - self.go_back_after
+        return memory.returns < self.patience and far_below

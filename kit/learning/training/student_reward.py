@@ -1,0 +1,124 @@
+"""A student's reward in training: a function ``reward`` in a file of theirs, run in a process of its own.
+
+Its parameters are named after what it wants to know of a step, by the names of ``Transition``:
+
+    def reward(reached, collided, to_go, previous_to_go):
+        return 2.0 * reached - 2.0 * collided + previous_to_go - to_go
+
+It is called once for each step of each world, with plain numbers; for two robots what belongs to a robot is a list
+of two, the left one's first.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from kit.host.student_functions import StudentFunctions
+from kit.learning.environment.transition import FACTS, Array, Transition
+from kit.world.problems import quoted, suggestion
+
+FUNCTION = "reward"
+
+
+class RewardFileError(Exception):
+    """The file has no function that can be called; the message names file and line, and what to do."""
+
+
+def parameters_of(file: Path) -> tuple[str, ...]:
+    """What the file's ``reward`` wants to know. The file is read, not run. RewardFileError."""
+    try:
+        tree = ast.parse(file.read_bytes(), file.name)
+    except OSError as error:
+        raise RewardFileError(f"{file}: cannot be read ({error.strerror}).") from None
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        line = f":{error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
+        raise RewardFileError(f"{file}{line}: not Python ({getattr(error, 'msg', error)}).") from None
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name == FUNCTION:
+            return _checked(file, node)
+    raise RewardFileError(
+        f"{file}: there is no function {FUNCTION}() in it. Write one, such as\n"
+        f"  def {FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
+    )
+
+
+def _checked(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
+    arguments = node.args
+    where = f"{file}:{node.lineno}: {FUNCTION}()"
+    if arguments.posonlyargs or arguments.vararg:
+        raise RewardFileError(f"{where} is called with names: leave out '/' and '*'.")
+    names = tuple(each.arg for each in (*arguments.args, *arguments.kwonlyargs))
+    for name in names:
+        if name not in FACTS:
+            raise RewardFileError(
+                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, FACTS)}"
+            )
+    if not names:
+        raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(FACTS)}.")
+    return names
+
+
+class StudentReward:
+    """The file's reward as a ``RewardFunction``. Use as a context manager, or ``close`` it.
+
+    RewardFileError for a file that cannot be called; GuestError when the student's code fails, here or in a call.
+    """
+
+    def __init__(self, file: Path, *, seed: int = 0) -> None:
+        self._names = parameters_of(file)
+        self._functions = StudentFunctions(file, seed=seed)
+
+    def __call__(self, transition: Transition) -> Array:
+        """(n,) rewards of n worlds."""
+        return np.frombuffer(self._functions.call_columns(FUNCTION, columns_of(transition, self._names)))
+
+    def close(self) -> None:
+        self._functions.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def columns_of(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
+    """What a reward with these parameters is called with: one column each, a value for every one of n worlds."""
+    return {name: _column(transition, name) for name in names}
+
+
+def _column(transition: Transition, name: str) -> Sequence[Any] | Array:
+    """(n,) one value for each world, or a list of n lists; the axis of the robots is left out where there is one."""
+    count = len(transition.step)
+    value = np.asarray(getattr(transition, name))
+    if value.ndim == 0:
+        return np.full(count, value)
+    robots = transition.pose.shape[-2]
+    if robots == 1 and name in PER_ROBOT:
+        value = value[:, 0]
+    return value if value.ndim == 1 else value.tolist()
+
+
+PER_ROBOT = frozenset(FACTS) - {
+    *(
+        "case",
+        "step",
+        "max_steps",
+        "target",
+        "collided",
+        "reached",
+        "timed_out",
+        "ended",
+        "adjacent",
+        "abreast",
+    )
+}
+"""Facts that every robot has its own of."""

@@ -1,0 +1,163 @@
+"""Q-learning and SARSA: a number for every state and action, learned from experience, without a network.
+
+Both nudge the value of what was just done towards the reward it gave plus the discounted value of what comes next
+(Sutton and Barto, Reinforcement Learning, 2nd edition, sections 6.4 and 6.5). They differ in one word. Q-learning takes
+the *best* next action's value, whatever is done next: it learns about the greedy policy while it explores. SARSA takes
+the value of the next action *really taken*, exploration included: near a wall it learns to keep a little away.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.learning.environment.batch import BatchEnv, Step
+from kit.learning.environment.episode_stats import Tally
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.policies import Chance, Policy, Table, choices_of
+from kit.learning.training.algorithms import Algorithm
+from kit.learning.training.learner import Watcher
+from kit.learning.training.presets import Preset, Tabular
+
+Integers = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+STATES_AT_MOST = 20_000
+SLOWER = 0.5
+
+
+class TableLearner(ABC):
+    """Learns with ``n`` worlds at once; with one world, line by line what the books say."""
+
+    def __init__(
+        self, algorithm: Algorithm, preset: Preset, choice: TaskChoice, batch: BatchEnv, seed: int
+    ) -> None:
+        assert isinstance(preset.settings, Tabular)
+        self._algorithm = algorithm
+        self._settings = preset.settings
+        self._choice = choice
+        self._batch = batch
+        self._rng = np.random.default_rng(seed)
+        self._table = _empty_table(batch, self._settings)
+        self._values: Floats = np.zeros(self._table.values.shape)
+        self._steps = 0
+        self._slower = 1.0
+
+    def deal(self, shares: Floats) -> None:
+        if self._batch.stays:
+            self._batch.deal(shares)
+
+    # The lesson
+
+    def learn(self, steps: int, watcher: Watcher) -> None:
+        """Drives all worlds and learns from every step."""
+        state, tally = self._table.states(self._batch.reset()), Tally(self._batch)
+        action = self._choose(state, steps)
+        while self._steps < steps:
+            watcher.between()
+            step = self._batch.step(action)
+            reached_state = self._table.states(step.final_observations)
+            next_action = self._choose(reached_state, steps)
+            self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
+            self._steps += self._batch.n
+            for episode in tally.add(step):
+                watcher.saw(episode)
+            state = self._table.states(step.observations)
+            action = np.where(step.ended, self._choose(state, steps), next_action)
+
+    def _update(
+        self,
+        state: Integers,
+        action: Integers,
+        step: Step,
+        reached: Integers,
+        following: Integers,
+        left: float,
+    ) -> None:
+        """Moves each value a little towards what experience says. An end has no future; a timeout has."""
+        future = np.where(step.terminated, 0.0, self.future(reached, following))
+        target = step.rewards + self._settings.gamma * future
+        error = target - self._values[state, action]
+        pair = state * self._values.shape[1] + action
+        alike = np.bincount(pair)[
+            pair
+        ]  # worlds that did the same in the same state move its value by their mean
+        np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error / alike)
+
+    @abstractmethod
+    def future(self, state: Integers, action: Integers) -> Floats:
+        """What the next state is worth, where ``action`` will be taken in it."""
+
+    def _choose(self, state: Integers, steps: int) -> Integers:
+        """The best action, or now and then any."""
+        epsilon = self._settings.epsilon.at(max(0.0, 1 - self._steps / steps))
+        anything = self._rng.integers(self._values.shape[1], size=len(state))
+        best = self._values[state].argmax(axis=1)
+        chosen: Integers = np.where(self._rng.random(len(state)) < epsilon, anything, best)
+        return chosen
+
+    # What every learner can do
+
+    @property
+    def steps(self) -> int:
+        return self._steps
+
+    def policy(self) -> Policy:
+        table = replace(self._table, values=self._values.astype(np.float32))
+        return Policy(
+            table, choices_of(self._batch.action_space), Chance("epsilon", 0.05), self._choice, self._steps
+        )
+
+    def remember(self) -> Any:
+        return self._values.copy()
+
+    def recall(self, known: Any) -> None:
+        self._values = known.copy()
+        self._slower *= SLOWER
+
+    def save(self) -> dict[str, bytes]:
+        values = io.BytesIO()
+        np.save(values, self._values)
+        counts = {"algorithm": self._algorithm.name, "steps": self._steps, "slower": self._slower}
+        return {"learner.json": json.dumps(counts).encode(), "values.npy": values.getvalue()}
+
+    def load(self, parts: Mapping[str, bytes]) -> None:
+        counts = json.loads(parts["learner.json"])
+        if counts["algorithm"] != self._algorithm.name:
+            raise ValueError(f"it is of {counts['algorithm']}, not of {self._algorithm.name}")
+        self._values = np.load(io.BytesIO(parts["values.npy"]), allow_pickle=False)
+        self._steps, self._slower = int(counts["steps"]), float(counts["slower"])
+
+
+class QLearning(TableLearner):
+    """Watkins 1989."""
+
+    def future(self, state: Integers, action: Integers) -> Floats:
+        best: Floats = self._values[state].max(axis=1)
+        return best
+
+
+class Sarsa(TableLearner):
+    """Rummery and Niranjan 1994: state, action, reward, state, action."""
+
+    def future(self, state: Integers, action: Integers) -> Floats:
+        taken: Floats = self._values[state, action]
+        return taken
+
+
+def _empty_table(batch: BatchEnv, settings: Tabular) -> Table:
+    """One that counts as many inputs, evenly spread over what is seen, as make a table of reasonable size."""
+    inputs = int(batch.observation_space.shape[0])
+    bins = len(settings.edges) + 1
+    count = min(inputs, int(np.log(STATES_AT_MOST) / np.log(bins)))
+    used = np.linspace(0, inputs - 1, count).round().astype(np.int64)
+    actions = choices_of(batch.action_space)[0]
+    values = np.zeros((bins**count, actions), dtype=np.float32)
+    return Table(used, np.array(settings.edges, dtype=np.float32), values, inputs)

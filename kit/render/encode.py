@@ -1,0 +1,161 @@
+"""Dots to characters: braille, half blocks or plain ASCII, behind one interface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from types import MappingProxyType
+from typing import Protocol
+
+import numpy as np
+
+from kit.render.frame import BLANK, Frame
+from kit.render.raster import Grid
+from kit.render.roles import Role
+
+
+@dataclass(frozen=True, slots=True)
+class Symbols:
+    """Single characters that stand for a thing as a whole. Strings of directions start at the right and
+    go round counter-clockwise in equal turns."""
+
+    robots: tuple[str, ...]
+    """Arrows of the first robot, the second, ..., then from the first again."""
+    field: str
+    """Arrows of a field."""
+    strong: str
+    """Arrows where it is strong."""
+    faint: str
+    """A place where the field is next to nothing."""
+    target: str
+    contact: str
+    noses: str = ""
+    """Strokes that show a robot's heading where a line of dots would be too coarse to."""
+
+
+ARROWS = Symbols(
+    robots=("►◥▲◤◄◣▼◢", "▷◹△◸◁◺▽◿"), field="→↗↑↖←↙↓↘", strong="⇒⇗⇑⇖⇐⇙⇓⇘", faint="·", target="◎", contact="×"
+)
+LETTERS = Symbols(
+    robots=(">^<v",), field=">^<v", strong="}A{V", faint="'", target="*", contact="X", noses="-/|\\-/|\\"
+)
+
+
+class Encoder(Protocol):
+    """Turns a grid of roles, ``across`` x ``down`` dots in a character, into a frame."""
+
+    @property
+    def across(self) -> int: ...
+    @property
+    def down(self) -> int: ...
+    @property
+    def symbols(self) -> Symbols: ...
+
+    def encode(self, grid: Grid) -> Frame:
+        """``grid``: (rows * down, columns * across) uint8 roles."""
+        ...
+
+
+class Braille:
+    """2 x 4 dots in a character, one ink for all of them: that of the most important. What is thinner than a
+    wall gives way to what is not, so that it does not blur it.
+
+    Without colours (``mono``) a lidar hit is a bullet, which no wall looks like.
+    """
+
+    across, down, symbols = 2, 4, ARROWS
+
+    def __init__(self, mono: bool = False) -> None:
+        self._mono = mono
+
+    # Unicode numbers the dots of a braille pattern down the left column, then down the right one, and
+    # later added the lowest row.
+    _bits = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+    _bullet = ord("•")
+
+    def encode(self, grid: Grid) -> Frame:
+        # Eight views of every second dot of every fourth row: much faster than one view with four axes.
+        views = [(bit, grid[y::4, x::2]) for y, bits in enumerate(self._bits) for x, bit in enumerate(bits)]
+        inks = reduce(np.maximum, (view for _, view in views))
+        least = np.clip(inks, 1, Role.WALL)
+        patterns = reduce(np.bitwise_or, ((view >= least) * np.uint8(bit) for bit, view in views))
+        glyphs = np.where(patterns > 0, patterns + np.uint32(0x2800), np.uint32(BLANK))
+        if self._mono:
+            glyphs[inks == Role.HIT] = self._bullet
+        return Frame(glyphs, inks, np.zeros_like(inks))
+
+
+class HalfBlock:
+    """1 x 2 dots in a character, each with a colour of its own; what is thin is a dot or a shade.
+
+    Without colours (``mono``) two different things in one character are one full block.
+    """
+
+    across, down, symbols = 1, 2, ARROWS
+
+    _upper, _lower, _full = ord("▀"), ord("▄"), ord("█")
+    _thin = MappingProxyType(
+        {Role.BEAM: "·", Role.PATH: "·", Role.TRAIL: "·", Role.TRAIL_2: "·", Role.HIT: "▒"}
+    )
+
+    def __init__(self, mono: bool = False) -> None:
+        self._mono = mono
+
+    def encode(self, grid: Grid) -> Frame:
+        upper, lower = grid[0::2], grid[1::2]
+        both = (upper > 0) & (lower > 0)
+        glyphs = np.full(upper.shape, BLANK, dtype=np.uint32)
+        glyphs[upper > 0] = self._upper
+        glyphs[(lower > 0) & (upper == 0)] = self._lower
+        top = np.maximum(upper, lower)
+        if self._mono:
+            glyphs[both] = self._full
+            inks, papers = top.copy(), np.zeros_like(top)
+        else:
+            glyphs[both & (upper == lower)] = self._full
+            inks = np.where(upper > 0, upper, lower)
+            papers = np.where(both & (upper != lower), lower, 0).astype(np.uint8)
+        for role, glyph in self._thin.items():
+            glyphs[top == role] = ord(glyph)
+            inks[top == role] = role
+            papers[top == role] = Role.EMPTY
+        return Frame(glyphs, inks, papers)
+
+
+class Ascii:
+    """One dot in a character: the character says what it is, with colours or without."""
+
+    across, down, symbols = 1, 1, LETTERS
+
+    shapes: Mapping[Role, str] = MappingProxyType(
+        {
+            Role.BEAM: "`",
+            Role.FIELD: "'",
+            Role.PATH: "-",
+            Role.TRAIL: ",",
+            Role.TRAIL_2: ";",
+            Role.WALL: "#",
+            Role.BODY: "%",
+            Role.HIT: ".",
+            Role.TARGET: "o",
+            Role.ROBOT_2: "&",
+            Role.ROBOT: "@",
+            Role.CONTACT: "X",
+            Role.TEXT: "?",
+        }
+    )
+
+    def __init__(self, mono: bool = False) -> None:
+        self._glyphs = np.full(len(Role), BLANK, dtype=np.uint32)
+        for role, shape in self.shapes.items():
+            self._glyphs[role] = ord(shape)
+
+    def encode(self, grid: Grid) -> Frame:
+        return Frame(self._glyphs[grid], grid.copy(), np.zeros_like(grid))
+
+
+ENCODERS: Mapping[str, Callable[[bool], Encoder]] = MappingProxyType(
+    {"braille": Braille, "block": HalfBlock, "ascii": Ascii}
+)
+"""By the word the user knows them by (``--glyphs``); called with whether there are no colours."""

@@ -1,0 +1,126 @@
+"""A force field as a picture: arrows over the floor, charges, traps, and what acts on each robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from kit.fields.charges import LineCharge, PointCharge, members
+from kit.fields.controller_setup import Course
+from kit.fields.layout import Intensities
+from kit.fields.minima import Flow, Trap
+from kit.fields.pair import Decision, decide
+from kit.geometry import Pose
+from kit.render.camera import Camera
+from kit.render.scene import FloatArray, Mark, Path, Scene
+
+SPARSE: Final = 2
+"""Characters from one arrow to the next in a row: as far apart as two rows."""
+MIDDLING: Final = 2.0
+"""A force so many times the median is half as strong as can be shown."""
+CHARGE, TRAP = "-", "!"
+"""How wall charges and traps are marked."""
+FORCE_LENGTH: Final = 0.25
+"""m: of the line that shows the force on a robot."""
+
+
+class FieldPicture:
+    """The field of one course, in pictures. Another intensity scales what was computed once."""
+
+    def __init__(self, course: Course) -> None:
+        self._course = course
+        places = course.floor.middles
+        self._walls = course.layout.field.forces(places)
+        self._pull = PointCharge(*course.target).force(places)
+        self._ways: FloatArray | None = None
+        self.intensities = course.layout.intensities
+
+    @property
+    def course(self) -> Course:
+        """With the intensities as they are now."""
+        return replace(self._course, layout=self._course.layout.with_intensities(self.intensities))
+
+    @property
+    def forces(self) -> FloatArray:
+        """(rows, columns, 2) [N]: at the floor's cells."""
+        forces: FloatArray = self.intensities.walls * self._walls + self.intensities.target * self._pull
+        return forces
+
+    def traps(self) -> tuple[Trap, ...]:
+        """Where the forces lead, but for the target."""
+        course = self._course
+        return Flow.following(self.forces, course.floor, course.target, course.target_radius).traps()
+
+    def directions(self, start: tuple[float, float]) -> FloatArray:
+        """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""
+        if self._ways is None:
+            self._ways = self._course.ways(start).directions()
+        return self._ways
+
+    def arrows(self, vectors: FloatArray, camera: Camera) -> FloatArray:
+        """(a, 5): for ``Scene.arrows``, where characters of the camera lie on the floor."""
+        floor = self._course.floor
+        columns = np.arange(0, camera.columns, SPARSE) + 0.5 - camera.columns / 2
+        rows = camera.rows / 2 - np.arange(camera.rows) - 0.5
+        x, y = np.meshgrid(camera.x + columns * camera.cell, camera.y + rows * camera.cell_height)
+        column = np.rint((x - floor.corner[0]) / floor.cell).astype(int)
+        row = np.rint((y - floor.corner[1]) / floor.cell).astype(int)
+        known = (column >= 0) & (column < floor.shape[1]) & (row >= 0) & (row < floor.shape[0])
+        known[known] = floor.inside[row[known], column[known]]
+        found = vectors[row[known], column[known]]
+        strength = np.hypot(found[:, 0], found[:, 1])
+        middling = MIDDLING * float(np.median(strength)) if len(strength) else 1.0
+        return np.column_stack((x[known], y[known], found, strength / (strength + middling + 1e-12)))
+
+    def marks(self, traps: Sequence[Trap]) -> tuple[Mark, ...]:
+        """Charges and traps."""
+        places = [_middle(charge) for charge in members(self._course.layout.charges)]
+        return (
+            *(Mark(x, y, CHARGE) for x, y in places),
+            *(Mark(trap.x, trap.y, TRAP) for trap in traps),
+        )
+
+    def decision(self, poses: Sequence[Pose]) -> Decision:
+        """What the potential fields' controller makes of the robots where they are."""
+        return decide(poses, self._course.target, self.course.layout)
+
+
+def force_lines(decision: Decision, poses: Sequence[Pose]) -> tuple[Path, ...]:
+    """From each robot along the force on it, and from the middle along its own."""
+    starts = [*(pose[:2] for pose in poses), *([decision.middle] if len(poses) > 1 else [])]
+    forces = [*decision.forces, *([decision.middle_force] if len(poses) > 1 else [])]
+    lines = []
+    for (x, y), force in zip(starts, forces, strict=True):
+        strength = math.hypot(*force)
+        if strength > 0:
+            tip = x + FORCE_LENGTH * force[0] / strength, y + FORCE_LENGTH * force[1] / strength
+            lines.append(Path(np.array([(x, y), tip])))
+    return tuple(lines)
+
+
+def with_field(
+    scene: Scene, picture: FieldPicture, camera: Camera, vectors: FloatArray | None, traps: Sequence[Trap]
+) -> Scene:
+    """The scene with arrows (``vectors``: at the floor's cells; None: no arrows), charges, traps and forces."""
+    known = {body.model: body.pose for body in scene.robots}
+    poses = [known[robot.name] for robot in picture.course.robots if robot.name in known]
+    lines = force_lines(picture.decision(poses), poses) if poses else ()
+    arrows = np.empty((0, 5)) if vectors is None else picture.arrows(vectors, camera)
+    return replace(
+        scene, arrows=arrows, marks=(*scene.marks, *picture.marks(traps)), paths=(*scene.paths, *lines)
+    )
+
+
+def changed(intensities: Intensities, name: str, times: float) -> Intensities:
+    """One intensity multiplied."""
+    return replace(intensities, **{name: getattr(intensities, name) * times})
+
+
+def _middle(charge: PointCharge | LineCharge) -> tuple[float, float]:
+    if isinstance(charge, PointCharge):
+        return charge.x, charge.y
+    return (charge.ax + charge.bx) / 2, (charge.ay + charge.by) / 2

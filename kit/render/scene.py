@@ -1,0 +1,138 @@
+"""What there is to see at one instant: plain frozen data in world coordinates, metres and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache, partial
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.geometry import Pose
+
+FloatArray = NDArray[np.float64]
+
+
+@cache
+def _none(width: int) -> FloatArray:
+    """No rows; always the same array, since the walls' identity matters."""
+    nothing = np.empty((0, width))
+    nothing.setflags(write=False)
+    return nothing
+
+
+class Bounds(NamedTuple):
+    """An upright rectangle [m]."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @property
+    def width(self) -> float:
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        return self.top - self.bottom
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        return (self.left + self.right) / 2, (self.bottom + self.top) / 2
+
+
+class Disc(NamedTuple):
+    """A circle [m]: the shape of a body, or a target and how near counts as reached."""
+
+    x: float
+    y: float
+    radius: float
+
+
+class Mark(NamedTuple):
+    """A place with a short name, such as a start."""
+
+    x: float
+    y: float
+    label: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """One body as it lies in the world."""
+
+    model: str
+    pose: Pose
+    polygons: tuple[FloatArray, ...] = ()
+    """Each (k, 2): the corners of one convex footprint; the last joins the first."""
+    discs: tuple[Disc, ...] = ()
+    robot: bool = False
+    """A robot is drawn with its heading and in its own colour; other bodies as outlines."""
+
+    @property
+    def extent(self) -> Bounds:
+        """How far it reaches in its own frame, x forward and y left."""
+        rounds = np.array(self.discs, dtype=float).reshape(-1, 3)
+        points = np.concatenate((*self.polygons, rounds[:, :2], np.array([self.pose[:2]])))
+        cos, sin = np.cos(self.pose.theta), np.sin(self.pose.theta)
+        local = (points - self.pose[:2]) @ np.array(((cos, -sin), (sin, cos)))
+        radii = np.zeros((len(local), 1))
+        radii[len(local) - 1 - len(rounds) : -1, 0] = rounds[:, 2]
+        (left, bottom), (right, top) = (local - radii).min(axis=0), (local + radii).max(axis=0)
+        return Bounds(float(left), float(bottom), float(right), float(top))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Path:
+    """A line to draw: a plan, a ghost's way, a segment charge."""
+
+    points: FloatArray
+    """(k, 2)"""
+    style: Literal["solid", "dashed", "dotted"] = "solid"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
+
+    walls: FloatArray = field(default_factory=partial(_none, 4))
+    """(n, 4) ``x1 y1 x2 y2``. Hand over the same array again and it is not drawn anew: its identity is the
+    key of the static layer."""
+    bodies: tuple[Body, ...] = ()
+    hits: FloatArray = field(default_factory=partial(_none, 2))
+    """(m, 2): where laser rays ended. Rows that are not finite are left out."""
+    beams: FloatArray = field(default_factory=partial(_none, 4))
+    """(m, 4): the rays themselves, from the laser to the hit."""
+    targets: tuple[Disc, ...] = ()
+    trails: tuple[FloatArray, ...] = ()
+    """One (k, 2) per robot, drawn as single dots: see ``kit.render.trail.Trail``."""
+    contacts: FloatArray = field(default_factory=partial(_none, 2))
+    """(c, 2): where bodies touch."""
+    marks: tuple[Mark, ...] = ()
+    arrows: FloatArray = field(default_factory=partial(_none, 5))
+    """(a, 5) ``x y dx dy strength``: a field; the direction need not be of unit length, strength is 0 to 1."""
+    paths: tuple[Path, ...] = ()
+
+    @property
+    def robots(self) -> tuple[Body, ...]:
+        return tuple(body for body in self.bodies if body.robot)
+
+    @property
+    def bounds(self) -> Bounds:
+        """The walls' extent, or that of everything else where there are no walls."""
+        points = [self.walls.reshape(-1, 2)]
+        if not len(self.walls):
+            points += [np.array([body.pose[:2]]) for body in self.bodies]
+            points += [polygon for body in self.bodies for polygon in body.polygons]
+            for x, y, radius in (*self.targets, *(disc for body in self.bodies for disc in body.discs)):
+                points.append(np.array([(x - radius, y - radius), (x + radius, y + radius)]))
+            points += [path.points for path in self.paths]
+            points += [self.arrows[:, :2]]
+        every = np.concatenate(points)
+        every = every[np.isfinite(every).all(axis=1)]
+        if not len(every):
+            return Bounds(-1.0, -1.0, 1.0, 1.0)
+        (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
+        return Bounds(float(left), float(bottom), float(right), float(top))

@@ -1,0 +1,1 @@
+"""Running callbacks: contexts, executors, tasks and callback groups."""

@@ -1,0 +1,206 @@
+"""What stands between ``--ros-args`` and ``--`` on a command line: remappings, parameters, log levels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from kit.ros.exceptions import InvalidRosArguments
+from kit.ros.graph.naming import expand_topic_name, full_name, validate_namespace, validate_node_name
+from kit.ros.log import LoggingSeverity, get_logging_severity_from_string
+from kit.ros.parameters.parameter import GivenParameters, Parameter
+
+NODE_NAME = "__node"
+NAMESPACE = "__ns"
+
+
+@dataclass(frozen=True, slots=True)
+class Remapping:
+    """``[node:]match:=replacement``. ``match`` may be a name, ``__node`` or ``__ns``."""
+
+    match: str
+    replacement: str
+    node: str | None = None
+    """The only node it holds for."""
+    kind: str = ""
+    """``rostopic`` or ``rosservice``: holds for topics or services only."""
+
+
+@dataclass(frozen=True, slots=True)
+class RosArguments:
+    """The parsed arguments, in the order in which they were given."""
+
+    remappings: tuple[Remapping, ...] = ()
+    parameters: tuple[GivenParameters, ...] = ()
+    log_levels: tuple[tuple[str, LoggingSeverity], ...] = ()
+    """By logger name; the empty name is the default."""
+
+    def followed_by(self, other: RosArguments) -> RosArguments:
+        """These, and the others where these say nothing: the first remapping that fits wins, the last parameter."""
+        return RosArguments(
+            self.remappings + other.remappings,
+            other.parameters + self.parameters,
+            self.log_levels + other.log_levels,
+        )
+
+    def node_name(self, name: str) -> str:
+        return self._special(NODE_NAME, name) or name
+
+    def namespace(self, name: str, namespace: str) -> str:
+        return self._special(NAMESPACE, name) or namespace
+
+    def topic(self, name: str, node_name: str, namespace: str) -> str:
+        """The absolute topic name after remapping."""
+        return self._remap(name, node_name, namespace, "rostopic")
+
+    def service(self, name: str, node_name: str, namespace: str) -> str:
+        """The absolute service name after remapping."""
+        return self._remap(name, node_name, namespace, "rosservice")
+
+    def parameters_of(self, node_name: str, namespace: str) -> dict[str, Parameter]:
+        """The values given for a node; the last one given for a name counts."""
+        name = full_name(node_name, namespace)
+        found: dict[str, Parameter] = {}
+        for entry in self.parameters:
+            if _matches(entry.node, name):
+                found |= {parameter.name: parameter for parameter in entry.parameters}
+        return found
+
+    def _special(self, match: str, node_name: str) -> str | None:
+        for rule in self.remappings:
+            if rule.match == match and rule.node in (None, node_name):
+                return rule.replacement
+        return None
+
+    def _remap(self, name: str, node_name: str, namespace: str, kind: str) -> str:
+        absolute = expand_topic_name(name, node_name, namespace)
+        for rule in self.remappings:
+            if (
+                rule.match not in (NODE_NAME, NAMESPACE)
+                and rule.node in (None, node_name)
+                and rule.kind in ("", kind)
+                and expand_topic_name(rule.match, node_name, namespace) == absolute
+            ):
+                return expand_topic_name(rule.replacement, node_name, namespace)
+        return absolute
+
+
+def split_ros_arguments(args: Iterable[str]) -> tuple[list[str], list[str]]:
+    """The program's own arguments, and those between ``--ros-args`` and ``--`` or the end."""
+    own: list[str] = []
+    ros: list[str] = []
+    inside = False
+    for arg in args:
+        if arg == "--ros-args":
+            inside = True
+        elif inside and arg == "--":
+            inside = False
+        else:
+            (ros if inside else own).append(arg)
+    return own, ros
+
+
+def parse_ros_arguments(args: Iterable[str]) -> RosArguments:
+    """Reads the ROS part of a command line. Raises InvalidRosArguments."""
+    rest = iter(split_ros_arguments(args)[1])
+    remappings: list[Remapping] = []
+    parameters: list[GivenParameters] = []
+    levels: list[tuple[str, LoggingSeverity]] = []
+    for flag in rest:
+        if flag in ("-r", "--remap"):
+            remappings.append(_remapping(_value(rest, flag)))
+        elif flag in ("-p", "--param"):
+            parameters.append(_parameter(_value(rest, flag)))
+        elif flag == "--params-file":
+            parameters += _file(_value(rest, flag))
+        elif flag == "--log-level":
+            levels.append(_log_level(_value(rest, flag)))
+        elif flag in _WITH_VALUE:
+            _value(rest, flag)
+        elif flag not in _ALONE:
+            known = "-r/--remap, -p/--param, --params-file, --log-level"
+            raise InvalidRosArguments(
+                f"unknown ROS argument '{flag}'; after --ros-args there can be: {known}"
+            )
+    return RosArguments(tuple(remappings), tuple(parameters), tuple(levels))
+
+
+_WITH_VALUE = ("-e", "--enclave", "--log-config-file", "--log-file-name")
+"""Understood by ROS 2 and without meaning here."""
+
+_ALONE = tuple(
+    f"--{state}-{what}-logs"
+    for state in ("enable", "disable")
+    for what in ("rosout", "stdout", "external-lib")
+)
+
+
+def _value(rest: Iterator[str], flag: str) -> str:
+    value = next(rest, None)
+    if value is None:
+        raise InvalidRosArguments(f"'{flag}' needs a value after it")
+    return value
+
+
+def _halves(text: str, flag: str, shape: str) -> tuple[str | None, str, str]:
+    """``[node:]left:=right`` in its parts."""
+    left, separator, right = text.partition(":=")
+    node, colon, name = left.rpartition(":")
+    if not separator or not name or (colon and not node):
+        raise InvalidRosArguments(f"{flag} '{text}': must look like {shape}")
+    return node or None, name, right
+
+
+def _remapping(text: str) -> Remapping:
+    kind = ""
+    rest = text
+    for scheme in ("rostopic", "rosservice"):
+        if text.startswith(f"{scheme}://"):
+            kind, rest = scheme, text[len(scheme) + 3 :]
+    node, match, replacement = _halves(
+        rest, "-r", "from:=to, node:from:=to, __node:=name or __ns:=/namespace"
+    )
+    match = {"__name": NODE_NAME}.get(match, match)
+    checks: dict[str, Callable[[str], bool]] = {NODE_NAME: validate_node_name, NAMESPACE: validate_namespace}
+    if match in checks:
+        checks[match](replacement)
+    elif match.startswith("__"):
+        raise InvalidRosArguments(f"-r '{text}': there is only __node and __ns")
+    elif not replacement:
+        raise InvalidRosArguments(f"-r '{text}': the new name is missing")
+    return Remapping(match, replacement, node, kind)
+
+
+def _parameter(text: str) -> GivenParameters:
+    from kit.ros.parameters.parameter_files import parse_value
+
+    node, name, value = _halves(text, "-p", "name:=value or node:name:=value")
+    return GivenParameters(f"/**/{node}" if node else "/**", (Parameter(name, value=parse_value(value)),))
+
+
+def _file(path: str) -> list[GivenParameters]:
+    from kit.ros.parameters.parameter_files import read_parameter_file  # only now: it takes PyYAML
+
+    return read_parameter_file(path)
+
+
+def _log_level(text: str) -> tuple[str, LoggingSeverity]:
+    name, separator, level = text.rpartition(":=")
+    try:
+        return (name if separator else ""), get_logging_severity_from_string(level)
+    except RuntimeError as problem:
+        raise InvalidRosArguments(f"--log-level '{text}': {problem}") from None
+
+
+def _matches(pattern: str, name: str) -> bool:
+    """Whether a node pattern fits: ``*`` is one part of a name, ``**`` any number of them."""
+    return _parts_match(pattern.strip("/").split("/"), name.strip("/").split("/"))
+
+
+def _parts_match(pattern: Sequence[str], name: Sequence[str]) -> bool:
+    if not pattern:
+        return not name
+    if pattern[0] == "**":
+        return any(_parts_match(pattern[1:], name[skip:]) for skip in range(len(name) + 1))
+    return bool(name) and fnmatchcase(name[0], pattern[0]) and _parts_match(pattern[1:], name[1:])

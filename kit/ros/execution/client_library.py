@@ -1,0 +1,214 @@
+"""What ``import rclpy`` offers: starting, ending, spinning."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from enum import IntFlag
+from types import FrameType, TracebackType
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.execution.arguments import split_ros_arguments
+from kit.ros.execution.context import Context, get_default_context
+from kit.ros.execution.executors import Executor, SingleThreadedExecutor
+from kit.ros.execution.task import Future
+from kit.ros.log import LoggingSeverity, RcutilsLogger
+from kit.ros.node.node import Node
+from kit.ros.node.time import S_TO_NS
+
+if TYPE_CHECKING:
+    from kit.ros.parameters.parameter import Parameter
+
+
+class SignalHandlerOptions(IntFlag):
+    """Which signals end the context."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+class InitContextManager:
+    """What ``init`` returns: ``with rclpy.init(): ...`` shuts down at the end."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def __enter__(self) -> InitContextManager:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try_shutdown(context=self.context)
+
+
+def init(
+    *,
+    args: Sequence[str] | None = None,
+    context: Context | None = None,
+    domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
+) -> InitContextManager:
+    """Begins: nodes can be created from here on. ``args`` None means the program's command line.
+
+    A program that stands alone also gets its signals handled: Ctrl-C raises KeyboardInterrupt as ever, SIGTERM
+    makes ``spin`` raise ExternalShutdownException. Raises RuntimeError the second time, InvalidRosArguments.
+    """
+    context = context or get_default_context()
+    context.init(args, domain_id=domain_id)
+    alone = not context.graph.is_simulated
+    options = signal_handler_options
+    if options is None:
+        options = SignalHandlerOptions.ALL if alone else SignalHandlerOptions.NO
+    install_signal_handlers(context, options)
+    return InitContextManager(context)
+
+
+def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """Ends: whatever waits is woken, ``ok()`` is false. RuntimeError if the program did so before."""
+    (context or get_default_context(shutting_down=True)).shutdown()
+
+
+def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """As ``shutdown``, without an error if it has ended already."""
+    (context or get_default_context(shutting_down=True)).try_shutdown()
+
+
+def ok(*, context: Context | None = None) -> bool:
+    """Whether the context is between init and shutdown."""
+    return (context or get_default_context()).ok()
+
+
+def create_node(
+    node_name: str,
+    *,
+    context: Context | None = None,
+    cli_args: list[str] | None = None,
+    namespace: str | None = None,
+    use_global_arguments: bool = True,
+    enable_rosout: bool = True,
+    start_parameter_services: bool = True,
+    parameter_overrides: list[Parameter] | None = None,
+    allow_undeclared_parameters: bool = False,
+    automatically_declare_parameters_from_overrides: bool = False,
+    enable_logger_service: bool = False,
+) -> Node:
+    """A plain node."""
+    return Node(
+        node_name,
+        context=context,
+        cli_args=cli_args,
+        namespace=namespace,
+        use_global_arguments=use_global_arguments,
+        enable_rosout=enable_rosout,
+        start_parameter_services=start_parameter_services,
+        parameter_overrides=parameter_overrides,
+        allow_undeclared_parameters=allow_undeclared_parameters,
+        automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+        enable_logger_service=enable_logger_service,
+    )
+
+
+def get_global_executor() -> Executor:
+    """The single-threaded executor of those who name none."""
+    return _executor_of(get_default_context())
+
+
+def _executor_of(context: Context) -> Executor:
+    with context.graph.lock:
+        if context.executor is None:
+            context.executor = SingleThreadedExecutor(context=context)
+        return context.executor
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Runs the node's callbacks until the context is shut down. What a callback raises comes out."""
+    executor = executor or _executor_of(node.context)
+    try:
+        executor.add_node(node)
+        executor.spin()
+    finally:
+        executor.remove_node(node)
+
+
+def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
+    """Runs at most one callback. ``timeout_sec`` None or negative: waits for it; 0: does not wait."""
+    executor = executor or _executor_of(node.context)
+    try:
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=timeout_sec)
+    finally:
+        executor.remove_node(node)
+
+
+def spin_until_future_complete(
+    node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
+) -> None:
+    """Runs the node's callbacks until the future is done or the time is over."""
+    executor = executor or _executor_of(node.context)
+    try:
+        executor.add_node(node)
+        executor.spin_until_future_complete(future, timeout_sec)
+    finally:
+        executor.remove_node(node)
+
+
+def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
+    """A command line without what stands between ``--ros-args`` and ``--``."""
+    return split_ros_arguments(sys.argv if args is None else args)[0]
+
+
+def install_signal_handlers(context: Context, options: SignalHandlerOptions) -> None:
+    """Has signals end the context, on top of what they did before. Only in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for flag in (SignalHandlerOptions.SIGINT, SignalHandlerOptions.SIGTERM):
+        if flag in options:
+            _install(context, signal.Signals[str(flag.name)])
+
+
+def _install(context: Context, number: signal.Signals) -> None:
+    before = signal.getsignal(number)
+
+    def handle(received: int, frame: FrameType | None) -> None:
+        context.end_from_outside()
+        if callable(before):
+            before(received, frame)
+
+    def restore() -> None:
+        if threading.current_thread() is threading.main_thread() and signal.getsignal(number) is handle:
+            signal.signal(number, before)
+
+    signal.signal(number, handle)
+    context.on_shutdown(restore)
+
+
+def get_logger(name: str) -> RcutilsLogger:
+    """A logger that belongs to no node."""
+    if not name:
+        raise ValueError("Logger name must not be empty")
+    return RcutilsLogger(name, get_default_context().graph.log)
+
+
+def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:
+    """Drops lines of the logger, and of its children, below this level."""
+    get_logger(name).set_level(level)
+
+
+def get_logger_level(name: str) -> LoggingSeverity:
+    """The level set for this very logger; UNSET if none is."""
+    return get_default_context().graph.log.levels.get(name, LoggingSeverity.UNSET)
+
+
+def get_logger_effective_level(name: str) -> LoggingSeverity:
+    """The level that holds for the logger: its own, its nearest ancestor's, or the default."""
+    return get_logger(name).get_effective_level()
+
+
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """Nanoseconds; -1 for ever, which None and negative numbers mean."""
+    return -1 if timeout_sec is None or timeout_sec < 0 else int(timeout_sec * S_TO_NS)

@@ -1,0 +1,178 @@
+"""Contexts: between ``rclpy.init()`` and ``rclpy.shutdown()``, in which graph."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from kit.ros.execution.arguments import RosArguments, parse_ros_arguments
+from kit.ros.graph.graph import Graph
+
+if TYPE_CHECKING:
+    from kit.ros.execution.executors import Executor
+
+
+class Context:
+    """The frame of a program's life in a graph. Without one, ``init`` makes a graph on the system's time."""
+
+    def __init__(self, graph: Graph | None = None) -> None:
+        self._graph = graph
+        self._lock = threading.Lock()
+        self._initialised = False
+        self._ok = False
+        self.ended_from_outside = False
+        """Whether it was not the program itself that ended it."""
+        self.executor: Executor | None = None
+        """The one of those who name none, once there was need of it."""
+        self._may_shut_down_late = False
+        self._domain_id = 0
+        self._callbacks: list[Callable[[], object]] = []
+        self.arguments = RosArguments()
+        """What ``init`` was given after ``--ros-args``; holds for every node."""
+
+    @property
+    def graph(self) -> Graph:
+        if self._graph is None:
+            self._graph = Graph(None)
+        return self._graph
+
+    def init(
+        self,
+        args: Sequence[str] | None = None,
+        *,
+        initialize_logging: bool = True,
+        domain_id: int | None = None,
+    ) -> None:
+        """Begins. ``args`` None means the program's command line. RuntimeError the second time."""
+        with self._lock:
+            if self._initialised:
+                raise RuntimeError("Context.init() must only be called once")
+            if domain_id is not None and domain_id < 0:
+                raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+            self.arguments = parse_ros_arguments(sys.argv[1:] if args is None else args)
+            self._domain_id = domain_id or 0
+            self._initialised = self._ok = True
+        log = self.graph.log
+        for name, level in self.arguments.log_levels:
+            if name:
+                log.levels[name] = level
+            else:
+                log.level = level
+
+    def ok(self) -> bool:
+        """Whether it is between init and shutdown."""
+        return self._ok
+
+    def shutdown(self) -> None:
+        """Ends: everything that waits is woken. RuntimeError if the program itself did so before."""
+        if self._may_shut_down_late:
+            # The program could not know; its own shutdown comes late, not wrong.
+            self._may_shut_down_late = False
+            return
+        if not self._end():
+            raise RuntimeError(
+                "Context must be initialized before it can be shutdown, and shutdown only once"
+            )
+
+    def try_shutdown(self) -> None:
+        """Ends if it has not ended."""
+        self._end()
+
+    def end_from_outside(self) -> None:
+        """Ends on behalf of a signal or of whoever runs the program, whose own shutdown may still follow."""
+        self._end(from_outside=True)
+
+    def on_shutdown(self, callback: Callable[[], object]) -> None:
+        """Has ``callback()`` called when it ends."""
+        if not callable(callback):
+            raise TypeError(f"callback should be a callable, got {type(callback)}")
+        with self._lock:
+            if self._ok:
+                self._callbacks.append(callback)
+                return
+        callback()
+
+    def get_domain_id(self) -> int:
+        return self._domain_id
+
+    def __enter__(self) -> Context:
+        if not self._initialised:
+            self.init()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.try_shutdown()
+
+    def _end(self, *, from_outside: bool = False) -> bool:
+        with self._lock:
+            if not self._ok:
+                return False
+            self.ended_from_outside = self._may_shut_down_late = from_outside
+            self._ok = False
+            callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            callback()
+        self.graph.notify()
+        return True
+
+
+class _Default:
+    """The context of those who name none. There is one per program, as in ROS 2, whose API has no other place
+    for it; it is the only state this package keeps outside a graph."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.graph: Graph | None = None
+        self.context: Context | None = None
+
+    def get(self) -> Context:
+        with self.lock:
+            if self.context is None:
+                self.context = Context(self.graph)
+            return self.context
+
+    def drop(self) -> Context:
+        """Takes the context away: whoever asks next gets a fresh one."""
+        context = self.get()
+        with self.lock:
+            self.context = None
+        return context
+
+
+_DEFAULT = _Default()
+_HOSTED: ContextVar[Context | None] = ContextVar("hosted", default=None)
+
+
+def get_default_context(*, shutting_down: bool = False) -> Context:
+    """The context of those who name none; with ``shutting_down`` for the last time."""
+    hosted = _HOSTED.get()
+    if hosted is not None:
+        return hosted
+    return _DEFAULT.drop() if shutting_down else _DEFAULT.get()
+
+
+def set_default_graph(graph: Graph | None) -> None:
+    """Has every default context from now on belong to this graph; None: to a graph on the system's time.
+
+    For whoever runs a program written for ROS 2 in its own process: call it before the program runs.
+    """
+    with _DEFAULT.lock:
+        _DEFAULT.graph = graph
+        _DEFAULT.context = None
+
+
+@contextmanager
+def hosting(context: Context) -> Iterator[None]:
+    """Makes ``context`` the default one in this block and thread: for nodes whose constructor takes none."""
+    token = _HOSTED.set(context)
+    try:
+        yield
+    finally:
+        _HOSTED.reset(token)

@@ -1,0 +1,295 @@
+"""Executors: whose thread the callbacks of which nodes run in."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from kit.ros.exceptions import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    TimeoutException,
+    WouldDeadlock,
+)
+from kit.ros.execution.context import Context, get_default_context
+from kit.ros.execution.task import Future, Task
+from kit.ros.graph.ready_queue import Agenda, Work
+from kit.ros.node.time import S_TO_NS
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future as Job
+
+    from kit.ros.node.node import Node
+
+__all__ = [
+    "ConditionReachedException",
+    "Executor",
+    "ExternalShutdownException",
+    "MultiThreadedExecutor",
+    "ShutdownException",
+    "SingleThreadedExecutor",
+    "TimeoutException",
+]
+
+
+class Executor:
+    """Runs callbacks of the nodes added to it, one at a time, in the thread that spins it.
+
+    Time-outs are seconds of the graph's time. Also a context manager, which shuts it down.
+    """
+
+    exclusive = True
+    """Whether a callback that waits for another one of its executor waits for ever."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        self._context = context or get_default_context()
+        self._graph = self._context.graph
+        self.agenda = Agenda(self._graph, exclusive=self.exclusive)
+        """What is to be done for its nodes."""
+        self._nodes: list[Node] = []
+        self._is_shutdown = False
+        self._awake = False
+        self._spinner: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.shutdown()
+
+    @property
+    def context(self) -> Context:
+        return self._context
+
+    @property
+    def is_spinning(self) -> bool:
+        """Whether a thread is in one of its spin methods."""
+        return self._spinner is not None
+
+    # Its nodes
+
+    def add_node(self, node: Node) -> bool:
+        """Takes on the node, also from another executor. False if it has it already."""
+        with self._graph.lock:
+            if node in self._nodes:
+                return False
+            if node.context.graph is not self._graph:
+                raise RuntimeError(f"{node} belongs to another graph than this executor")
+            current = node.executor
+            if current is not None:
+                current.remove_node(node)
+            self._nodes.append(node)
+            node.handle.set_executor(self)
+            return True
+
+    def remove_node(self, node: Node) -> None:
+        """Lets go of the node; nothing happens if it does not have it."""
+        with self._graph.lock:
+            if node in self._nodes:
+                self._nodes.remove(node)
+                node.handle.set_executor(None)
+
+    def get_nodes(self) -> list[Node]:
+        return list(self._nodes)
+
+    # Its work
+
+    def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Task[Any]:
+        """Has a function or coroutine run by this executor; the task is its future result."""
+        task: Task[Any] = Task(callback, args, kwargs, executor=self)
+        self.agenda.post(task)
+        return task
+
+    def create_future(self) -> Future[Any]:
+        """A future whose done callbacks this executor runs."""
+        return Future(executor=self)
+
+    def wake(self) -> None:
+        """Has a waiting spin look again."""
+        self._awake = True
+        self._graph.notify()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Stops spinning and lets go of the nodes. True: nothing goes on behind the caller's back."""
+        self._is_shutdown = True
+        self._graph.notify()
+        for node in self.get_nodes():
+            self.remove_node(node)
+        return True
+
+    # Spinning
+
+    def spin(self) -> None:
+        """Runs callbacks until the executor or the context is shut down. What a callback raises comes out.
+
+        Raises ExternalShutdownException if somebody else than the program ends the context.
+        """
+        with _Spinning(self):
+            while self._context.ok() and not self._is_shutdown:
+                self._turn(None)
+        if self._context.ended_from_outside:
+            raise ExternalShutdownException
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Waits for one callback and runs it. None or negative: as long as it takes; 0: not at all."""
+        with _Spinning(self):
+            self._turn(self._deadline(timeout_sec))
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Runs callbacks until the future is done or the time is over."""
+        future.wake(self.wake)
+        with _Spinning(self):
+            deadline = self._deadline(timeout_sec)
+            while self._context.ok() and not future.done() and not self._is_shutdown:
+                if not self._turn(deadline, future.done) and not future.done():
+                    return
+
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Runs at most one callback, unless the future is done first."""
+        future.wake(self.wake)
+        with _Spinning(self):
+            self._turn(self._deadline(timeout_sec), future.done)
+
+    def _deadline(self, timeout_sec: float | None) -> int | None:
+        if timeout_sec is None or timeout_sec < 0:
+            return None
+        return self._graph.now_ns + int(timeout_sec * S_TO_NS)
+
+    def _turn(self, deadline: int | None, enough: Callable[[], bool] = lambda: False) -> bool:
+        """Waits for one piece of work and does it. False if there was none until the deadline.
+
+        Also ends, with true, when ``enough()``, or when woken: the caller looks again.
+        """
+        graph, agenda, context = self._graph, self.agenda, self._context
+        while True:
+            work = self._pick()
+            if work is not None:
+                self._do(work)
+                return True
+            next_due = agenda.next_due_ns
+            until = (
+                deadline if next_due is None else next_due if deadline is None else min(deadline, next_due)
+            )
+
+            def changed(expected: int | None = next_due) -> bool:
+                return (
+                    self._has_work()
+                    or agenda.next_due_ns != expected
+                    or enough()
+                    or self._awake
+                    or self._is_shutdown
+                    or not context.ok()
+                )
+
+            something = graph.wait(changed, until, what="spinning")
+            self._awake = False
+            if not context.ok() and context.ended_from_outside:
+                raise ExternalShutdownException
+            if not context.ok() or self._is_shutdown or enough():
+                return True
+            if not something and deadline is not None and until == deadline:
+                return False
+
+    def _has_work(self) -> bool:
+        return self.agenda.is_due
+
+    def _pick(self) -> Work | None:
+        return self.agenda.pick()
+
+    def _do(self, work: Work) -> None:
+        self.agenda.perform(work)
+
+
+class _Spinning:
+    """Marks an executor as spun by this thread."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def __enter__(self) -> None:
+        executor = self._executor
+        with executor._graph.lock:
+            if executor._spinner is None:
+                executor._spinner = threading.get_ident()
+                return
+        work = executor._graph.performing.work
+        if work is not None and work[0] is executor.agenda:
+            raise WouldDeadlock(
+                "Executor is already spinning: this is one of its callbacks. A callback must not spin its own "
+                "executor; return, and go on in a later callback: add_done_callback, await, or a timer."
+            )
+        raise RuntimeError("Executor is already spinning")
+
+    def __exit__(self, *_: object) -> None:
+        self._executor._spinner = None
+
+
+class SingleThreadedExecutor(Executor):
+    """One callback at a time, in the thread that spins."""
+
+
+class MultiThreadedExecutor(Executor):
+    """Callbacks in a pool of threads, as far as their callback groups let them overlap.
+
+    ``num_threads``: how many; by default one per processor, at least two.
+    """
+
+    exclusive = False
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        from concurrent.futures import ThreadPoolExecutor  # only now: few programs need it
+
+        super().__init__(context=context)
+        count = max(2, os.cpu_count() or 2) if num_threads is None else num_threads
+        self._pool = ThreadPoolExecutor(count, thread_name_prefix="ros-callback")
+        self._problems: list[BaseException] = []
+        self._jobs: set[Job[None]] = set()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """As ever, and waits for the callbacks that run. False if some still do after the seconds given."""
+        super().shutdown(timeout_sec)
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        if threading.current_thread().name.startswith("ros-callback"):
+            return not self._jobs
+        until = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+        for job in list(self._jobs):
+            try:
+                job.exception(until)
+            except TimeoutError:
+                return False
+        return True
+
+    def _has_work(self) -> bool:
+        return bool(self._problems) or super()._has_work()
+
+    def _pick(self) -> Work | None:
+        if self._problems:
+            raise self._problems.pop(0)
+        return super()._pick()
+
+    def _do(self, work: Work) -> None:
+        with self._graph.lock:
+            self._graph.busy += 1
+        job = self._pool.submit(self._perform, work)
+        self._jobs.add(job)
+        job.add_done_callback(self._done)
+
+    def _perform(self, work: Work) -> None:
+        self._graph.performing.pooled = True
+        self.agenda.perform(work)
+
+    def _done(self, job: Job[None]) -> None:
+        self._jobs.discard(job)
+        with self._graph.lock:
+            self._graph.busy -= 1
+        if not job.cancelled():
+            problem = job.exception()
+            if problem is not None:
+                self._problems.append(problem)
+        self.wake()

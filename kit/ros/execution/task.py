@@ -1,0 +1,198 @@
+"""Futures and tasks: results that come later, and coroutines that wait for them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Generator
+from types import CoroutineType
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from kit.ros.graph.ready_queue import NOTHING, Agenda, Item
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.execution.executors import Executor
+    from kit.ros.graph.node_handle import NodeHandle
+
+T = TypeVar("T")
+
+
+class Future(Generic[T]):
+    """A result that comes later. Can be awaited in a coroutine callback."""
+
+    def __init__(self, *, executor: Executor | None = None) -> None:
+        self._executor = executor
+        self._handle: NodeHandle | None = None
+        self._lock = threading.Lock()
+        self._done = False
+        self._cancelled = False
+        self._result: T | None = None
+        self._exception: BaseException | None = None
+        self._callbacks: list[Callable[[Future[T]], Any]] = []
+        self._wakers: list[Callable[[], None]] = []
+
+    def __await__(self) -> Generator[Future[T], None, T | None]:
+        while not self.done():
+            yield self
+        return self.result()
+
+    def done(self) -> bool:
+        """Whether there is a result or an exception, or it was cancelled."""
+        return self._done or self._cancelled
+
+    def cancelled(self) -> bool:
+        return self._cancelled
+
+    def result(self) -> T | None:
+        """The result; None while there is none. Raises what was set by ``set_exception``."""
+        if self._exception is not None:
+            raise self._exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        return self._exception
+
+    def set_result(self, result: T) -> None:
+        self._result = result
+        self._finish()
+
+    def set_exception(self, exception: BaseException) -> None:
+        self._exception = exception
+        self._finish()
+
+    def cancel(self) -> None:
+        """Gives up waiting; done callbacks run. Nothing happens if it is done."""
+        if not self._done:
+            self._cancelled = True
+            self._finish()
+
+    def add_done_callback(self, callback: Callable[[Future[T]], Any]) -> None:
+        """Has ``callback(future)`` called when it is done: by its executor, or at once if it has none."""
+        with self._lock:
+            if not self.done():
+                self._callbacks.append(callback)
+                return
+        self._call(callback)
+
+    def remove_done_callback(self, callback: Callable[[Future[T]], Any]) -> bool:
+        """Whether the callback was there to be removed."""
+        with self._lock:
+            found = callback in self._callbacks
+            self._callbacks = [other for other in self._callbacks if other != callback]
+        return found
+
+    def wake(self, waker: Callable[[], None]) -> None:
+        """Has ``waker()`` called as soon as it is done, in whatever thread that happens."""
+        with self._lock:
+            if not self.done():
+                self._wakers.append(waker)
+                return
+        waker()
+
+    def belong_to(self, handle: NodeHandle) -> None:
+        """Has the done callbacks run where the node's callbacks run."""
+        self._handle = handle
+
+    @property
+    def _agenda(self) -> Agenda | None:
+        if self._handle is not None:
+            return self._handle.agenda
+        return self._executor.agenda if self._executor is not None else None
+
+    def _finish(self) -> None:
+        with self._lock:
+            self._done = not self._cancelled
+            callbacks, self._callbacks = self._callbacks, []
+            wakers, self._wakers = self._wakers, []
+        for callback in callbacks:
+            self._call(callback)
+        for waker in wakers:
+            waker()
+
+    def _call(self, callback: Callable[[Future[T]], Any]) -> None:
+        agenda = self._agenda
+        if agenda is None:
+            callback(self)
+            return
+        task: Task[Any] = Task(callback, (self,))
+        task._handle, task._executor = self._handle, self._executor
+        agenda.post(task)
+
+
+class Task(Future[T]):
+    """A function or coroutine on an agenda; its future result. ``executor.create_task`` makes one."""
+
+    callback_group: CallbackGroup | None = None
+
+    def __init__(
+        self,
+        handler: Any,
+        args: tuple[Any, ...] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        executor: Executor | None = None,
+    ) -> None:
+        super().__init__(executor=executor)
+        self._handler = handler
+        self._args = args or ()
+        self._kwargs = kwargs or {}
+        self._coroutine: Any = handler if type(handler) is CoroutineType else None
+        self._source: Item | None = None
+        self._home: Agenda | None = None
+
+    @property
+    def handle(self) -> NodeHandle | None:
+        return self._handle
+
+    def continue_for(self, source: Item, agenda: Agenda) -> None:
+        """Makes this task the rest of ``source``'s turn: that turn ends when the task is done."""
+        self._source, self._handle, self._home = source, source.handle, agenda
+
+    def take(self) -> Any:
+        return NOTHING if self.done() else None
+
+    def run(self, taken: Any) -> Any:
+        self()
+
+    def __call__(self) -> None:
+        """Runs until the end, or to the next ``await`` of something that is not done."""
+        if self.done():
+            return
+        try:
+            if self._coroutine is None:
+                result = self._handler(*self._args, **self._kwargs)
+                if type(result) is not CoroutineType:
+                    self._conclude()
+                    self.set_result(result)
+                    return
+                self._coroutine = result
+            awaited = self._coroutine.send(None)
+        except StopIteration as end:
+            self._conclude()
+            self.set_result(end.value)
+        except BaseException as problem:
+            self._conclude()
+            self.set_exception(problem)
+            raise
+        else:
+            if isinstance(awaited, Future):
+                awaited.wake(self._resume)
+            else:
+                self._resume()
+
+    def cancel(self) -> None:
+        """Stops the task where it waits; a coroutine is closed."""
+        if self._coroutine is not None and not self.done():
+            self._coroutine.close()
+            self._conclude()
+        super().cancel()
+
+    def _resume(self) -> None:
+        agenda = self._agenda or self._home
+        if agenda is not None:
+            agenda.post(self)
+
+    def _conclude(self) -> None:
+        """Ends the turn whose rest this task was."""
+        source, self._source = self._source, None
+        if source is not None and self._home is not None:
+            self._home.end(source)

@@ -1,0 +1,317 @@
+"""The graph: all nodes of a run, the messages between them, and the time they live in.
+
+A graph is driven in one of two ways.
+
+*Lock-step*: ``advance(time_ns)``, then ``run_due()``. Everything that is due on nodes that no executor spins is
+done in the calling thread, in the order in which it became ready, until nothing is left: a key that causes a
+command that causes a motion does so within one tick. Time stands still meanwhile, so a callback that waits for
+something later would wait for ever; it gets an explanation (``WouldDeadlock``) instead.
+
+*Free-running*: executors spin in threads of their own. Every wait in the library is ``Graph.wait``. How it waits
+is the ``Pump``'s business: without one, on a condition variable, for the system's clock or for somebody else's
+``advance``; with one, whichever thread waits first pumps, and the others wait for it.
+
+Messages are copied, as a network would: a publisher may change its message after ``publish``, and no subscription
+sees what another does with its copy. ``Publisher.hand_over`` saves one of the copies.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from kit.ros.exceptions import NodeFailure, WouldDeadlock
+from kit.ros.graph.directory import Directory
+from kit.ros.graph.ready_queue import Agenda, Item, Work
+from kit.ros.log import Log, LogSink, log_to_stderr
+
+if TYPE_CHECKING:
+    from kit.msg.message import Message
+    from kit.ros.execution.context import Context
+    from kit.ros.node.node import Node
+
+MOST_ROUNDS = 100
+"""In one ``run_due``: how often a message may lead to the next one before the rest waits for the next tick."""
+
+MOST_CALLBACKS = 10_000
+"""In one ``run_due``, likewise."""
+
+
+MOST_POLLS = 100
+"""How often a program may look, without waiting, whether there is something to do, before it waits all the same:
+``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from ever going on."""
+
+
+class Pump(Protocol):
+    """How a program waits when its time and messages come from somewhere else."""
+
+    def wait(self, graph: Graph, until_ns: int | None) -> None:
+        """Returns when something may have changed: time was advanced, messages were published, a shutdown.
+
+        Called in the thread that waits, without the graph's lock. ``until_ns``: when that thread wants to go
+        on at the latest; others may wait for an earlier time, so it is a hint.
+        """
+
+
+Watcher = Callable[[int, "Node", str, "Message"], None]
+"""``(time_ns, node, topic, message)``: called for every message published, every request and every response.
+
+The name of a request's or response's service takes the place of the topic. The message is the sender's own:
+copy it to keep it. Called with the graph's lock held: be quick.
+"""
+
+
+class Look(NamedTuple):
+    """What a waiting thread saw when it looked last. A pump waits until nobody has anything left to see."""
+
+    until_ns: int | None
+    """When it goes on by itself."""
+    change: int
+    """``Graph.changes`` at that time."""
+    pooled: bool
+    """Whether it is a thread of a MultiThreadedExecutor, and so one of ``Graph.busy``."""
+
+
+class _Performing(threading.local):
+    """What the current thread is doing at the moment."""
+
+    work: tuple[Agenda, Item] | None = None
+    pooled = False
+
+
+class Graph:
+    """All nodes of a run. ``start_ns``: simulated time from there on; None: the system's time."""
+
+    def __init__(
+        self, start_ns: int | None = 0, *, pump: Pump | None = None, log_sink: LogSink = log_to_stderr
+    ) -> None:
+        self.lock = threading.RLock()
+        self.pump = pump
+        self.on_failure: Callable[[NodeFailure], None] | None = None
+        """Told of failing callbacks in lock-step; without it, ``run_due`` raises."""
+        self.directory = Directory(self)
+        """Who publishes, subscribes, serves and asks what."""
+        self.watchers: tuple[Watcher, ...] = ()
+        self.performing = _Performing()
+        self.log = Log(lambda: self.now_ns, log_sink)
+        self.agenda = Agenda(self)
+        """The lock-step nodes'."""
+        self._simulated_ns = start_ns
+        self._system_offset_ns = time.time_ns() - time.monotonic_ns()
+        self.changes = 0
+        """Counts what may have given a waiting thread something to do."""
+        self.looks: dict[int, Look] = {}
+        """The waiting threads."""
+        self.busy = 0
+        """Callbacks in threads of their own."""
+        self.somebody_waits = threading.Condition(self.lock)
+        """Notified when another thread waits: for a pump."""
+        self._changed = threading.Condition(self.lock)
+        self._pumping = False
+        self._jumps = 0
+        self._driver: int | None = None
+        self._count = 0
+        self._polls = (0, 0)
+        self._known_loops: set[tuple[str, ...]] = set()
+
+    # Time
+
+    @property
+    def is_simulated(self) -> bool:
+        return self._simulated_ns is not None
+
+    @property
+    def now_ns(self) -> int:
+        """Now, in nanoseconds: simulated, or the system's time without its leaps."""
+        now = self._simulated_ns
+        return time.monotonic_ns() + self._system_offset_ns if now is None else now
+
+    def advance(self, time_ns: int) -> None:
+        """Sets the simulated time. Backwards: every timer and rate starts its period anew."""
+        before = self._simulated_ns
+        if before is None:
+            raise RuntimeError("this graph follows the system's clock; only a simulated one can be advanced")
+        with self.lock:
+            self._simulated_ns = time_ns
+            if time_ns < before:
+                self._jumps += 1
+                for handle in self.directory.nodes:
+                    handle.rewind()
+            self.notify()
+
+    # Lock-step
+
+    def run_due(self) -> int:
+        """Does everything due on nodes that no executor spins, until quiet. Returns the number of callbacks.
+
+        Raises NodeFailure if a callback fails and ``on_failure`` is not set; what is left waits for the next
+        call. So does the rest of a conversation that never comes to an end, after a warning.
+        """
+        agenda = self.agenda
+        self._driver = threading.get_ident()
+        if not agenda.is_due:
+            return 0
+        done = 0
+        for _ in range(MOST_ROUNDS):
+            with self.lock:
+                waiting = agenda.line_up_timers()
+            if not waiting:
+                return done
+            for _ in range(min(waiting, MOST_CALLBACKS - done)):
+                work = agenda.pick()
+                if work is None:
+                    break
+                done += 1
+                self._perform(work)
+        if agenda.is_due:
+            self._warn_of_loop()
+        return done
+
+    def _perform(self, work: Work) -> None:
+        try:
+            self.agenda.perform(work)
+        except Exception as cause:
+            handle = work.item.handle
+            failure = NodeFailure(handle.node if handle is not None else None, cause)
+            if self.on_failure is None:
+                raise failure from cause
+            self.on_failure(failure)
+
+    def _warn_of_loop(self) -> None:
+        with self.lock:
+            loop = tuple(sorted({str(item) for item in self.agenda.ready}))
+        if loop not in self._known_loops:
+            self._known_loops.add(loop)
+            self.log.warning(
+                "graph",
+                f"{', '.join(loop)}: answered without end within one tick; the rest waits for the next. "
+                "Does a node react to its own messages?",
+            )
+
+    def discard(self) -> None:
+        """Forgets every message, request and response that is on its way. Timers stay as they are."""
+        with self.lock:
+            for handle in self.directory.nodes:
+                handle.discard_queues()
+
+    # Free-running
+
+    def wait(
+        self, ready: Callable[[], bool], until_ns: int | None = None, *, what: str = "this call"
+    ) -> bool:
+        """Waits until ``ready()``; false if ``until_ns`` comes first, or if time jumps back meanwhile.
+
+        ``ready`` is called with the lock held. Raises WouldDeadlock, naming ``what``, if time and messages
+        cannot move on while the calling thread waits.
+        """
+        with self.lock:
+            jumps = self._jumps
+            while not ready():
+                if until_ns is not None and (self.now_ns >= until_ns or jumps != self._jumps):
+                    if self._polls_in_vain():
+                        self._wait_once(until_ns)
+                    return False
+                self._refuse_to_hang(what)
+                self._wait_once(until_ns)
+            return True
+
+    def notify(self) -> None:
+        """Has everybody who waits look again."""
+        with self.lock:
+            self.changes += 1
+            if self.looks:
+                self._changed.notify_all()
+
+    def _wait_once(self, until_ns: int | None) -> None:
+        me = threading.get_ident()
+        self.looks[me] = Look(until_ns, self.changes, self.performing.pooled)
+        try:
+            if self.pump is None or self._pumping:
+                self.somebody_waits.notify_all()
+                timeout = None if until_ns is None or self.is_simulated else (until_ns - self.now_ns) / 1e9
+                self._changed.wait(timeout)
+                return
+            self._pumping = True
+            self.lock.release()
+            try:
+                self.pump.wait(self, until_ns)
+            finally:
+                self.lock.acquire()
+                self._pumping = False
+                self._changed.notify_all()
+        finally:
+            del self.looks[me]
+
+    def _polls_in_vain(self) -> bool:
+        """Whether a pumped program has looked so often at this instant that only a later one can bring anything."""
+        now = self.now_ns
+        instant, count = self._polls
+        self._polls = (now, count + 1 if instant == now else 1)
+        if self.pump is None or count < MOST_POLLS:
+            return False
+        self._polls = (now, 0)
+        return True
+
+    def _refuse_to_hang(self, what: str) -> None:
+        work = self.performing.work
+        if work is not None and work[0] is self.agenda:
+            raise WouldDeadlock(
+                f"{what} would wait for ever: the nodes run in lock-step here, and time stands still until this "
+                "callback returns. Return, and go on in a later callback: add_done_callback, await, or a timer."
+            )
+        if self.pump is None and self.is_simulated and self._driver == threading.get_ident():
+            raise WouldDeadlock(
+                f"{what} would wait for ever: this very thread is the one that advances the time"
+            )
+
+    # Everybody in it
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """In the order of their creation."""
+        return tuple(handle.node for handle in self.directory.nodes)
+
+    @cached_property
+    def context(self) -> Context:
+        """A context of this graph, already initialised: ``Node("name", context=graph.context)``."""
+        from kit.ros.execution.context import Context
+
+        context = Context(self)
+        context.init(())
+        return context
+
+    def create_node(self, name: str, namespace: str | None = None) -> Node:
+        """A plain node in this graph."""
+        from kit.ros.node.node import Node
+
+        return Node(name, context=self.context, namespace=namespace)
+
+    def subscription_count(self, topic: str) -> int:
+        """How many subscriptions a topic has, by its absolute name."""
+        found = self.directory.topics.get(topic)
+        return len(found.subscriptions) if found is not None else 0
+
+    def watch(self, watcher: Watcher) -> Callable[[], None]:
+        """Shows ``watcher`` everything that is said, until the returned function is called."""
+        with self.lock:
+            self.watchers = (*self.watchers, watcher)
+
+        def stop() -> None:
+            with self.lock:
+                self.watchers = tuple(other for other in self.watchers if other is not watcher)
+
+        return stop
+
+    def tell_watchers(self, node: Node, topic: str, message: Any) -> None:
+        """Shows the watchers what ``node`` says. With the lock held."""
+        for watcher in self.watchers:
+            watcher(self.now_ns, node, topic, message)
+
+    def next_number(self) -> int:
+        """Consecutive numbers for whatever needs an order of creation."""
+        with self.lock:
+            self._count += 1
+            return self._count

@@ -1,0 +1,138 @@
+"""Who is in a graph at one instant, as plain frozen data: to draw, to list, to send elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from kit.msg.message import type_name
+from kit.ros.graph.directory import mismatch_in_words
+
+if TYPE_CHECKING:
+    from kit.ros.graph.graph import Graph
+    from kit.ros.node.publisher import Publisher
+    from kit.ros.node.qos import QoSProfile
+    from kit.ros.node.subscription import Subscription
+
+PLUMBING_TOPICS: Final = frozenset({"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"})
+PLUMBING_SERVICES: Final = frozenset(
+    {
+        "describe_parameters",
+        "get_parameters",
+        "get_parameter_types",
+        "list_parameters",
+        "set_parameters",
+        "set_parameters_atomically",
+    }
+)
+"""Under its own name every node has these."""
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """A publisher or a subscription: whose, and on what terms."""
+
+    node: str
+    """The full name."""
+    type: str
+    qos: QoSProfile
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """A publisher and a subscription of one topic that do not talk."""
+
+    publisher: str
+    subscription: str
+    """The full names of their nodes."""
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class TopicState:
+    name: str
+    types: tuple[str, ...]
+    publishers: tuple[End, ...]
+    subscriptions: tuple[End, ...]
+    mismatches: tuple[Mismatch, ...]
+
+    @property
+    def is_plumbing(self) -> bool:
+        """Whether ROS needs it rather than the program."""
+        return self.name in PLUMBING_TOPICS
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceState:
+    name: str
+    types: tuple[str, ...]
+    servers: tuple[str, ...]
+    clients: tuple[str, ...]
+    """The full names of the nodes."""
+
+    @property
+    def is_plumbing(self) -> bool:
+        owner, _, last = self.name.rpartition("/")
+        return last in PLUMBING_SERVICES and owner in self.servers
+
+
+@dataclass(frozen=True, slots=True)
+class GraphState:
+    """All nodes in the order of their creation; topics and services by name."""
+
+    version: int
+    """``Directory.version``: as long as it is the same, so is everything here."""
+    nodes: tuple[str, ...]
+    """Full names; nodes of the same name count once, as they do for everybody who asks by name."""
+    topics: tuple[TopicState, ...]
+    services: tuple[ServiceState, ...]
+
+
+def snapshot(graph: Graph) -> GraphState:
+    """The graph as it is now; from any thread."""
+    with graph.lock:
+        directory = graph.directory
+        return GraphState(
+            directory.version,
+            tuple(dict.fromkeys(handle.full_name for handle in directory.nodes)),
+            tuple(
+                TopicState(
+                    name,
+                    tuple(topic.type_names),
+                    _ends(topic.publishers),
+                    _ends(topic.subscriptions),
+                    tuple(_mismatches(topic.publishers, topic.subscriptions)),
+                )
+                for name, topic in sorted(directory.topics.items())
+            ),
+            tuple(
+                _service(graph, name) for name in sorted(directory.services.keys() | directory.clients.keys())
+            ),
+        )
+
+
+def _ends(ends: Iterable[Publisher[Any] | Subscription[Any]]) -> tuple[End, ...]:
+    return tuple(End(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends)
+
+
+def _mismatches(
+    publishers: Iterable[Publisher[Any]], subscriptions: Iterable[Subscription[Any]]
+) -> Iterable[Mismatch]:
+    subscriptions = tuple(subscriptions)
+    for publisher in publishers:
+        for subscription in subscriptions:
+            why = mismatch_in_words(publisher, subscription)
+            if why is not None:
+                yield Mismatch(publisher.handle.full_name, subscription.handle.full_name, why)
+
+
+def _service(graph: Graph, name: str) -> ServiceState:
+    servers, clients = graph.directory.services.get(name, []), graph.directory.clients.get(name, [])
+    types = {type_name(end.srv_type) for end in servers} | {type_name(end.srv_type) for end in clients}
+    return ServiceState(
+        name,
+        tuple(sorted(types)),
+        tuple(dict.fromkeys(end.handle.full_name for end in servers)),
+        tuple(dict.fromkeys(end.handle.full_name for end in clients)),
+    )

@@ -1,0 +1,225 @@
+"""Substitutions: texts that are known only when the launch file is carried out."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.launch.errors import SubstitutionFailure
+from kit.ros.packages import PackageError, share_folder
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext
+
+OURS = frozenset({"ros2"})
+"""Programs that are found wherever the kit is: it has its own."""
+
+
+class Substitution:
+    """A text to come. Subclasses say what it is in ``perform``."""
+
+    def perform(self, context: LaunchContext) -> str:
+        raise NotImplementedError(f"{type(self).__name__}.perform")
+
+    def describe(self) -> str:
+        return f"{type(self).__name__}()"
+
+    def __repr__(self) -> str:
+        return self.describe()
+
+
+SomeText = str | Path | Substitution | Iterable[str | Path | Substitution]
+"""What an action takes where a text is wanted: pieces are joined without anything between them."""
+
+
+def normalize(text: Any) -> list[Substitution]:
+    """The pieces of a text. TypeError for what is none."""
+    if isinstance(text, Substitution):
+        return [text]
+    if isinstance(text, (str, Path)):
+        return [TextSubstitution(text=str(text))]
+    if isinstance(text, Iterable) and not isinstance(text, (bytes, dict)):
+        return [piece for entry in text for piece in normalize(entry)]
+    raise TypeError(
+        f"a text is needed here, a substitution, or a list of these, not {type(text).__name__} ({text!r:.40})"
+    )
+
+
+def perform(context: LaunchContext, text: SomeText) -> str:
+    """The text itself, now."""
+    return "".join(piece.perform(context) for piece in normalize(text))
+
+
+def described(text: SomeText) -> str:
+    return " + ".join(piece.describe() for piece in normalize(text))
+
+
+class TextSubstitution(Substitution):
+    """A text that is known already."""
+
+    def __init__(self, *, text: str) -> None:
+        if not isinstance(text, str):
+            raise TypeError(f"TextSubstitution expects a text, not {type(text).__name__}")
+        self.text = text
+
+    def perform(self, context: LaunchContext) -> str:
+        return self.text
+
+    def describe(self) -> str:
+        return f"'{self.text}'"
+
+
+class LaunchConfiguration(Substitution):
+    """The value of a launch argument."""
+
+    def __init__(self, variable_name: SomeText, *, default: Any = None) -> None:
+        self.variable_name = normalize(variable_name)
+        self.default = None if default is None else normalize(_as_text(default))
+
+    def perform(self, context: LaunchContext) -> str:
+        name = perform(context, self.variable_name)
+        if name in context.launch_configurations:
+            return context.launch_configurations[name]
+        if self.default is not None:
+            return perform(context, self.default)
+        near = get_close_matches(name, context.launch_configurations, 1)
+        hint = f"did you mean '{near[0]}'?" if near else "DeclareLaunchArgument comes before its use"
+        raise SubstitutionFailure(f"launch configuration '{name}' does not exist; {hint}")
+
+    def describe(self) -> str:
+        return f"LaunchConfig({described(self.variable_name)})"
+
+
+def _as_text(value: Any) -> Any:
+    return str(value) if isinstance(value, (bool, int, float)) else value
+
+
+class PathJoinSubstitution(Substitution):
+    """Parts of a path, with slashes between them."""
+
+    def __init__(self, substitutions: Iterable[SomeText]) -> None:
+        self.substitutions = [normalize(part) for part in substitutions]
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(Path(*(perform(context, part) for part in self.substitutions)))
+
+    def describe(self) -> str:
+        return f"PathJoin({', '.join(described(part) for part in self.substitutions)})"
+
+    def __truediv__(self, other: SomeText) -> PathJoinSubstitution:
+        return PathJoinSubstitution([*self.substitutions, other])
+
+
+class EnvironmentVariable(Substitution):
+    """An environment variable."""
+
+    def __init__(self, name: SomeText, *, default_value: SomeText | None = None) -> None:
+        self.name = normalize(name)
+        self.default_value = None if default_value is None else normalize(default_value)
+
+    def perform(self, context: LaunchContext) -> str:
+        name = perform(context, self.name)
+        if name in context.environment:
+            return context.environment[name]
+        if self.default_value is None:
+            raise SubstitutionFailure(f"environment variable '{name}' does not exist")
+        return perform(context, self.default_value)
+
+    def describe(self) -> str:
+        return f"EnvVar({described(self.name)})"
+
+
+class PythonExpression(Substitution):
+    """The value of a Python expression, as a text; what ``math`` has is at hand."""
+
+    def __init__(self, expression: SomeText) -> None:
+        self.expression = normalize(expression)
+
+    def perform(self, context: LaunchContext) -> str:
+        expression = perform(context, self.expression)
+        try:
+            # The launch file's author's own code, in the launch file's own process.
+            return str(eval(expression, {}, dict(vars(math))))
+        except Exception as problem:  # noqa: BLE001 - whatever the author's expression raises
+            raise SubstitutionFailure(
+                f"the expression {expression!r} fails: {type(problem).__name__}: {problem}. "
+                "Texts in it need quotes of their own."
+            ) from None
+
+    def describe(self) -> str:
+        return f"PythonExpr({described(self.expression)})"
+
+
+class FindExecutable(Substitution):
+    """The path of a program, found as a shell finds it."""
+
+    def __init__(self, *, name: SomeText) -> None:
+        self.name = normalize(name)
+
+    def perform(self, context: LaunchContext) -> str:
+        name = perform(context, self.name)
+        found = shutil.which(name, path=context.environment.get("PATH"))
+        if found is None and name not in OURS:
+            raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
+        return found or name
+
+    def describe(self) -> str:
+        return f"FindExec({described(self.name)})"
+
+
+class ThisLaunchFile(Substitution):
+    """The path of the launch file being carried out."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return context.files[-1]
+
+
+class ThisLaunchFileDir(Substitution):
+    """The folder of the launch file being carried out."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(Path(context.files[-1]).parent)
+
+
+class EqualsSubstitution(Substitution):
+    """``true`` if two texts are the same, else ``false``."""
+
+    def __init__(self, left: SomeText, right: SomeText) -> None:
+        self.left, self.right = normalize(_as_text(left)), normalize(_as_text(right))
+
+    def _equal(self, context: LaunchContext) -> bool:
+        left, right = perform(context, self.left), perform(context, self.right)
+        return left == right or {left.lower(), right.lower()} in ({"true", "1"}, {"false", "0"})
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(self._equal(context)).lower()
+
+
+class NotEqualsSubstitution(EqualsSubstitution):
+    """``true`` if two texts differ, else ``false``."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return str(not self._equal(context)).lower()
+
+
+class FindPackageShare(Substitution):
+    """The share folder of a package: here the folder that its ``package.xml`` lies in."""
+
+    def __init__(self, package: SomeText) -> None:
+        self.package = normalize(package)
+
+    def perform(self, context: LaunchContext) -> str:
+        try:
+            return str(share_folder(perform(context, self.package)))
+        except PackageError as problem:
+            raise SubstitutionFailure(str(problem)) from None
+
+    def describe(self) -> str:
+        return f"FindPackageShare(pkg={described(self.package)})"
+
+    def __truediv__(self, other: SomeText) -> PathJoinSubstitution:
+        return PathJoinSubstitution([[self], other])

@@ -1,0 +1,1 @@
+"""Nodes, and what a node creates: publishers, subscriptions, services, clients, timers."""

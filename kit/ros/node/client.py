@@ -1,0 +1,185 @@
+"""Clients: the asking side of services."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from kit.msg.message import Service as Definition
+from kit.ros.exceptions import ExternalShutdownException, WouldDeadlock
+from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.execution.task import Future
+from kit.ros.graph.ready_queue import NOTHING
+from kit.ros.node.endpoint import Entity
+from kit.ros.node.service import Call
+from kit.ros.node.time import S_TO_NS
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.qos import QoSProfile
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+
+_PATIENCE_NS = S_TO_NS
+"""How long a blocking call waits before it wonders aloud whether anybody spins its node."""
+
+
+class Client(Entity, Generic[Request, Response]):
+    """Asks a service. ``Node.create_client`` makes one."""
+
+    def __init__(
+        self,
+        handle: NodeHandle,
+        srv_type: type[Definition],
+        srv_name: str,
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        self._handle = handle
+        self._graph = handle.graph
+        self.srv_type = srv_type
+        self.service_name = srv_name
+        """Absolute, after remapping."""
+        self.callback_group = callback_group
+        self.qos_profile = qos_profile
+        self.number = self._graph.next_number()
+        self._asked = 0
+        self._pending: dict[int, Future[Any]] = {}
+        self._queue: deque[tuple[int, Any]] = deque()
+        with self._graph.lock:
+            self._graph.directory.add_client(self)
+
+    def __repr__(self) -> str:
+        return f"client of {self.service_name}"
+
+    __str__ = __repr__
+
+    @property
+    def srv_name(self) -> str:
+        return self.service_name
+
+    def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
+        """Asks and waits for the response; another thread must spin the node meanwhile.
+
+        Raises TypeError for a wrong request, TimeoutError, and WouldDeadlock in a callback that the response
+        would have to wait for.
+        """
+        self._check(request)
+        self._refuse_in_callback()
+        future = self.call_async(request)
+        future.wake(self._graph.notify)
+        context, now = self._handle.context, self._graph.now_ns
+        until = None if timeout_sec is None or timeout_sec < 0 else now + int(timeout_sec * S_TO_NS)
+
+        def over() -> bool:
+            return future.done() or not context.ok()
+
+        what = f"call() on '{self.service_name}'"
+        first = now + _PATIENCE_NS if until is None else min(until, now + _PATIENCE_NS)
+        if not self._graph.wait(over, first, what=what) and not self._handle.is_spun:
+            warning = (
+                f"{what} waits until another thread spins this node; if none does, it waits for ever. "
+                "Without threads: call_async(), then rclpy.spin_until_future_complete()"
+            )
+            self._handle.logger.warning(warning)
+        self._graph.wait(over, until, what=what)
+        if not future.done():
+            self.remove_pending_request(future)
+            if not context.ok():
+                raise ExternalShutdownException
+            raise TimeoutError(f"service '{self.service_name}' did not answer within {timeout_sec} s")
+        return future.result()
+
+    def call_async(self, request: Request) -> Future[Response]:
+        """Asks; the future's result is the response, once this node's callbacks run again."""
+        self._must_exist()
+        self._check(request)
+        future: Future[Response] = Future()
+        future.belong_to(self._handle)
+        graph = self._graph
+        with graph.lock:
+            self._asked += 1
+            self._pending[self._asked] = future
+            if graph.watchers:
+                graph.tell_watchers(self._handle.node, self.service_name, request)
+            server = graph.directory.server(self.service_name, self.srv_type)
+            if server is not None:
+                server.arrive(Call(self, self._asked, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
+                graph.notify()
+        if server is None:
+            warning = f"nobody serves '{self.service_name}': this call will never be answered; wait_for_service() first"
+            self._handle.logger.warning(warning)
+        return future
+
+    def remove_pending_request(self, future: Future[Response]) -> None:
+        """Gives up on a call; its response will be dropped."""
+        with self._graph.lock:
+            self._pending = {number: other for number, other in self._pending.items() if other is not future}
+
+    def service_is_ready(self) -> bool:
+        """Whether somebody serves it."""
+        return self._graph.directory.server(self.service_name, self.srv_type) is not None
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Waits until somebody serves it, and says whether somebody does."""
+        until = (
+            None
+            if timeout_sec is None or timeout_sec < 0
+            else self._graph.now_ns + int(timeout_sec * S_TO_NS)
+        )
+        context = self._handle.context
+        self._graph.wait(
+            lambda: self.service_is_ready() or not context.ok(),
+            until,
+            what=f"wait_for_service() on '{self.service_name}', which nobody serves,",
+        )
+        return self.service_is_ready()
+
+    def arrive(self, number: int, response: Any) -> None:
+        """Queues a response. With the graph's lock held."""
+        if not self._destroyed:
+            self._queue.append((number, response))
+            self._handle.agenda.ready.append(self)
+
+    def take(self) -> Any:
+        return self._queue.popleft() if self._queue else NOTHING
+
+    def run(self, taken: tuple[int, Any]) -> Any:
+        number, response = taken
+        future = self._pending.pop(number, None)
+        if future is not None and not future.done():
+            future.set_result(response)
+
+    def discard_queue(self) -> None:
+        self._queue.clear()
+
+    def _leave(self) -> None:
+        self._queue.clear()
+        self._pending.clear()
+        self._graph.directory.remove_client(self)
+
+    def _check(self, request: Any) -> None:
+        if not isinstance(request, self.srv_type.Request):
+            hint = f"; write {self.srv_type.__name__}.Request()" if request is self.srv_type.Request else ""
+            raise TypeError(
+                f"Expected {self.srv_type.__name__}.Request, got {type(request)}, to call '{self.service_name}'{hint}"
+            )
+
+    def _refuse_in_callback(self) -> None:
+        """The response is a callback too: it must not have to wait for the one that waits for it."""
+        work = self._graph.performing.work
+        if work is None or work[0] is not self._handle.agenda:
+            return
+        agenda, item = work
+        group = self.callback_group
+        blocked = isinstance(group, MutuallyExclusiveCallbackGroup) and group.active is item
+        if agenda.exclusive or blocked:
+            raise WouldDeadlock(
+                f"call() on '{self.service_name}' inside a callback would wait for ever: the response is handled by "
+                "the same executor, which waits for this callback to return. Use call_async() and either "
+                "add_done_callback() or 'await' in an async callback; or a MultiThreadedExecutor, with the client in "
+                "a callback group of its own."
+            )

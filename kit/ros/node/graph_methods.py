@@ -1,0 +1,119 @@
+"""The methods of a node that look around in the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from kit.msg.message import type_name
+from kit.ros.exceptions import NodeNameNonExistentError
+from kit.ros.graph.naming import expand_topic_name, validate_topic_name
+from kit.ros.node.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+
+if TYPE_CHECKING:
+    from kit.ros.graph.node_handle import NodeHandle
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+class NodeGraph:
+    """A part of Node. Names are absolute; lists are sorted by name."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def handle(self) -> NodeHandle: ...
+
+    def get_node_names(self) -> list[str]:
+        """Without their namespaces, in the order of creation."""
+        return [handle.name for handle in self.handle.graph.directory.nodes]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return [(handle.name, handle.namespace) for handle in self.handle.graph.directory.nodes]
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        return self.handle.graph.directory.topic_names_and_types()
+
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        return self.handle.graph.directory.service_names_and_types()
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        ends = _existing(self.handle, node_name, node_namespace).publishers
+        return _names_and_types((end.topic_name, end.msg_type) for end in ends)
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        ends = _existing(self.handle, node_name, node_namespace).subscriptions
+        return _names_and_types((end.topic_name, end.msg_type) for end in ends)
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        ends = _existing(self.handle, node_name, node_namespace).services
+        return _names_and_types((end.service_name, end.srv_type) for end in ends)
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Raises NodeNameNonExistentError."""
+        ends = _existing(self.handle, node_name, node_namespace).clients
+        return _names_and_types((end.service_name, end.srv_type) for end in ends)
+
+    def count_publishers(self, topic_name: str) -> int:
+        return len(self.get_publishers_info_by_topic(topic_name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        return len(self.get_subscriptions_info_by_topic(topic_name))
+
+    def count_clients(self, service_name: str) -> int:
+        return len(self.handle.graph.directory.clients.get(self.resolve_service_name(service_name), ()))
+
+    def count_services(self, service_name: str) -> int:
+        return len(self.handle.graph.directory.services.get(self.resolve_service_name(service_name), ()))
+
+    def get_publishers_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        ends = self.handle.graph.directory.publishers(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(end, TopicEndpointTypeEnum.PUBLISHER) for end in ends]
+
+    def get_subscriptions_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        ends = self.handle.graph.directory.subscriptions(self.resolve_topic_name(topic_name))
+        return [TopicEndpointInfo.of(end, TopicEndpointTypeEnum.SUBSCRIPTION) for end in ends]
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The absolute name of what this node calls ``topic``, remapped unless ``only_expand``.
+
+        Raises InvalidTopicNameException.
+        """
+        handle = self.handle
+        validate_topic_name(topic)
+        if only_expand:
+            return expand_topic_name(topic, handle.name, handle.namespace)
+        return handle.arguments.topic(topic, handle.name, handle.namespace)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """As ``resolve_topic_name``. Raises InvalidServiceNameException."""
+        handle = self.handle
+        validate_topic_name(service, is_service=True)
+        if only_expand:
+            return expand_topic_name(service, handle.name, handle.namespace)
+        return handle.arguments.service(service, handle.name, handle.namespace)
+
+
+def _existing(asking: NodeHandle, name: str, namespace: str) -> NodeHandle:
+    found = asking.graph.directory.node(name, namespace)
+    if found is None:
+        raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")
+    return found
+
+
+def _names_and_types(ends: Iterable[tuple[str, type[Any]]]) -> NamesAndTypes:
+    types: dict[str, set[str]] = {}
+    for name, interface in ends:
+        types.setdefault(name, set()).add(type_name(interface))
+    return [(name, sorted(found)) for name, found in sorted(types.items())]

@@ -1,0 +1,388 @@
+"""Nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Self, TypeVar
+
+from kit.msg.message import Message, MessageType, ServiceType
+from kit.msg.message import Service as ServiceDefinition
+from kit.msg.rcl_interfaces import Log as LogMessage
+from kit.msg.rcl_interfaces import ParameterEvent
+from kit.ros.exceptions import InvalidHandle, NotInitializedException
+from kit.ros.execution.arguments import RosArguments, parse_ros_arguments
+from kit.ros.execution.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from kit.ros.execution.context import Context, get_default_context
+from kit.ros.graph.naming import absolute_namespace, validate_namespace, validate_node_name
+from kit.ros.graph.node_handle import NodeHandle
+from kit.ros.log import LogRecord, RcutilsLogger
+from kit.ros.node.client import Client
+from kit.ros.node.clock import Clock, ROSClock
+from kit.ros.node.endpoint import Destroyable, Entity
+from kit.ros.node.graph_methods import NodeGraph
+from kit.ros.node.guard_condition import GuardCondition
+from kit.ros.node.parameter_methods import NodeParameters
+from kit.ros.node.publisher import Publisher
+from kit.ros.node.qos import (
+    QoSProfile,
+    qos_or_depth,
+    qos_profile_parameter_events,
+    qos_profile_rosout_default,
+    qos_profile_services_default,
+)
+from kit.ros.node.service import Service
+from kit.ros.node.subscription import Subscription
+from kit.ros.node.time import S_TO_NS, Time
+from kit.ros.node.timer import Rate, Timer
+from kit.ros.parameters.parameter import Parameter
+from kit.ros.parameters.parameter_services import ParameterServices
+from kit.ros.parameters.parameter_store import ParameterStore
+
+if TYPE_CHECKING:
+    from kit.ros.execution.executors import Executor
+    from kit.ros.node.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+
+M = TypeVar("M", bound=Message)
+E = TypeVar("E", bound=Entity)
+
+
+class Node(NodeGraph, NodeParameters):
+    """A program's presence in the graph: it publishes, subscribes, serves, asks, keeps time and parameters.
+
+    Its callbacks run in lock-step with the graph, or wherever an executor spins it.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        context: Context | None = None,
+        cli_args: list[str] | None = None,
+        namespace: str | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: list[Parameter] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+    ) -> None:
+        context = context or get_default_context()
+        if not context.ok():
+            raise NotInitializedException("cannot create node")
+        arguments = parse_ros_arguments(cli_args or ())
+        if use_global_arguments:
+            arguments = arguments.followed_by(context.arguments)
+        self.__handle = _handle_for(self, context, arguments, node_name, namespace)
+        handle = self.__handle
+        self.__group = MutuallyExclusiveCallbackGroup()
+        self.__clock = ROSClock(handle.graph)
+        overrides = arguments.parameters_of(handle.name, handle.namespace)
+        overrides |= {parameter.name: parameter for parameter in parameter_overrides or ()}
+        handle.logger = RcutilsLogger(handle.logger_name, handle.graph.log)
+        handle.parameters = ParameterStore(overrides, allow_undeclared=allow_undeclared_parameters)
+        handle.graph.directory.add_node(handle)
+        if enable_rosout:
+            rosout = self.create_publisher(LogMessage, "/rosout", qos_profile_rosout_default)
+            handle.logger.publish = lambda record: rosout.hand_over(_as_message(record))
+        events = self.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
+        handle.parameters.publish_event = lambda event: _publish_event(handle, events, event)
+        self.declare_parameter("use_sim_time", handle.graph.is_simulated)
+        if start_parameter_services:
+            ParameterServices(self)
+        if enable_logger_service:
+            handle.logger.warning("services for log levels are not offered here; use --ros-args --log-level")
+        if automatically_declare_parameters_from_overrides:
+            rest = [(name, entry.value) for name, entry in overrides.items() if not self.has_parameter(name)]
+            self.declare_parameters("", rest, ignore_override=True)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy_node()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.__handle.full_name}>"
+
+    # What it is
+
+    @property
+    def handle(self) -> NodeHandle:
+        """What the library knows of it."""
+        return self.__handle
+
+    @property
+    def context(self) -> Context:
+        return self.__handle.context
+
+    @property
+    def executor(self) -> Executor | None:
+        """Who spins it, or last did."""
+        return self.__handle.executor
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.__handle.executor
+        if current is new_executor:
+            return
+        if current is not None:
+            current.remove_node(self)
+        if new_executor is not None:
+            new_executor.add_node(self)
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        return self.__group
+
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        yield from self.__handle.publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        yield from self.__handle.subscriptions
+
+    @property
+    def clients(self) -> Iterator[Client[Any, Any]]:
+        yield from self.__handle.clients
+
+    @property
+    def services(self) -> Iterator[Service[Any, Any]]:
+        yield from self.__handle.services
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        yield from self.__handle.timers
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        yield from self.__handle.guards
+
+    def get_name(self) -> str:
+        return self.__handle.name
+
+    def get_namespace(self) -> str:
+        return self.__handle.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        return self.__handle.full_name
+
+    def get_clock(self) -> Clock:
+        return self.__clock
+
+    def get_logger(self) -> RcutilsLogger:
+        return self.__handle.logger
+
+    # What it makes
+
+    def create_publisher(
+        self,
+        msg_type: type[M],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: object = None,
+        publisher_class: type[Publisher[M]] = Publisher,
+    ) -> Publisher[M]:
+        """A publisher; a number for ``qos_profile`` is its depth.
+
+        Raises InvalidTopicNameException, TypeError or ValueError for what is wrong with the arguments.
+        """
+        handle, profile = self.__living(), qos_or_depth(qos_profile)
+        _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
+        publisher = publisher_class(
+            handle, msg_type, self.resolve_topic_name(topic), profile, event_callbacks
+        )
+        handle.publishers.append(publisher)
+        return publisher
+
+    def create_subscription(
+        self,
+        msg_type: type[M],
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: object = None,
+        raw: bool = False,
+    ) -> Subscription[M]:
+        """A subscription that calls ``callback(message)``; a number for ``qos_profile`` is its depth.
+
+        Raises InvalidTopicNameException, TypeError or ValueError for what is wrong with the arguments.
+        """
+        handle, profile = self.__living(), qos_or_depth(qos_profile)
+        _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
+        if raw:
+            raise NotImplementedError("raw subscriptions are not offered: nothing is serialized here")
+        subscription = Subscription(
+            handle,
+            msg_type,
+            self.resolve_topic_name(topic),
+            callback,
+            callback_group or self.__group,
+            profile,
+            event_callbacks,
+        )
+        return _keep(handle.subscriptions, subscription)
+
+    def create_client(
+        self,
+        srv_type: type[ServiceDefinition],
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client[Any, Any]:
+        """A client. Raises InvalidServiceNameException, TypeError."""
+        handle = self.__living()
+        _check_type(srv_type, ServiceType, "service", "Trigger from std_srvs.srv")
+        name = self.resolve_service_name(srv_name)
+        client: Client[Any, Any] = Client(handle, srv_type, name, callback_group or self.__group, qos_profile)
+        return _keep(handle.clients, client)
+
+    def create_service(
+        self,
+        srv_type: type[ServiceDefinition],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service[Any, Any]:
+        """A service answering with ``callback(request, response)``. Raises InvalidServiceNameException, TypeError."""
+        handle = self.__living()
+        _check_type(srv_type, ServiceType, "service", "Trigger from std_srvs.srv")
+        name = self.resolve_service_name(srv_name)
+        group = callback_group or self.__group
+        service: Service[Any, Any] = Service(handle, srv_type, name, callback, group, qos_profile)
+        return _keep(handle.services, service)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Calls back every ``timer_period_sec`` seconds, for the first time after one. ValueError if negative."""
+        handle = self.__living()
+        period = int(float(timer_period_sec) * S_TO_NS)
+        if period < 0:
+            raise ValueError(f"timer period must be non-negative, not {timer_period_sec}")
+        group = callback_group or self.__group
+        return _keep(
+            handle.timers, Timer(handle, callback, group, period, clock or self.__clock, autostart=autostart)
+        )
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """A rate of ``frequency`` Hz. ValueError if it is not positive."""
+        handle = self.__living()
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        rate = Rate(handle, int(S_TO_NS / frequency))
+        handle.rates.append(rate)
+        return rate
+
+    def create_guard_condition(
+        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """A guard condition; any thread may trigger it."""
+        handle = self.__living()
+        return _keep(handle.guards, GuardCondition(handle, callback, callback_group or self.__group))
+
+    # What it gives up
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        """Whether it was this node's; likewise the others."""
+        return _destroy(self.__handle.publishers, publisher)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        return _destroy(self.__handle.subscriptions, subscription)
+
+    def destroy_client(self, client: Client[Any, Any]) -> bool:
+        return _destroy(self.__handle.clients, client)
+
+    def destroy_service(self, service: Service[Any, Any]) -> bool:
+        return _destroy(self.__handle.services, service)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        return _destroy(self.__handle.timers, timer)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        return _destroy(self.__handle.guards, guard)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        return _destroy(self.__handle.rates, rate)
+
+    def destroy_node(self) -> None:
+        """Leaves the graph, with everything it made."""
+        handle = self.__handle
+        if handle.destroyed:
+            return
+        if handle.executor is not None:
+            handle.executor.remove_node(self)
+        for made in handle.everything():
+            made.destroy()
+        with handle.graph.lock:
+            handle.destroyed = True
+            handle.graph.directory.remove_node(handle)
+
+    def __living(self) -> NodeHandle:
+        if self.__handle.destroyed:
+            raise InvalidHandle(f"cannot use node {self.__handle.full_name}: it has been destroyed")
+        return self.__handle
+
+
+def _handle_for(
+    node: Node, context: Context, arguments: RosArguments, name: str, namespace: str | None
+) -> NodeHandle:
+    """A handle with the names after remapping. Raises InvalidNodeNameException, InvalidNamespaceException."""
+    validate_node_name(name)
+    given = absolute_namespace(namespace)
+    validate_namespace(given)
+    return NodeHandle(node, context, arguments, arguments.node_name(name), arguments.namespace(name, given))
+
+
+def _check_type(interface: object, wanted: type, what: str, example: str) -> None:
+    if not isinstance(interface, wanted):
+        found = interface.__name__ if isinstance(interface, (type, ModuleType)) else repr(interface)
+        raise TypeError(f"a {what} class is needed here, like {example}, not {found}")
+
+
+def _keep(kept: list[E], entity: E) -> E:
+    kept.append(entity)
+    entity.callback_group.add_entity(entity)
+    return entity
+
+
+def _destroy(kept: Sequence[Destroyable], made: Destroyable) -> bool:
+    found = made in kept
+    if found:
+        made.destroy()
+    return found
+
+
+def _as_message(record: LogRecord) -> LogMessage:
+    """A log line as ``/rosout`` carries it."""
+    return LogMessage(
+        stamp=Time(nanoseconds=record.time_ns).to_msg(),
+        level=record.severity.value,
+        name=record.name,
+        msg=record.text,
+        file=record.file,
+        function=record.function,
+        line=record.line,
+    )
+
+
+def _publish_event(handle: NodeHandle, publisher: Publisher[ParameterEvent], event: ParameterEvent) -> None:
+    event.stamp = Time(nanoseconds=handle.graph.now_ns).to_msg()
+    event.node = handle.full_name
+    publisher.hand_over(event)

@@ -1,0 +1,292 @@
+"""Quality of service: what publishers offer, what subscriptions ask for, and whether the two go together."""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+from typing import Any, ClassVar, Self
+
+from kit.ros.node.time import Duration
+
+
+class InvalidQoSProfileException(Exception):
+    """The settings of a profile contradict each other."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__("Invalid QoSProfile", *args)
+
+
+class QoSPolicyKind(IntEnum):
+    """Names the policy on which two profiles disagree."""
+
+    INVALID = 1 << 0
+    DURABILITY = 1 << 1
+    DEADLINE = 1 << 2
+    LIVELINESS = 1 << 3
+    RELIABILITY = 1 << 4
+    HISTORY = 1 << 5
+    LIFESPAN = 1 << 6
+    DEPTH = 1 << 7
+    LIVELINESS_LEASE_DURATION = 1 << 8
+    AVOID_ROS_NAMESPACE_CONVENTIONS = 1 << 9
+
+
+class QoSPolicyEnum(IntEnum):
+    """A policy whose values also have short names, as the command line writes them."""
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        return [member.name.lower() for member in cls if member.name not in ("RMW_UNKNOWN", "UNKNOWN")]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> Self:
+        return cls[name.upper()]
+
+    @property
+    def short_key(self) -> str:
+        return self.name.lower()
+
+
+class HistoryPolicy(QoSPolicyEnum):
+    SYSTEM_DEFAULT = 0
+    KEEP_LAST = 1
+    KEEP_ALL = 2
+    UNKNOWN = 3
+
+
+class ReliabilityPolicy(QoSPolicyEnum):
+    SYSTEM_DEFAULT = 0
+    RELIABLE = 1
+    BEST_EFFORT = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class DurabilityPolicy(QoSPolicyEnum):
+    SYSTEM_DEFAULT = 0
+    TRANSIENT_LOCAL = 1
+    VOLATILE = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class LivelinessPolicy(QoSPolicyEnum):
+    SYSTEM_DEFAULT = 0
+    AUTOMATIC = 1
+    MANUAL_BY_TOPIC = 3
+    UNKNOWN = 4
+    BEST_AVAILABLE = 5
+
+
+QoSHistoryPolicy = HistoryPolicy
+QoSReliabilityPolicy = ReliabilityPolicy
+QoSDurabilityPolicy = DurabilityPolicy
+QoSLivelinessPolicy = LivelinessPolicy
+
+
+class QoSProfile:
+    """A complete set of policies. ``QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)``.
+
+    Needs a ``history`` or a ``depth``; KEEP_LAST needs a depth. Deadline, lifespan and liveliness are kept,
+    compared and shown, but nothing expires: a simulation loses no message and no publisher on its way.
+    """
+
+    __slots__ = (
+        "avoid_ros_namespace_conventions",
+        "deadline",
+        "depth",
+        "durability",
+        "history",
+        "lifespan",
+        "liveliness",
+        "liveliness_lease_duration",
+        "reliability",
+    )
+
+    _TYPES: ClassVar[dict[str, type[Any]]] = {
+        "history": HistoryPolicy,
+        "depth": int,
+        "reliability": ReliabilityPolicy,
+        "durability": DurabilityPolicy,
+        "lifespan": Duration,
+        "deadline": Duration,
+        "liveliness": LivelinessPolicy,
+        "liveliness_lease_duration": Duration,
+        "avoid_ros_namespace_conventions": bool,
+    }
+
+    history: HistoryPolicy
+    depth: int
+    reliability: ReliabilityPolicy
+    durability: DurabilityPolicy
+    lifespan: Duration
+    deadline: Duration
+    liveliness: LivelinessPolicy
+    liveliness_lease_duration: Duration
+    avoid_ros_namespace_conventions: bool
+
+    def __init__(self, **kwargs: Any) -> None:
+        unknown = kwargs.keys() - self._TYPES.keys()
+        if unknown:
+            known = ", ".join(self._TYPES)
+            raise AssertionError(
+                f"Invalid arguments passed to constructor: {sorted(unknown)}; there are: {known}"
+            )
+        if "history" not in kwargs and "depth" not in kwargs:
+            raise InvalidQoSProfileException("History and/or depth settings are required.")
+        if kwargs.get("history") == HistoryPolicy.KEEP_LAST and "depth" not in kwargs:
+            raise InvalidQoSProfileException("History set to KEEP_LAST without a depth setting.")
+        settings: dict[str, Any] = {
+            "history": HistoryPolicy.KEEP_LAST,
+            "depth": 0,
+            "reliability": ReliabilityPolicy.RELIABLE,
+            "durability": DurabilityPolicy.VOLATILE,
+            "lifespan": Duration(),
+            "deadline": Duration(),
+            "liveliness": LivelinessPolicy.SYSTEM_DEFAULT,
+            "liveliness_lease_duration": Duration(),
+            "avoid_ros_namespace_conventions": False,
+        }
+        for name, value in (settings | kwargs).items():
+            setattr(self, name, value)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        wanted = self._TYPES[name]
+        if issubclass(wanted, IntEnum) and isinstance(value, int):
+            value = wanted(value)
+        if not isinstance(value, wanted):
+            raise TypeError(f"QoSProfile.{name} must be a {wanted.__name__}, not {type(value).__name__}")
+        if name == "depth" and value < 0:
+            raise ValueError("depth must be greater than or equal to zero")
+        object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, QoSProfile):
+            return False
+        return all(getattr(self, name) == getattr(other, name) for name in self._TYPES)
+
+    def __hash__(self) -> int:
+        return hash(tuple(getattr(self, name) for name in self._TYPES))
+
+    def __repr__(self) -> str:
+        return f"QoSProfile({', '.join(f'{name}={getattr(self, name)}' for name in self._TYPES)})"
+
+    @property
+    def is_best_effort(self) -> bool:
+        return self.reliability == ReliabilityPolicy.BEST_EFFORT
+
+    @property
+    def is_transient_local(self) -> bool:
+        return self.durability == DurabilityPolicy.TRANSIENT_LOCAL
+
+    @property
+    def queue_length(self) -> int | None:
+        """How many messages a queue holds; None for KEEP_ALL."""
+        return None if self.history == HistoryPolicy.KEEP_ALL else max(1, self.depth)
+
+
+def _profile(depth: int = 10, **settings: Any) -> QoSProfile:
+    return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth, **settings)
+
+
+qos_profile_default = _profile()
+qos_profile_system_default = QoSProfile(
+    history=HistoryPolicy.SYSTEM_DEFAULT,
+    depth=0,
+    reliability=ReliabilityPolicy.SYSTEM_DEFAULT,
+    durability=DurabilityPolicy.SYSTEM_DEFAULT,
+)
+qos_profile_sensor_data = _profile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
+qos_profile_services_default = _profile()
+qos_profile_parameters = _profile(1000)
+qos_profile_parameter_events = _profile(1000)
+qos_profile_rosout_default = _profile(
+    1000, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=10)
+)
+qos_profile_action_status_default = _profile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+qos_profile_best_available = _profile(
+    reliability=ReliabilityPolicy.BEST_AVAILABLE,
+    durability=DurabilityPolicy.BEST_AVAILABLE,
+    liveliness=LivelinessPolicy.BEST_AVAILABLE,
+)
+qos_profile_unknown = QoSProfile(
+    history=HistoryPolicy.UNKNOWN,
+    depth=0,
+    reliability=ReliabilityPolicy.UNKNOWN,
+    durability=DurabilityPolicy.UNKNOWN,
+    liveliness=LivelinessPolicy.UNKNOWN,
+)
+
+
+class QoSPresetProfiles(Enum):
+    """The presets by name: ``QoSPresetProfiles.SENSOR_DATA.value``."""
+
+    UNKNOWN = qos_profile_unknown
+    DEFAULT = qos_profile_default
+    SYSTEM_DEFAULT = qos_profile_system_default
+    SENSOR_DATA = qos_profile_sensor_data
+    SERVICES_DEFAULT = qos_profile_services_default
+    PARAMETERS = qos_profile_parameters
+    PARAMETER_EVENTS = qos_profile_parameter_events
+    ACTION_STATUS_DEFAULT = qos_profile_action_status_default
+    BEST_AVAILABLE = qos_profile_best_available
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        return [name.lower() for name in cls.__members__ if name != "UNKNOWN"]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> QoSProfile:
+        return cls[name.upper()].value
+
+
+def qos_or_depth(value: QoSProfile | int) -> QoSProfile:
+    """The profile that a ``qos_profile`` argument means: a number is a KEEP_LAST depth."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return QoSProfile(depth=value)
+    if not isinstance(value, QoSProfile):
+        raise TypeError(f"Expected QoSProfile or int, but received {value!r}")
+    return value
+
+
+def first_incompatibility(offered: QoSProfile, requested: QoSProfile) -> QoSPolicyKind | None:
+    """The policy on which a publisher offers less than a subscription asks for; None if they go together."""
+    if offered.is_best_effort and requested.reliability == ReliabilityPolicy.RELIABLE:
+        return QoSPolicyKind.RELIABILITY
+    if requested.is_transient_local and offered.durability not in (
+        DurabilityPolicy.TRANSIENT_LOCAL,
+        DurabilityPolicy.BEST_AVAILABLE,
+    ):
+        return QoSPolicyKind.DURABILITY
+    if _slower(offered.deadline, requested.deadline):
+        return QoSPolicyKind.DEADLINE
+    if (
+        requested.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+        and offered.liveliness != LivelinessPolicy.MANUAL_BY_TOPIC
+    ) or _slower(offered.liveliness_lease_duration, requested.liveliness_lease_duration):
+        return QoSPolicyKind.LIVELINESS
+    return None
+
+
+def _slower(offered: Duration, requested: Duration) -> bool:
+    """Whether the promise is longer than asked for; zero means no limit."""
+    limit = requested.nanoseconds
+    return limit != 0 and (offered.nanoseconds == 0 or offered.nanoseconds > limit)
+
+
+class QoSCompatibility(IntEnum):
+    OK = 0
+    WARNING = 1
+    ERROR = 2
+
+
+def qos_check_compatible(
+    publisher_qos: QoSProfile, subscription_qos: QoSProfile
+) -> tuple[QoSCompatibility, str]:
+    """Whether a publisher and a subscription with these profiles would talk, and if not, why."""
+    policy = first_incompatibility(publisher_qos, subscription_qos)
+    if policy is None:
+        return QoSCompatibility.OK, ""
+    return (
+        QoSCompatibility.ERROR,
+        f"ERROR: the publisher offers less {policy.name} than the subscription asks for;",
+    )

@@ -1,0 +1,108 @@
+"""Services: the answering side."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from types import CoroutineType
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+
+from kit.msg.message import Service as Definition
+from kit.ros.graph.ready_queue import NOTHING
+from kit.ros.node.callback_check import arguments_taken
+from kit.ros.node.endpoint import Entity
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.client import Client
+    from kit.ros.node.qos import QoSProfile
+
+Request = TypeVar("Request")
+Response = TypeVar("Response")
+
+
+class Call(NamedTuple):
+    """A request on its way: whose it is, and which of that client's."""
+
+    client: Client[Any, Any]
+    number: int
+    request: Any
+
+
+class Service(Entity, Generic[Request, Response]):
+    """Answers requests. ``Node.create_service`` makes one.
+
+    The callback ``(request, response) -> response`` may be a coroutine: then the answer may come later.
+    """
+
+    def __init__(
+        self,
+        handle: NodeHandle,
+        srv_type: type[Definition],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        self._handle = handle
+        self._graph = handle.graph
+        self.srv_type = srv_type
+        self.service_name = srv_name
+        """Absolute, after remapping."""
+        self.callback = callback
+        arguments_taken(callback, (2,), f"the service {srv_name}")
+        self.callback_group = callback_group
+        self.qos_profile = qos_profile
+        self.number = self._graph.next_number()
+        self._queue: deque[Call] = deque()
+        with self._graph.lock:
+            self._graph.directory.add_service(self)
+
+    def __repr__(self) -> str:
+        return f"service {self.service_name}"
+
+    __str__ = __repr__
+
+    @property
+    def srv_name(self) -> str:
+        return self.service_name
+
+    def arrive(self, call: Call) -> None:
+        """Queues a request. With the graph's lock held."""
+        self._queue.append(call)
+        self._handle.agenda.ready.append(self)
+
+    def take(self) -> Any:
+        return self._queue.popleft() if self._queue else NOTHING
+
+    def run(self, taken: Call) -> Any:
+        answer = self.callback(taken.request, self.srv_type.Response())
+        if type(answer) is CoroutineType:
+            return self._answer_later(taken, answer)
+        self._answer(taken, answer)
+        return None
+
+    async def _answer_later(self, call: Call, answer: CoroutineType[Any, Any, Any]) -> None:
+        self._answer(call, await answer)
+
+    def _answer(self, call: Call, response: Any) -> None:
+        if not isinstance(response, self.srv_type.Response):
+            hint = ": end it with 'return response'" if response is None else ""
+            raise TypeError(
+                f"the callback of service '{self.service_name}' must return its response, "
+                f"a {self.srv_type.__name__}.Response, not {type(response).__name__}{hint}"
+            )
+        graph = self._graph
+        with graph.lock:
+            if graph.watchers:
+                graph.tell_watchers(self._handle.node, self.service_name, response)
+            call.client.arrive(call.number, response.__deepcopy__(None))
+            graph.notify()
+
+    def discard_queue(self) -> None:
+        self._queue.clear()
+
+    def _leave(self) -> None:
+        self._queue.clear()
+        self._graph.directory.remove_service(self)

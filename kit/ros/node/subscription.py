@@ -1,0 +1,126 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
+
+from kit.msg.message import Message
+from kit.ros.graph.ready_queue import NOTHING
+from kit.ros.node.callback_check import arguments_taken
+from kit.ros.node.endpoint import Entity, Incompatibilities
+from kit.ros.node.event_handler import SubscriptionEventCallbacks
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.qos import QoSProfile
+
+M = TypeVar("M", bound=Message)
+
+
+class MessageInfo(TypedDict):
+    """What a callback with a second parameter is told about its message."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int | None
+    reception_sequence_number: int | None
+
+
+class Subscription(Entity, Generic[M]):
+    """Receives messages of one type from a topic. ``Node.create_subscription`` makes one.
+
+    Its queue holds as many messages as its quality of service says; when it is full, the oldest one goes.
+    """
+
+    class CallbackType(Enum):
+        MessageOnly = 0
+        WithMessageInfo = 1
+
+    def __init__(
+        self,
+        handle: NodeHandle,
+        msg_type: type[M],
+        topic: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+    ) -> None:
+        self._handle = handle
+        self._graph = handle.graph
+        self.msg_type = msg_type
+        self.topic_name = topic
+        """Absolute, after remapping."""
+        self.callback = callback
+        self.callback_group = callback_group
+        self.qos_profile = qos_profile
+        self.raw = False
+        self.number = self._graph.next_number()
+        self._with_info = arguments_taken(callback, (1, 2), f"the subscription of {topic}") == 2
+        self.incompatibilities = Incompatibilities(handle, event_callbacks)
+        self._queue: deque[M] = deque(maxlen=qos_profile.queue_length)
+        with self._graph.lock:
+            self._graph.directory.topic(topic).add_subscription(self)
+
+    def __repr__(self) -> str:
+        return f"subscription of {self.topic_name}"
+
+    def __str__(self) -> str:
+        return self.topic_name
+
+    @property
+    def topic(self) -> str:
+        return self.topic_name
+
+    def get_publisher_count(self) -> int:
+        """How many publishers reach it."""
+        self._must_exist()
+        return sum(
+            self in publisher.routes for publisher in self._graph.directory.publishers(self.topic_name)
+        )
+
+    def arrive(self, msg: M) -> None:
+        """Queues a message that is now this subscription's own. With the graph's lock held."""
+        queue = self._queue
+        if len(queue) != queue.maxlen:
+            # One place in the line per queued message: a message that pushes out another takes over its place.
+            self._handle.agenda.ready.append(self)
+        queue.append(msg)
+
+    @property
+    def has_waiting(self) -> bool:
+        """Whether messages wait in its queue."""
+        return bool(self._queue)
+
+    def take_waiting(self) -> list[M]:
+        """All messages that wait, instead of their callbacks."""
+        with self._graph.lock:
+            waiting = list(self._queue)
+            self._queue.clear()
+            return waiting
+
+    def take(self) -> Any:
+        return self._queue.popleft() if self._queue else NOTHING
+
+    def run(self, taken: M) -> Any:
+        if self._with_info:
+            now = self._graph.now_ns
+            info = MessageInfo(
+                source_timestamp=now,
+                received_timestamp=now,
+                publication_sequence_number=None,
+                reception_sequence_number=None,
+            )
+            return self.callback(taken, info)
+        return self.callback(taken)
+
+    def discard_queue(self) -> None:
+        self._queue.clear()
+
+    def _leave(self) -> None:
+        self._queue.clear()
+        self._graph.directory.remove_end(self)

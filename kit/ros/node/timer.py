@@ -1,0 +1,228 @@
+"""Timers, rates, and the rule by which both come due."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
+from kit.ros.graph.ready_queue import NOTHING
+from kit.ros.node.callback_check import arguments_taken
+from kit.ros.node.endpoint import Destroyable, Entity
+from kit.ros.node.time import Time
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup
+    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.clock import Clock
+
+
+class Schedule:
+    """When something periodic is due: one period after its start, then every period.
+
+    Who comes late does not catch up: the periods that were missed are left out, and the rhythm is kept.
+    """
+
+    def __init__(self, period_ns: int, now_ns: int) -> None:
+        self.period_ns = period_ns
+        self.last_ns = now_ns
+        self.due_ns = now_ns + period_ns
+
+    def start(self, now_ns: int) -> None:
+        """Begins a new period now."""
+        self.last_ns = now_ns
+        self.due_ns = now_ns + self.period_ns
+
+    def call(self, now_ns: int) -> None:
+        """Notes a turn taken now and sets the next one."""
+        self.last_ns = now_ns
+        self.due_ns += self.period_ns
+        if self.period_ns == 0:
+            # As often as possible, but not twice in one instant: in a simulation that would never end.
+            self.due_ns = now_ns + 1
+        elif self.due_ns < now_ns:
+            missed = -(-(now_ns - self.due_ns) // self.period_ns)
+            self.due_ns += missed * self.period_ns
+
+    def rewind(self, now_ns: int) -> bool:
+        """Time has jumped back: before the last turn, a new period begins. Says whether one did."""
+        if now_ns < self.last_ns:
+            self.start(now_ns)
+            return True
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class TimerInfo:
+    """What a callback with a parameter is told about its timer's turn."""
+
+    expected_call_time: Time
+    actual_call_time: Time
+
+
+class Timer(Entity):
+    """Calls back every period. ``Node.create_timer`` makes one."""
+
+    def __init__(
+        self,
+        handle: NodeHandle,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup,
+        timer_period_ns: int,
+        clock: Clock,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        self._handle = handle
+        self._graph = handle.graph
+        self.callback = callback
+        self._with_info = callback is not None and arguments_taken(callback, (0, 1), "a timer") == 1
+        self.callback_group = callback_group
+        self._clock = clock
+        self.number = self._graph.next_number()
+        self._schedule = Schedule(timer_period_ns, self._graph.now_ns)
+        self._cancelled = not autostart
+        if autostart:
+            handle.agenda.add_timer(self)
+
+    def __repr__(self) -> str:
+        return f"timer of {self._schedule.period_ns / 1e9:g} s in {self._handle.full_name}"
+
+    __str__ = __repr__
+
+    @property
+    def due_ns(self) -> int:
+        """When its next turn comes; -1 if never."""
+        return -1 if self._cancelled or self._destroyed else self._schedule.due_ns
+
+    @property
+    def clock(self) -> Clock:
+        return self._clock
+
+    @property
+    def timer_period_ns(self) -> int:
+        self._must_exist()
+        return self._schedule.period_ns
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        """Takes effect after the turn that is already set."""
+        self._schedule.period_ns = int(value)
+
+    def is_ready(self) -> bool:
+        """Whether its turn has come."""
+        self._must_exist()
+        return not self._cancelled and self._schedule.due_ns <= self._graph.now_ns
+
+    def is_canceled(self) -> bool:
+        self._must_exist()
+        return self._cancelled
+
+    def cancel(self) -> None:
+        """No more turns, until ``reset``."""
+        self._must_exist()
+        self._cancelled = True
+
+    def reset(self) -> None:
+        """Begins a new period now, also if it was cancelled."""
+        self._must_exist()
+        with self._graph.lock:
+            self._cancelled = False
+            self._schedule.start(self._graph.now_ns)
+            self._handle.agenda.add_timer(self)
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds."""
+        self._must_exist()
+        return self._graph.now_ns - self._schedule.last_ns
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds, negative if it is late; None if it is cancelled."""
+        self._must_exist()
+        return None if self._cancelled else self._schedule.due_ns - self._graph.now_ns
+
+    def rewind(self) -> None:
+        """Time has jumped back. With the graph's lock held."""
+        if self._schedule.rewind(self._graph.now_ns) and not self._cancelled:
+            self._handle.agenda.add_timer(self)
+
+    def take(self) -> Any:
+        now = self._graph.now_ns
+        due = self.due_ns
+        if due < 0 or now < due:
+            return NOTHING
+        self._schedule.call(now)
+        self._handle.agenda.add_timer(self)
+        return (due, now)
+
+    def run(self, taken: tuple[int, int]) -> Any:
+        if self.callback is None:
+            return None
+        if not self._with_info:
+            return self.callback()
+        due, now = (Time(nanoseconds=moment, clock_type=self._clock.clock_type) for moment in taken)
+        return self.callback(TimerInfo(due, now))
+
+    def _leave(self) -> None:
+        self._cancelled = True
+
+
+_SLEEPS_BEFORE_WARNING = 3
+"""A thread that is to spin may take a moment to start."""
+
+
+class Rate(Destroyable):
+    """Keeps a loop at a frequency: ``rate.sleep()``. ``Node.create_rate`` makes one.
+
+    On a robot another thread must spin the node meanwhile; here it works without, with a warning.
+    """
+
+    def __init__(self, handle: NodeHandle, period_ns: int) -> None:
+        self._handle = handle
+        self._graph = handle.graph
+        self._schedule = Schedule(period_ns, self._graph.now_ns)
+        self._alone = 0
+
+    def __repr__(self) -> str:
+        return f"rate of {1e9 / self._schedule.period_ns:g} Hz"
+
+    def sleep(self) -> None:
+        """Waits for the end of the current period.
+
+        Raises ROSInterruptException after a shutdown, WouldDeadlock in a callback that its timer would have
+        to wait for.
+        """
+        if self._destroyed:
+            raise InvalidHandle("Rate cannot sleep because it has been destroyed")
+        graph, schedule, context = self._graph, self._schedule, self._handle.context
+        self._refuse_in_callback()
+        self._alone += not self._handle.is_spun
+        if self._alone == _SLEEPS_BEFORE_WARNING:
+            self._handle.logger.warning(
+                "rate.sleep() works here, but hangs on a robot unless another thread spins this node"
+            )
+
+        def over() -> bool:
+            return graph.now_ns >= schedule.due_ns or self._destroyed or not context.ok()
+
+        while not graph.wait(over, schedule.due_ns, what="rate.sleep()"):
+            pass
+        if not context.ok():
+            raise ROSInterruptException
+        schedule.call(graph.now_ns)
+
+    def rewind(self) -> None:
+        """Time has jumped back. With the graph's lock held."""
+        self._schedule.rewind(self._graph.now_ns)
+
+    def _refuse_in_callback(self) -> None:
+        work = self._graph.performing.work
+        if work is not None and work[0] is self._handle.agenda and work[0].exclusive:
+            raise WouldDeadlock(
+                "rate.sleep() inside a callback would wait for ever: the executor that has to end the sleep waits "
+                "for this callback to return. Do a little in each turn of a timer instead."
+            )
+
+    def _leave(self) -> None:
+        self._graph.notify()

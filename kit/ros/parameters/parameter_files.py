@@ -1,0 +1,139 @@
+"""Parameter values as text: on a command line, and in the YAML files that ``--params-file`` names.
+
+Text is read as ROS 2 reads it: ``yes`` and ``on`` are truth values, ``1e-3`` is a number, quotes make a text.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from yaml import MappingNode, Mark, ScalarNode, SequenceNode
+from yaml import Node as YamlNode
+
+from kit.msg.rcl_interfaces import ParameterValue
+from kit.ros.exceptions import InvalidRosArguments
+from kit.ros.parameters.parameter import GivenParameters, Parameter
+
+PARAMETERS_KEY = "ros__parameters"
+
+_TRUE = {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}
+_FALSE = {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"}
+_INTEGER = re.compile(r"[-+]?(?:0x[0-9a-fA-F]+|[0-9]+)")
+_FLOAT = re.compile(r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
+
+
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """Where a text comes from, for messages."""
+
+    name: str
+    is_file: bool = True
+
+    def error(self, message: str, mark: Mark | None) -> InvalidRosArguments:
+        where = f":{mark.line + 1}:{mark.column + 1}" if self.is_file and mark is not None else ""
+        return InvalidRosArguments(f"{self.name}{where}: {message}")
+
+
+def parse_value(text: str) -> Any:
+    """The value that a text means on a command line: ``1`` an int, ``[1.0, 2.0]`` a list, ``x`` itself.
+
+    Raises InvalidRosArguments for broken YAML and for what no parameter can hold.
+    """
+    source = _Source(f"parameter value '{text}'", is_file=False)
+    node = _compose(text, source)
+    return "" if node is None else _value(node, source)
+
+
+def read_parameter_file(path: str) -> list[GivenParameters]:
+    """The values in a YAML file, in its order: ``node: {ros__parameters: {name: value}}``, also with namespaces.
+
+    Raises InvalidRosArguments, naming file and line.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as problem:
+        reason = problem.strerror if isinstance(problem, OSError) else "it is not UTF-8 text"
+        raise InvalidRosArguments(f"--params-file '{path}': {reason}") from None
+    source = _Source(path)
+    root = _compose(text, source)
+    return [] if root is None else list(_nodes(root, "", source))
+
+
+def _compose(text: str, source: _Source) -> YamlNode | None:
+    try:
+        return yaml.compose(text, Loader=yaml.SafeLoader)
+    except yaml.MarkedYAMLError as problem:
+        raise source.error(problem.problem or "this is no YAML", problem.problem_mark) from None
+    except yaml.YAMLError as problem:
+        raise source.error(str(problem), None) from None
+
+
+def _nodes(node: YamlNode, path: str, source: _Source) -> Iterator[GivenParameters]:
+    for key, value in _entries(node, source):
+        if key == PARAMETERS_KEY:
+            if not path:
+                message = f"'{PARAMETERS_KEY}' must stand under the name of a node, or under '/**'"
+                raise source.error(message, node.start_mark)
+            yield GivenParameters(path, tuple(_parameters(value, "", source)))
+        else:
+            yield from _nodes(value, f"{path}/{key.strip('/')}", source)
+
+
+def _parameters(node: YamlNode, prefix: str, source: _Source) -> Iterator[Parameter]:
+    for key, value in _entries(node, source):
+        name = prefix + key
+        if isinstance(value, MappingNode):
+            yield from _parameters(value, f"{name}.", source)
+        else:
+            yield Parameter(name, value=_value(value, source))
+
+
+def _entries(node: YamlNode, source: _Source) -> Iterator[tuple[str, YamlNode]]:
+    if not isinstance(node, MappingNode):
+        message = f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
+        raise source.error(message, node.start_mark)
+    for key, value in node.value:
+        if not isinstance(key, ScalarNode):
+            raise source.error("a name must be a plain text", key.start_mark)
+        yield key.value, value
+
+
+def _value(node: YamlNode, source: _Source) -> Any:
+    if isinstance(node, ScalarNode):
+        return node.value if node.style in ("'", '"', "|", ">") else _plain(node.value)
+    if not isinstance(node, SequenceNode):
+        raise source.error("a parameter cannot hold a mapping", node.start_mark)
+    values = [_value(entry, source) for entry in node.value]
+    if {type(entry) for entry in values} == {int, float}:
+        values = [float(entry) for entry in values]
+    try:
+        Parameter.Type.from_parameter_value(values)
+    except TypeError as problem:
+        raise source.error(str(problem), node.start_mark) from None
+    return values
+
+
+def _plain(text: str) -> Any:
+    if text in _TRUE or text in _FALSE:
+        return text in _TRUE
+    if _INTEGER.fullmatch(text):
+        return int(text, 16 if "x" in text else 10)
+    if _FLOAT.fullmatch(text):
+        return float(text)
+    return _SPECIAL.get(text.lower(), text)
+
+
+def get_parameter_value(string_value: str) -> ParameterValue:
+    """What a text means as a parameter, as a message; itself, if it is nothing else."""
+    try:
+        value = parse_value(string_value)
+    except InvalidRosArguments:
+        value = string_value
+    return Parameter("value", value=value).get_parameter_value()

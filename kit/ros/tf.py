@@ -1,0 +1,322 @@
+"""Frames and the transforms between them: the broadcasters, buffer and listener of ROS 2's ``tf2_ros``."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
+from kit.msg.tf2_msgs import TFMessage
+from kit.ros.execution.callback_groups import ReentrantCallbackGroup
+from kit.ros.node.qos import DurabilityPolicy, QoSProfile
+from kit.ros.node.time import ClockType, Duration, Time
+from kit.ros.rotations import quaternion_inverse, quaternion_multiply, quaternion_slerp, rotate_vector
+
+if TYPE_CHECKING:
+    from kit.ros.node.node import Node
+
+_DYNAMIC = QoSProfile(depth=100)
+_STATIC = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_NOW = Time(clock_type=ClockType.ROS_TIME)
+_AT_ONCE = Duration()
+
+
+class TransformException(Exception):
+    """A transform cannot be had."""
+
+
+class LookupException(TransformException):
+    """A frame that nobody has ever mentioned."""
+
+
+class ConnectivityException(TransformException):
+    """Two frames that are not in one tree."""
+
+
+class ExtrapolationException(TransformException):
+    """A time before the oldest or after the newest known transform."""
+
+
+class InvalidArgumentException(TransformException):
+    """An empty frame name, or one that begins with a slash."""
+
+
+class Rigid:
+    """A translation ``(x, y, z)`` [m] and a rotation ``(x, y, z, w)``."""
+
+    __slots__ = ("rotation", "translation")
+
+    def __init__(
+        self,
+        translation: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0),
+    ) -> None:
+        self.translation = translation
+        self.rotation = rotation
+
+    @classmethod
+    def from_msg(cls, message: Transform) -> Rigid:
+        t, q = message.translation, message.rotation
+        return cls((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
+
+    def to_msg(self) -> Transform:
+        (x, y, z), (qx, qy, qz, qw) = self.translation, self.rotation
+        return Transform(translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+
+    def then(self, inner: Rigid) -> Rigid:
+        """``inner``, given in this frame, seen from the frame that this one is given in."""
+        x, y, z = self.translation
+        dx, dy, dz = rotate_vector(self.rotation, inner.translation)
+        return Rigid((x + dx, y + dy, z + dz), quaternion_multiply(self.rotation, inner.rotation))
+
+    def inverse(self) -> Rigid:
+        back = quaternion_inverse(self.rotation)
+        x, y, z = rotate_vector(back, self.translation)
+        return Rigid((-x, -y, -z), back)
+
+    def towards(self, other: Rigid, fraction: float) -> Rigid:
+        """The transform at ``fraction`` of the way to the other one."""
+        x, y, z = (a + (b - a) * fraction for a, b in zip(self.translation, other.translation, strict=True))
+        return Rigid((x, y, z), quaternion_slerp(self.rotation, other.rotation, fraction))
+
+
+class _Frame:
+    """What is known of a frame: its parent, and where it was in it when."""
+
+    def __init__(self, parent: str, *, is_static: bool) -> None:
+        self.parent = parent
+        self.is_static = is_static
+        self.times: list[int] = []
+        self.places: list[Rigid] = []
+
+    def add(self, time_ns: int, place: Rigid, keep_ns: int) -> None:
+        if self.is_static:
+            self.times, self.places = [time_ns], [place]
+            return
+        index = bisect_right(self.times, time_ns)
+        if index and self.times[index - 1] == time_ns:
+            self.places[index - 1] = place
+            return
+        self.times.insert(index, time_ns)
+        self.places.insert(index, place)
+        old = bisect_right(self.times, self.times[-1] - keep_ns - 1)
+        del self.times[:old], self.places[:old]
+
+    def at(self, time_ns: int, name: str) -> Rigid:
+        """Where it was; between two known times, on the way. Raises ExtrapolationException."""
+        times = self.times
+        if self.is_static:
+            return self.places[0]
+        if not times[0] <= time_ns <= times[-1]:
+            when, edge = ("past", times[0]) if time_ns < times[0] else ("future", times[-1])
+            raise ExtrapolationException(
+                f"Lookup would require extrapolation into the {when}.  Requested time {time_ns / 1e9:.6f} but the "
+                f"{'earliest' if when == 'past' else 'latest'} data for frame '{name}' is at time {edge / 1e9:.6f}"
+            )
+        index = bisect_right(times, time_ns)
+        if times[index - 1] == time_ns:
+            return self.places[index - 1]
+        before, after = times[index - 1], times[index]
+        fraction = (time_ns - before) / (after - before)
+        return self.places[index - 1].towards(self.places[index], fraction)
+
+
+class Buffer:
+    """The tree of frames over the last ten seconds, or over ``cache_time``."""
+
+    def __init__(self, cache_time: Duration | None = None, node: Node | None = None) -> None:
+        self._keep_ns = (cache_time or Duration(seconds=10)).nanoseconds
+        self._node = node
+        self._frames: dict[str, _Frame] = {}
+
+    def set_transform(self, transform: TransformStamped, authority: str) -> None:
+        """Notes where ``child_frame_id`` is in ``header.frame_id``. Raises InvalidArgumentException."""
+        self._note(transform, is_static=False)
+
+    def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
+        """As ``set_transform``, for all times."""
+        self._note(transform, is_static=True)
+
+    def clear(self) -> None:
+        """Forgets everything."""
+        self._frames.clear()
+
+    def lookup_transform(
+        self, target_frame: str, source_frame: str, time: Time = _NOW, timeout: Duration = _AT_ONCE
+    ) -> TransformStamped:
+        """Where ``source_frame`` is in ``target_frame``; time zero means the newest that is known of both.
+
+        Waits up to ``timeout`` for it, unless in a callback that the transforms would have to wait for. Raises
+        LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException.
+        """
+        if timeout.nanoseconds > 0:
+            self._wait_for(target_frame, source_frame, time, timeout)
+        return self._lookup(target_frame, source_frame, time)
+
+    def can_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Time = _NOW,
+        timeout: Duration = _AT_ONCE,
+        return_debug_tuple: bool = False,
+    ) -> bool | tuple[bool, str]:
+        """Whether ``lookup_transform`` would succeed; with ``return_debug_tuple`` also why not."""
+        if timeout.nanoseconds > 0:
+            self._wait_for(target_frame, source_frame, time, timeout)
+        try:
+            self._lookup(target_frame, source_frame, time)
+        except TransformException as problem:
+            return (False, str(problem)) if return_debug_tuple else False
+        return (True, "") if return_debug_tuple else True
+
+    def all_frames_as_yaml(self) -> str:
+        """Each frame and its parent."""
+        lines = [f"{name}:\n  parent: '{frame.parent}'\n" for name, frame in sorted(self._frames.items())]
+        return "".join(lines) or "{}"
+
+    def _note(self, transform: TransformStamped, *, is_static: bool) -> None:
+        child, parent = transform.child_frame_id.lstrip("/"), transform.header.frame_id.lstrip("/")
+        if not child or not parent or child == parent:
+            raise InvalidArgumentException(
+                f"a transform from '{parent}' to '{child}': two different names are needed"
+            )
+        frame = self._frames.get(child)
+        if frame is None or frame.parent != parent or frame.is_static != is_static:
+            frame = self._frames[child] = _Frame(parent, is_static=is_static)
+        stamp = Time.from_msg(transform.header.stamp).nanoseconds
+        frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+
+    def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
+        if self._node is None:
+            return
+        graph = self._node.handle.graph
+        work = graph.performing.work
+        if work is not None and work[0].exclusive:
+            return
+        until = graph.now_ns + timeout.nanoseconds
+        graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")
+
+    def _lookup(self, target: str, source: str, time: Time) -> TransformStamped:
+        up, down = self._paths(target, source)
+        wanted = time.nanoseconds
+        if wanted == 0:
+            newest = [
+                self._frames[name].times[-1] for name in (*up, *down) if not self._frames[name].is_static
+            ]
+            wanted = min(newest, default=0)
+        result = TransformStamped(child_frame_id=source)
+        result.header.frame_id = target
+        result.header.stamp = Time(nanoseconds=wanted).to_msg()
+        result.transform = self._chain(up, wanted).inverse().then(self._chain(down, wanted)).to_msg()
+        return result
+
+    def _chain(self, path: list[str], time_ns: int) -> Rigid:
+        """Where the first frame of a path is in the parent of its last."""
+        place = Rigid()
+        for name in path:
+            place = self._frames[name].at(time_ns, name).then(place)
+        return place
+
+    def _paths(self, target: str, source: str) -> tuple[list[str], list[str]]:
+        """The frames on the ways from target and source up to where the ways meet, that one left out."""
+        for name in (target, source):
+            if not name or name.startswith("/"):
+                raise InvalidArgumentException(
+                    f"Invalid argument '{name}': a frame name is not empty and has no slash"
+                )
+            if name not in self._frames and all(frame.parent != name for frame in self._frames.values()):
+                raise LookupException(f'"{name}" passed to lookupTransform does not exist.')
+        up, down = self._ancestors(target), self._ancestors(source)
+        if up[-1] != down[-1]:
+            raise ConnectivityException(
+                f"Could not find a connection between '{target}' and '{source}' because they are not part of the same "
+                "tree. Tf has two or more unconnected trees."
+            )
+        while up and down and up[-1] == down[-1]:
+            up.pop()
+            down.pop()
+        return up, down
+
+    def _ancestors(self, name: str) -> list[str]:
+        """The frame, its parent, and so on up to the root."""
+        way = [name]
+        while name in self._frames:
+            name = self._frames[name].parent
+            if name in way:
+                raise ConnectivityException(f"the frames {', '.join(way)} are each other's parents")
+            way.append(name)
+        return way
+
+
+class TransformListener:
+    """Fills a buffer with what ``/tf`` and ``/tf_static`` say, while the node is spun."""
+
+    def __init__(
+        self,
+        buffer: Buffer,
+        node: Node,
+        *,
+        spin_thread: bool = False,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
+    ) -> None:
+        self.buffer = buffer
+        self.node = node
+        self.group = ReentrantCallbackGroup()
+        self.tf_sub = node.create_subscription(
+            TFMessage, "/tf", self.callback, _DYNAMIC if qos is None else qos, callback_group=self.group
+        )
+        static = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.tf_static_sub = node.create_subscription(
+            TFMessage,
+            "/tf_static",
+            self.static_callback,
+            static if static_qos is None else static_qos,
+            callback_group=self.group,
+        )
+
+    def unregister(self) -> None:
+        """Stops listening."""
+        self.node.destroy_subscription(self.tf_sub)
+        self.node.destroy_subscription(self.tf_static_sub)
+
+    def callback(self, data: TFMessage) -> None:
+        for transform in data.transforms:
+            self.buffer.set_transform(transform, "default_authority")
+
+    def static_callback(self, data: TFMessage) -> None:
+        for transform in data.transforms:
+            self.buffer.set_transform_static(transform, "default_authority")
+
+
+class TransformBroadcaster:
+    """Says on ``/tf`` where frames are now."""
+
+    def __init__(self, node: Node, qos: QoSProfile | int = _DYNAMIC) -> None:
+        self.pub_tf = node.create_publisher(TFMessage, "/tf", qos)
+
+    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - ROS's name
+        """One transform, or several at once."""
+        self.pub_tf.publish(TFMessage(transforms=_listed(transform)))
+
+
+class StaticTransformBroadcaster:
+    """Says on ``/tf_static`` where frames are for ever, also to those who come later."""
+
+    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
+        self.pub_tf = node.create_publisher(TFMessage, "/tf_static", _STATIC if qos is None else qos)
+        self.net_message = TFMessage()
+
+    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - ROS's name
+        """One transform, or several; those said before stay, unless they concern the same frame."""
+        new = _listed(transform)
+        children = {entry.child_frame_id for entry in new}
+        kept = [entry for entry in self.net_message.transforms if entry.child_frame_id not in children]
+        self.net_message.transforms = kept + new
+        self.pub_tf.publish(self.net_message)
+
+
+def _listed(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
+    return [transform] if isinstance(transform, TransformStamped) else list(transform)

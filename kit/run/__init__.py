@@ -1,0 +1,1 @@
+"""Floor 4: running a world: the tick (runner.py), sessions, recordings, metrics, pacing."""

@@ -1,0 +1,194 @@
+"""A whole run without a face: as fast as it goes, and a summary of what came of it."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from kit.controllers import ControllerFile
+from kit.geometry import Pose
+from kit.host.failure import Failure
+from kit.ros.graph.graph import Graph
+from kit.ros.log import LogRecord
+from kit.run.lockstep import Companion
+from kit.run.metrics import Score
+from kit.run.pacing import MAXIMUM, Pace
+from kit.run.recording import Recorder, save
+from kit.run.scenario import Place
+from kit.run.session import Session
+from kit.sim.simulation import Simulation
+from kit.workspace import check_writable
+
+CHECK_EVERY = 100
+"""Ticks between two looks at what was asked for besides the ticks themselves."""
+
+
+class Fingerprint:
+    """A digest of where every body was at every tick: equal for equal runs, and for no others."""
+
+    def __init__(self) -> None:
+        self._digest = hashlib.sha256()
+
+    def accepted(self, topic: str, message: Any) -> None:
+        """What was said shows in what moved."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        for pose in simulation.poses():
+            self._digest.update(struct.pack("<3d", *pose))
+
+    @property
+    def text(self) -> str:
+        return self._digest.hexdigest()[:16]
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What came of a run."""
+
+    place: str
+    controller: str
+    seed: int
+    ticks: int
+    score: Score
+    pose: Pose | None
+    """Where the robot ended."""
+    fingerprint: str
+    wall_s: float
+    failure: Failure | None
+    interrupted: bool = False
+    """By Ctrl-C."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-able; the same for the same run but for ``wall_s``."""
+        return {
+            "place": self.place,
+            "controller": self.controller,
+            "seed": self.seed,
+            "ticks": self.ticks,
+            "time_s": self.score.time_s,
+            "distance_m": round(self.score.distance_m, 6),
+            "bumps": self.score.bumps,
+            "reached_s": self.score.reached_s,
+            "target_m": self.score.target_m,
+            "pose": None if self.pose is None else list(self.pose),
+            "fingerprint": self.fingerprint,
+            "wall_s": round(self.wall_s, 3),
+            "failure": None if self.failure is None else str(self.failure),
+            "interrupted": self.interrupted,
+        }
+
+    def text(self) -> str:
+        """A few aligned lines."""
+        score = self.score
+        if score.target_m is None:
+            target = "this world has none"
+        elif score.reached_s is None:
+            target = f"not reached; {score.target_m:.2f} m away at the end"
+        else:
+            target = f"reached after {score.reached_s:.1f} s"
+        end = (
+            "no robot"
+            if self.pose is None
+            else "x {:.3f} m, y {:.3f} m, heading {:.3f} rad".format(*self.pose)
+        )
+        factor = score.time_s / self.wall_s if self.wall_s > 0 else 0.0
+        rows = [
+            ("place", self.place),
+            ("controller", f"{self.controller}, seed {self.seed}"),
+            (
+                "run",
+                f"{self.ticks} steps, {score.time_s:.2f} s of simulated time, {factor:.0f} times real time",
+            ),
+            ("target", target),
+            ("way", f"{score.distance_m:.2f} m, {score.bumps} bumps"),
+            ("end", end),
+            ("fingerprint", self.fingerprint),
+        ]
+        if self.failure is not None:
+            rows.append(("stopped", str(self.failure).replace("\n", "\n" + " " * 13)))
+        if self.interrupted:
+            rows.append(("stopped", "by Ctrl-C"))
+        return "\n".join(f"{name:<12} {text}" for name, text in rows)
+
+
+def run_headless(
+    place: Place,
+    controller: ControllerFile,
+    *,
+    steps: int,
+    seed: int = 0,
+    factor: float = MAXIMUM,
+    until_reached: bool = False,
+    record: Path | None = None,
+    company: Sequence[Callable[[Graph], Companion]] = (),
+    on_progress: Callable[[int], None] | None = None,
+    on_message: Callable[[LogRecord], object] = lambda record: None,
+) -> Summary:
+    """Runs ``steps`` ticks, fewer if the controller fails, if the target is reached and that was asked for, or
+    on Ctrl-C. ``factor``: simulated seconds per second; a run that is paced waits while it is paused.
+
+    ``on_progress`` is told the ticks done, a few times a second; ``on_message`` what nodes log and print. Raises
+    OSError if ``record`` cannot be written, before the run if that can be known, and what opening ``company``
+    raises.
+    """
+    fingerprint = Fingerprint()
+    if record is not None:
+        check_writable(record)
+    with Session(place, seed=seed, on_message=on_message) as session, ExitStack() as stack:
+        runner = session.runner
+        for invite in company:
+            companion = invite(session.graph)
+            stack.callback(companion.close)
+            runner.guests.append(companion)
+        runner.observers.append(fingerprint)
+        recorder = (
+            Recorder(place.name, place.case.name if place.case else None, runner.simulation)
+            if record is not None
+            else None
+        )
+        if recorder is not None:
+            runner.observers.append(recorder)
+        session.drive_with(controller)
+        session.wait_until_driven()
+        start = time.perf_counter()
+        done, interrupted = 0, False
+        is_paced, pace = factor != MAXIMUM, Pace(runner.simulation.step_size, factor)
+        try:
+            while done < steps and session.failure is None:
+                pace.wait()
+                runner.tick()
+                done += not (is_paced and runner.paused)
+                if until_reached and session.trip.score.reached_s is not None:
+                    break
+                if done % CHECK_EVERY == 0:
+                    session.listen()
+                    if on_progress is not None:
+                        on_progress(done)
+        except KeyboardInterrupt:
+            interrupted = True
+        session.listen()
+        wall = time.perf_counter() - start
+        if recorder is not None and record is not None:
+            save(recorder.recording(), record)
+        poses = dict(zip(runner.simulation.model_names, runner.simulation.poses(), strict=False))
+        return Summary(
+            place.title,
+            controller.name,
+            seed,
+            runner.simulation.tick,
+            session.trip.score,
+            poses.get(place.robot) if place.robot else None,
+            fingerprint.text,
+            wall,
+            session.failure,
+            interrupted,
+        )

@@ -1,0 +1,260 @@
+"""Recordings: what a world was told, enough to run it again to the bit, and where everything was, to look at.
+
+One ``.npz`` file: ``header`` (JSON as bytes) and the arrays of ``Recording``. No pickle.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+import zlib
+from array import array
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.msg.conversion import from_dict, to_dict
+from kit.msg.interfaces import find_interface
+from kit.msg.message import Message
+from kit.sim.services import SERVICES, tell
+from kit.sim.simulation import Simulation, SimulationError
+from kit.workspace import write_atomically
+from kit.world.records import World
+
+FORMAT: Final = 1
+
+ACCEPT: Final = "accept"
+"""The kind of input that is a message on a topic."""
+
+
+class RecordingError(Exception):
+    """The file is no recording, or a damaged one; the message says which and what is wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """Something the world was told just before tick number ``tick`` began."""
+
+    tick: int
+    kind: str
+    """``accept``, or one of ``kit.sim.services.SERVICES``."""
+    content: tuple[Any, ...]
+    """JSON-able."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    place: str
+    """A map's name, or a world file."""
+    case: str | None
+    """Which of the map's."""
+    seed: int
+    step_size: float
+    models: tuple[tuple[int, tuple[str, ...]], ...]
+    """From which tick on, which models there were."""
+    inputs: tuple[Input, ...]
+    poses: NDArray[np.float64]
+    """(sum of counts, 3) ``x y theta``: of every model's first body, tick after tick."""
+    counts: NDArray[np.int64]
+    """(ticks,): models at each tick."""
+
+    @property
+    def ticks(self) -> int:
+        return len(self.counts)
+
+    def track(self, model: str) -> NDArray[np.float64]:
+        """(k, 3): the poses of a model at every tick at which it was there."""
+        starts = np.concatenate([[0], np.cumsum(self.counts)])
+        rows = []
+        ends = (*(tick for tick, _ in self.models), self.ticks)[1:]  # none at all before the first tick
+        for (first, names), after in zip(self.models, ends, strict=True):
+            if model in names:
+                rows.append(starts[first:after] + names.index(model))
+        return self.poses[np.concatenate(rows).astype(np.int64)] if rows else np.empty((0, 3))
+
+
+class Recorder:
+    """Watches a runner (as one of its ``observers``) from its first tick on."""
+
+    def __init__(self, place: str, case: str | None, simulation: Simulation) -> None:
+        self._place = place
+        self._case = case
+        self._seed = simulation.seed
+        self._step_size = simulation.step_size
+        self._simulation = simulation
+        self._inputs: list[Input] = []
+        self._poses = array("d")
+        self._counts = array("q")
+        self._models: list[tuple[int, tuple[str, ...]]] = []
+
+    def accepted(self, topic: str, message: Message) -> None:
+        self._note(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
+
+    def called(self, service: str, *arguments: Any) -> None:
+        self._note(service, *arguments)
+
+    def ticked(self, simulation: Simulation) -> None:
+        names = simulation.model_names
+        if not self._models or self._models[-1][1] != names:
+            self._models.append((len(self._counts), names))
+        for pose in simulation.poses():
+            self._poses.extend(pose)
+        self._counts.append(len(names))
+
+    def recording(self) -> Recording:
+        """So far."""
+        return Recording(
+            self._place,
+            self._case,
+            self._seed,
+            self._step_size,
+            tuple(self._models),
+            tuple(self._inputs),
+            np.array(self._poses, dtype=np.float64).reshape(-1, 3),
+            np.array(self._counts, dtype=np.int64),
+        )
+
+    def _note(self, kind: str, *content: Any) -> None:
+        self._inputs.append(Input(len(self._counts), kind, content))
+
+
+def save(recording: Recording, file: Path) -> None:
+    """Writes the file whole or not at all. Raises OSError."""
+    header = {
+        "format": FORMAT,
+        "place": recording.place,
+        "case": recording.case,
+        "seed": recording.seed,
+        "step_size": recording.step_size,
+        "models": recording.models,
+        "inputs": [(each.tick, each.kind, each.content) for each in recording.inputs],
+    }
+    data = io.BytesIO()
+    np.savez_compressed(
+        data,
+        header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8),
+        poses=recording.poses,
+        counts=recording.counts,
+    )
+    write_atomically(file, data.getvalue())
+
+
+def load(file: Path) -> Recording:
+    """Raises RecordingError, OSError."""
+    try:
+        with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
+            header = json.loads(bytes(arrays["header"]))
+            if header["format"] != FORMAT:
+                raise RecordingError(
+                    f"{file}: made by another version of the kit (format {header['format']})."
+                )
+            recording = Recording(
+                str(header["place"]),
+                None if header["case"] is None else str(header["case"]),
+                int(header["seed"]),
+                float(header["step_size"]),
+                tuple((int(tick), tuple(names)) for tick, names in header["models"]),
+                tuple(
+                    Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]
+                ),
+                arrays["poses"].astype(np.float64).reshape(-1, 3),
+                arrays["counts"].astype(np.int64),
+            )
+            _check(recording)
+            return recording
+    except (
+        LookupError,
+        ValueError,
+        TypeError,
+        AttributeError,
+        EOFError,
+        zipfile.BadZipFile,
+        zlib.error,
+    ) as error:
+        raise RecordingError(f"{file}: not a recording of the kit, or a damaged one ({error}).") from None
+
+
+def _check(recording: Recording) -> None:
+    """ValueError where the parts do not fit together."""
+    counts = recording.counts
+    if not 0 < recording.step_size < math.inf:
+        raise ValueError(f"a step of {recording.step_size} s")
+    if counts.ndim != 1 or (counts < 0).any() or counts.sum() != len(recording.poses):
+        raise ValueError("as many poses as models and ticks are wanted")
+    strange = {told.kind for told in recording.inputs} - {ACCEPT, *SERVICES}
+    if strange:
+        raise ValueError(f"nobody can be told to {min(strange)}")
+
+
+def rerun(recording: Recording, world: World) -> Recording:
+    """Tells a new simulation of ``world`` the same things at the same ticks, and records that.
+
+    Raises RecordingError where the world cannot be told that.
+    """
+    simulation = Simulation(world, seed=recording.seed, step_size=recording.step_size)
+    recorder = Recorder(recording.place, recording.case, simulation)
+    playback = Playback(recording, simulation.accept, partial(tell, simulation))
+    for _ in range(recording.ticks):
+        playback.exchange()
+        simulation.step()
+        playback.ticked(simulation)
+        recorder.ticked(simulation)
+    return recorder.recording()
+
+
+class Playback:
+    """Tells a world again what it was told: a guest of a runner, in place of a controller, and its observer."""
+
+    def __init__(
+        self,
+        recording: Recording,
+        accept: Callable[[str, Message], object],
+        tell: Callable[..., object],
+        on_end: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._waiting = list(reversed(recording.inputs))
+        self._ticks = recording.ticks
+        self._accept = accept
+        self._tell = tell
+        self._on_end = on_end
+        self._tick = 0
+
+    def exchange(self) -> bool:
+        """Before a tick: what was said then. Raises RecordingError for what makes no sense in this world."""
+        while self._waiting and self._waiting[-1].tick <= self._tick:
+            told = self._waiting.pop()
+            try:
+                if told.kind == ACCEPT:
+                    self._accept(told.content[0], _message(*told.content[1:]))
+                else:
+                    self._tell(told.kind, *told.content)
+            except (SimulationError, LookupError, ValueError, TypeError, AttributeError) as error:
+                raise RecordingError(
+                    f"What the world was told before tick {told.tick} makes no sense in it ({told.kind}: {error})."
+                ) from None
+        return False
+
+    def accepted(self, topic: str, message: Message) -> None:
+        """Nobody else speaks."""
+
+    def called(self, service: str, *arguments: Any) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        self._tick += 1
+        if self._tick == self._ticks:
+            self._on_end()
+
+
+def _message(kind: str, content: Mapping[str, Any]) -> Message:
+    interface = find_interface(kind)
+    if not issubclass(interface, Message):
+        raise TypeError(f"{kind} is no message")
+    return from_dict(interface, content)

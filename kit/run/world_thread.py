@@ -1,0 +1,129 @@
+"""A run in a thread of its own, at a pace: real time, ten times, or as fast as it goes; paused, stepped.
+
+The face looks at snapshots (newest wins) and posts what it wants done; the physics never waits for it.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+from kit.run.pacing import REAL_TIME, Meter, Pacing, Schedule
+from kit.run.runner import Runner
+
+SLICE: Final = 0.02
+"""Longest stretch of ticks [s] between two looks at what was posted: keys never wait longer than this."""
+
+
+class LiveRun:
+    """Runs ``runner`` in a worker thread until ``stop``. Use as a context manager.
+
+    ``on_change`` is called in the worker thread after each stretch of ticks and each posted job: at most a
+    hundred times a second; it must only note that there is something new. A job that raises ends the run;
+    ``failure`` then holds the exception.
+    """
+
+    def __init__(
+        self, runner: Runner, *, factor: float = REAL_TIME, on_change: Callable[[Runner], None]
+    ) -> None:
+        self._runner = runner
+        self._on_change = on_change
+        self._factor = factor
+        self._wake = threading.Condition()
+        self._jobs: list[Callable[[Runner], object]] = []
+        self._steps = 0
+        self._stopping = False
+        self._meter = Meter()
+        self.failure: BaseException | None = None
+        self._thread = threading.Thread(target=self._guarded, name="world", daemon=True)
+
+    def __enter__(self) -> LiveRun:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    @property
+    def pacing(self) -> Pacing:
+        return Pacing(self._factor, self._meter.factor, self._runner.paused)
+
+    def post(self, job: Callable[[Runner], object]) -> None:
+        """Has ``job`` done in the world's thread, between two ticks, as soon as possible."""
+        with self._wake:
+            self._jobs.append(job)
+            self._wake.notify()
+
+    def set_factor(self, factor: float) -> None:
+        """Changes the speed while running."""
+        with self._wake:
+            self._factor = factor
+            self._wake.notify()
+
+    def set_paused(self, paused: bool) -> None:
+        self.post(lambda runner: setattr(runner, "paused", paused))
+
+    def step(self, ticks: int = 1) -> None:
+        """Runs this many ticks while paused."""
+        with self._wake:
+            self._steps += ticks
+            self._wake.notify()
+
+    def stop(self) -> None:
+        """Ends the run after the current tick and waits for the thread."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+            self._thread.join(timeout=10)
+
+    def _guarded(self) -> None:
+        try:
+            self._loop()
+        except BaseException as error:  # noqa: BLE001 - a thread has nobody above it; the face shows this
+            self.failure = error
+            self._on_change(self._runner)
+
+    def _loop(self) -> None:
+        runner = self._runner
+        clock = Schedule(runner.simulation.step_size, time.monotonic())
+        while True:
+            with self._wake:
+                if not self._jobs and not self._steps and not self._stopping:
+                    self._wake.wait(None if runner.paused else clock.wait_for_next(time.monotonic()))
+                jobs, self._jobs = self._jobs, []
+                steps, self._steps = self._steps, 0
+                if self._stopping:
+                    return
+                clock.set_factor(self._factor)
+            for job in jobs:
+                job(runner)
+            if runner.paused:
+                self._step_paused(steps)
+                clock.restart(time.monotonic())
+                self._meter.restart()
+            else:
+                self._advance(clock)
+            self._on_change(runner)
+
+    def _step_paused(self, steps: int) -> None:
+        runner = self._runner
+        if steps:
+            runner.allow(steps)
+        runner.tick()  # while paused: services are answered, and allowed steps done
+        while runner.steps_left and not self._stopping:
+            runner.tick()
+
+    def _advance(self, clock: Schedule) -> None:
+        runner, step = self._runner, self._runner.simulation.step_size
+        end = time.monotonic() + SLICE
+        ticks = 0
+        while not runner.paused and clock.due(now := time.monotonic()):
+            runner.tick()
+            clock.ticked()
+            ticks += 1
+            if now >= end or self._jobs or self._stopping:
+                break
+        self._meter.add(ticks * step, time.monotonic())

@@ -1,0 +1,138 @@
+"""The hall of fame of one machine: a folder in which each user who joins has one file of their own.
+
+Nobody is in it who did not ask to be. A file counts only where its owner is the user it is named for, so nobody can
+write for another; nothing but names and times stands in it, and leaving takes the file away. Times are what each
+player's own kit has noted: whoever edits their own journal or their own file can claim what they like, but only for
+themselves, so the hall is for friends and no mark is made of it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from kit.school.game.player_progress import LevelStanding
+from kit.school.game.race import Driver
+from kit.workspace import write_atomically
+
+PLACE: Final = "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
+VARIABLE: Final = "KIT_HALL"
+LARGEST: Final = 256 * 1024
+LONGEST_NAME: Final = 40
+
+
+class FameError(Exception):
+    """The hall cannot be used; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """The best time of one user on one level, by who drove."""
+
+    name: str
+    level: str
+    driver: Driver
+    seconds: float
+    stars: int
+    is_mine: bool
+
+
+def hall() -> Path:
+    """Where it stands: ``$KIT_HALL``, or a folder that all users of the machine can write to."""
+    return Path(os.environ.get(VARIABLE) or PLACE)
+
+
+def has_joined(folder: Path) -> bool:
+    """Whether this user is in it, by a file of their own: anybody can write one of that name before them."""
+    try:
+        return _own(folder).lstat().st_uid == os.getuid()
+    except OSError:
+        return False
+
+
+def publish(folder: Path, name: str, standings: Sequence[LevelStanding]) -> None:
+    """Enters this user, or brings the entry up to date. Raises FameError."""
+    levels = {
+        each.level.id: {
+            "stars": each.count,
+            "best": {driver.value: time for driver, time in each.best.items()},
+        }
+        for each in standings
+        if each.drives
+    }
+    try:
+        if not folder.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            folder.chmod(0o1777)  # everybody may add a file, nobody take away another's
+        _check_folder(folder)
+        write_atomically(_own(folder), json.dumps({"name": name[:LONGEST_NAME], "levels": levels}).encode())
+    except OSError as error:
+        raise FameError(f"{folder}: the hall of fame cannot be written to ({error.strerror}).") from None
+
+
+def leave(folder: Path) -> None:
+    """Takes this user out. Raises FameError."""
+    try:
+        _own(folder).unlink(missing_ok=True)
+    except OSError as error:
+        raise FameError(f"{folder}: {error.strerror}.") from None
+
+
+def entries(folder: Path) -> list[Entry]:
+    """Everybody's, the quickest first. Files that are wrong, or another's than they say, are passed over."""
+    found: list[Entry] = []
+    with suppress(OSError):
+        for file in sorted(folder.glob("*.json")):
+            with suppress(
+                OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
+            ):
+                found.extend(_entries(file))
+    return sorted(found, key=lambda each: (each.level, each.seconds, each.name))
+
+
+def _entries(file: Path) -> Iterator[Entry]:
+    handle = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    with os.fdopen(handle, "rb") as opened:
+        status = os.fstat(handle)
+        if (
+            not stat.S_ISREG(status.st_mode)
+            or file.name != f"{status.st_uid}.json"
+            or status.st_size > LARGEST
+        ):
+            return
+        content: Mapping[str, Any] = json.loads(opened.read(LARGEST))
+    name = " ".join("".join(sign for sign in str(content["name"]) if sign.isprintable()).split())[
+        :LONGEST_NAME
+    ]
+    made = [
+        Entry(
+            name or f"user {status.st_uid}",
+            str(level),
+            Driver(driver),
+            float(seconds),
+            int(each["stars"]),
+            status.st_uid == os.getuid(),
+        )
+        for level, each in content["levels"].items()
+        for driver, seconds in each["best"].items()
+    ]
+    yield from (entry for entry in made if 0 < entry.seconds < float("inf"))
+
+
+def _own(folder: Path) -> Path:
+    return folder / f"{os.getuid()}.json"
+
+
+def _check_folder(folder: Path) -> None:
+    """A folder that a stranger owns, and in which they could exchange files, is not trusted with ours."""
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode):
+        raise FameError(f"{folder}: is no folder.")
+    if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
+        raise FameError(f"{folder}: anybody may take away files there; `chmod +t` mends that.")

@@ -1,0 +1,118 @@
+"""A report for machines: each table as CSV for a spreadsheet, and the whole as JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from kit.learning.policies.confidence_intervals import Interval
+from kit.school.report.document import (
+    Bars,
+    Block,
+    Caution,
+    Cell,
+    Histogram,
+    Plot,
+    Report,
+    Said,
+    Scatter,
+    Table,
+    Text,
+)
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""With these a spreadsheet takes a text for something to compute, which a student's name must not become."""
+
+
+def as_csv(table: Table) -> str:
+    """The table's numbers in full; an interval takes two columns."""
+    spans = [any(isinstance(row[i], Interval) for row in table.rows) for i in range(len(table.columns))]
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        head
+        for column, span in zip(table.columns, spans, strict=True)
+        for head in ((f"{column.title} low", f"{column.title} high") if span else (column.title,))
+    )
+    for row in table.rows:
+        writer.writerow(
+            part for cell, span in zip(row, spans, strict=True) for part in _parts(cell, span=span)
+        )
+    return out.getvalue()
+
+
+def _parts(cell: Cell, *, span: bool) -> Iterator[str]:
+    if isinstance(cell, Interval):
+        yield from (_plain(cell.low), _plain(cell.high))
+    else:
+        yield _plain(cell)
+        if span:
+            yield ""
+
+
+def _plain(cell: str | float | None) -> str:
+    if isinstance(cell, str):
+        return f"'{cell}" if cell.startswith(_FORMULA) else cell
+    return "" if cell is None or not math.isfinite(cell) else repr(cell)
+
+
+def as_json(report: Report) -> str:
+    """Everything, with null where nothing can be said."""
+    content = {
+        "title": report.title,
+        "chapters": [
+            {"id": each.id, "title": each.title, "blocks": [_block(block) for block in each.blocks]}
+            for each in report.chapters
+        ],
+    }
+    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _block(block: Block) -> dict[str, Any]:
+    match block:
+        case Table():
+            return {
+                "table": block.id,
+                "title": block.title,
+                "columns": [column.title for column in block.columns],
+                "rows": [[_value(cell) for cell in row] for row in block.rows],
+                "note": block.note,
+            }
+        case Text():
+            return {"text": block.text}
+        case Caution():
+            return {"warning": block.text}
+        case Said():
+            return {"said": block.text, "by": block.who}
+        case _:
+            return _plot(block)
+
+
+def _plot(plot: Plot) -> dict[str, Any]:
+    match plot:
+        case Bars():
+            rows = [
+                {"label": label, "values": [_value(each) for each in values]} for label, values in plot.rows
+            ]
+            return {"bars": plot.id, "title": plot.title, "groups": plot.groups, "rows": rows}
+        case Histogram():
+            return {"histogram": plot.id, "title": plot.title, "edges": plot.edges, "counts": plot.counts}
+        case Scatter():
+            return {
+                "scatter": plot.id,
+                "title": plot.title,
+                "x": plot.x,
+                "y": plot.y,
+                "points": plot.points,
+                "line": plot.line,
+            }
+
+
+def _value(cell: Cell) -> Any:
+    if isinstance(cell, Interval):
+        return [_value(cell.low), _value(cell.high)]
+    return None if isinstance(cell, float) and not math.isfinite(cell) else cell

@@ -1,0 +1,222 @@
+"""A report in characters: 80 columns at most, with plots that need no colour and, if asked, nothing but ASCII."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import Final
+
+import numpy as np
+
+from kit.school.report.document import (
+    Bars,
+    Block,
+    Caution,
+    Column,
+    Histogram,
+    Report,
+    Said,
+    Scatter,
+    Style,
+    Table,
+    Text,
+    written,
+)
+from kit.world.problems import displayable
+
+WIDTH: Final = 79
+GAP: Final = "  "
+LEAST_TEXT: Final = 8
+"""Columns that a column of words keeps when room is short."""
+LONGEST_CELL: Final = 120
+BAR: Final = 40
+SCATTER: Final = (56, 15)
+"""Columns and rows of the field in which points are drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Glyphs:
+    """What plots are drawn with."""
+
+    bars: tuple[str, ...]
+    """Of the first group, the second, the third: told apart by shape."""
+    point: str
+    line: str
+
+
+BLOCKS: Final = Glyphs(bars=("█", "▒", "░"), point="o", line="·")
+ASCII: Final = Glyphs(bars=("#", "=", "-"), point="o", line=".")
+
+
+def rows_of(report: Report, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+    """The whole report, line by line."""
+    yield from wrap(clean(report.title), WIDTH)
+    for chapter in report.chapters:
+        yield ""
+        title = clean(chapter.title)
+        yield title
+        yield "=" * min(len(title), WIDTH)
+        for block in chapter.blocks:
+            if not isinstance(block, Said):
+                yield ""
+            yield from block_rows(block, glyphs)
+
+
+def block_rows(block: Block, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+    """One table, plot, text, warning or word of a student."""
+    match block:
+        case Table():
+            yield from table_rows(block)
+        case Bars():
+            yield from _bars(block, glyphs)
+        case Histogram():
+            yield from _histogram(block, glyphs)
+        case Scatter():
+            yield from _scatter(block, glyphs)
+        case Text():
+            yield from wrap(clean(block.text), WIDTH)
+        case Caution():
+            yield from wrap(clean(block.text), WIDTH, initial_indent="! ", subsequent_indent="  ")
+        case Said():
+            head = f"  {clean(block.who)}: "
+            yield from wrap(clean(block.text), WIDTH, initial_indent=head, subsequent_indent=" " * 6)
+
+
+def clean(text: str) -> str:
+    """Without what a terminal would obey; lines become one."""
+    return "".join(c if displayable(c) else " " if c.isspace() else "?" for c in text)
+
+
+def table_rows(table: Table) -> Iterator[str]:
+    """Its title, heads, cells and note. Words that do not fit their column go on below."""
+    yield from wrap(clean(table.title), WIDTH)
+    cells = [
+        [_short(clean(written(cell, column))) for cell, column in zip(row, table.columns, strict=True)]
+        for row in table.rows
+    ]
+    heads = [column.title for column in table.columns]
+    widths = _widths([heads, *cells], table.columns)
+    yield from _line(heads, widths, table.columns)
+    yield GAP.join("-" * width for width in widths)
+    for rows in _together(table, cells):
+        if table.grouped:
+            _flow(rows, widths[0])
+        for row in rows:
+            yield from _line(row, widths, table.columns)
+    if table.note:
+        yield from wrap(clean(table.note), WIDTH)
+
+
+def _short(text: str) -> str:
+    """What fits a cell: nobody's text may push the rest off the screen."""
+    return text if len(text) <= LONGEST_CELL else text[: LONGEST_CELL - 3] + "..."
+
+
+def _together(table: Table, cells: list[list[str]]) -> Iterator[list[list[str]]]:
+    """The rows in groups; without groups each for itself."""
+    starts = [i for i in range(len(cells)) if not table.grouped or table.shows_first(i)]
+    for start, end in zip(starts, [*starts[1:], len(cells)], strict=True):
+        yield cells[start:end]
+
+
+def _flow(rows: list[list[str]], width: int) -> None:
+    """Writes what a group shares down its rows, as far as it goes; what is left stays in the last."""
+    words = wrap(rows[0][0], width)
+    for number, row in enumerate(rows):
+        last = number == len(rows) - 1
+        row[0] = " ".join(words[number:]) if last else "".join(words[number : number + 1])
+
+
+def _widths(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> list[int]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(columns))]
+    over = sum(widths) + len(GAP) * (len(widths) - 1) - WIDTH
+    while over > 0:
+        texts = [
+            i for i, column in enumerate(columns) if column.style is Style.TEXT and widths[i] > LEAST_TEXT
+        ]
+        if not texts:
+            break
+        widest = max(texts, key=lambda i: widths[i])
+        widths[widest] -= 1
+        over -= 1
+    return widths
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column]) -> Iterator[str]:
+    parts = [wrap(cell, width) or [""] for cell, width in zip(cells, widths, strict=True)]
+    for level in range(max(map(len, parts))):
+        words = (part[level] if level < len(part) else "" for part in parts)
+        yield GAP.join(
+            f"{word:<{width}}" if column.style is Style.TEXT else f"{word:>{width}}"
+            for word, width, column in zip(words, widths, columns, strict=True)
+        ).rstrip()
+
+
+def _bars(bars: Bars, glyphs: Glyphs) -> Iterator[str]:
+    yield from wrap(clean(bars.title), WIDTH)
+    groups = max(map(len, bars.groups))
+    labels = min(max((len(label) for label, _ in bars.rows), default=0), WIDTH - BAR - groups - 11)
+    indent = " " * (labels + groups + 3)
+    yield f"{indent}{bars.low:<{BAR // 2}g}{bars.high:>{BAR - BAR // 2}g}"
+    for label, values in bars.rows:
+        text = wrap(clean(label), labels) or [""]
+        text += [""] * (len(values) - len(text))
+        for i, part in enumerate(text):
+            if i >= len(values):
+                yield part
+                continue
+            value, glyph = values[i], glyphs.bars[i % len(glyphs.bars)]
+            head = f"{part:<{labels}} {bars.groups[i]:<{groups}} |"
+            if math.isnan(value):
+                yield f"{head} nobody".rstrip()
+                continue
+            share = min(max((value - bars.low) / (bars.high - bars.low), 0.0), 1.0)
+            yield f"{head}{glyph * round(share * BAR):<{BAR}}| {value:.2f}"
+
+
+def _histogram(histogram: Histogram, glyphs: Glyphs) -> Iterator[str]:
+    yield from wrap(clean(histogram.title), WIDTH)
+    labels = [f"{low:g} to {high:g}" for low, high in zip(histogram.edges, histogram.edges[1:], strict=False)]
+    width = max(map(len, labels))
+    most = max((*histogram.counts, 1))
+    unit = max(1, -(-most // BAR))
+    scale = 2 if 2 * most <= BAR else 1
+    for label, count in zip(labels, histogram.counts, strict=True):
+        yield f"{label:>{width}} |{glyphs.bars[0] * round(count / unit * scale)} {count}"
+
+
+def _scatter(scatter: Scatter, glyphs: Glyphs) -> Iterator[str]:
+    yield from wrap(clean(scatter.title), WIDTH)
+    columns, rows = SCATTER
+    (left, right), (low, high) = scatter.x_range, scatter.y_range
+    field = [[" "] * columns for _ in range(rows)]
+
+    def place(x: float, y: float) -> tuple[int, int]:
+        return (
+            rows - 1 - round((y - low) / (high - low) * (rows - 1)),
+            round((x - left) / (right - left) * (columns - 1)),
+        )
+
+    if scatter.line is not None:
+        slope, height = scatter.line
+        for x in np.linspace(left, right, columns):
+            y = slope * x + height
+            if low <= y <= high:
+                row, column = place(x, y)
+                field[row][column] = glyphs.line
+    seen: dict[tuple[int, int], int] = {}
+    for x, y in scatter.points:
+        seen[place(x, y)] = seen.get(place(x, y), 0) + 1
+    for (row, column), count in seen.items():
+        field[row][column] = glyphs.point if count == 1 else str(count) if count < 10 else "+"
+    yield f"{clean(scatter.y)} (up) by {clean(scatter.x)} (right)"
+    margin = max(len(f"{low:g}"), len(f"{high:g}"))
+    for number, dots in enumerate(field):
+        label = {0: f"{high:g}", rows - 1: f"{low:g}"}.get(number, "")
+        yield f"{label:>{margin}} |{''.join(dots)}".rstrip()
+    yield f"{'':>{margin}} +{'-' * columns}"
+    yield f"{'':>{margin}}  {left:<{columns // 2}g}{right:>{columns - columns // 2}g}"
+    trend = f"; {glyphs.line} the trend" if scatter.line is not None else ""
+    yield f"{'':>{margin}}  {glyphs.point} one student, a digit several{trend}"

@@ -1,0 +1,154 @@
+"""What all chapters share: the class, how it is divided, and how a table of means by group is made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from kit.kernels.arrays import Floats
+from kit.learning.policies.confidence_intervals import Interval
+from kit.school.report.class_data import ClassData
+from kit.school.report.document import Bars, Caution, Cell, Column, Style, Table
+from kit.school.report.expertise import SMALL, Division
+from kit.school.report.inference import Chance, difference_test, summary
+from kit.school.report.measures import Group, Measure
+from kit.school.survey.questions import HIGHEST, LOWEST
+
+SCALE: Final = (float(LOWEST), float(HIGHEST))
+SHARE: Final = (0.0, 1.0)
+
+TITLES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "robotics": "Robotics",
+        "ros1": "ROS 1",
+        "ros2": "ROS 2",
+        "simulators": "Robot simulators",
+        "flatland": "Flatland worlds",
+        "rl": "Learning",
+        "fields": "Potential fields",
+        "layers": "Layers",
+        "driving": "Driving",
+        "teleop": "Driving",
+    }
+)
+
+
+def title_of(topic: str) -> str:
+    """A topic as one speaks of it."""
+    return TITLES.get(topic, topic)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Setting:
+    """What a chapter is made from."""
+
+    data: ClassData
+    score: Floats | None
+    """Expertise by Algorithm 4; None where its six ratings were not asked."""
+    divisions: tuple[Division, ...]
+    """All that can be made."""
+    division: Division | None
+    """The one the tables use."""
+    seed: int
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """Beginners and experts where there are such; then everybody."""
+        everybody = Group("overall", np.ones(len(self.data.names), dtype=np.bool_))
+        return (*(self.division.groups if self.division is not None else ()), everybody)
+
+    def chance(self, values: Floats) -> Chance | None:
+        """Of the difference between experts and beginners; None where the class is not divided."""
+        if self.division is None:
+            return None
+        first, second = self.division.experts.members, self.division.beginners.members
+        return difference_test(values[first], values[second], np.random.default_rng(self.seed))
+
+
+def means_table(
+    identity: str,
+    title: str,
+    measures: Sequence[Measure],
+    setting: Setting,
+    bounds: tuple[float, float] = SCALE,
+    note: str = "",
+) -> Table:
+    """For each measure and group: n, mean, SD, the mean's interval; and p of the groups' difference.
+
+    An interval is cut off at ``bounds``, beyond which no mean can lie.
+    """
+    rows: list[tuple[Cell, ...]] = []
+    for measure in measures:
+        chance = setting.chance(measure.values)
+        for i, group in enumerate(setting.groups):
+            found = summary(measure.values[group.members])
+            last = i == len(setting.groups) - 1
+            p = chance.p if chance is not None and last else ""
+            cut = within(found.interval, bounds)
+            rows.append((measure.label, group.name, found.n, found.mean, found.sd, cut, p))
+    columns = (
+        Column("", Style.TEXT),
+        Column("group", Style.TEXT),
+        Column("n"),
+        Column("M"),
+        Column("SD"),
+        Column("95% of M"),
+        Column("p", Style.CHANCE, 3),
+    )
+    divided = setting.division is not None
+    if any(isinstance(row[2], int) and row[2] < SMALL for row in rows):
+        note = f"{note} Groups with n below {SMALL} are too small to speak for others.".strip()
+    return Table(
+        identity,
+        title,
+        columns if divided else columns[:-1],
+        tuple(row if divided else row[:-1] for row in rows),
+        note,
+        grouped=True,
+    )
+
+
+def means_bars(
+    identity: str,
+    title: str,
+    measures: Sequence[Measure],
+    setting: Setting,
+    bounds: tuple[float, float] = SCALE,
+) -> Bars:
+    """The same means as bars: the groups', or everybody's where there are none."""
+    groups = setting.groups[:-1] or setting.groups
+    return Bars(
+        identity,
+        title,
+        tuple(group.name for group in groups),
+        tuple(
+            (each.label, tuple(summary(each.values[group.members]).mean for group in groups))
+            for each in measures
+        ),
+        *bounds,
+    )
+
+
+def within(interval: Interval, bounds: tuple[float, float]) -> Interval:
+    """The part of an interval that can be."""
+    low, high = bounds
+    return Interval(
+        max(interval.low, low) if interval.low == interval.low else interval.low,
+        min(interval.high, high) if interval.high == interval.high else interval.high,
+    )
+
+
+def cautions_of(division: Division | None) -> tuple[Caution, ...]:
+    """What is doubtful about a division."""
+    if division is None:
+        return ()
+    return tuple(Caution(f"Division {division.title}: {text}.") for text in division.cautions)
+
+
+def slug(text: str) -> str:
+    """For a file's name."""
+    return "".join(c if c.isalnum() and c.isascii() else "-" for c in text.lower()) or "other"

@@ -1,0 +1,152 @@
+"""A report before it is drawn: chapters of tables, plots, texts and warnings. Each face draws them its own way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from kit.learning.policies.confidence_intervals import Interval
+
+Cell = str | int | float | Interval | None
+"""None, and a number that is not one: nothing can be said there."""
+
+
+class Style(StrEnum):
+    """How a column's cells are written."""
+
+    TEXT = "text"
+    NUMBER = "number"
+    CHANCE = "chance"
+    """A p value: three decimals, or below 0.001."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    title: str
+    style: Style = Style.NUMBER
+    decimals: int = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    id: str
+    """For file names: letters, digits, hyphens."""
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    note: str = ""
+    """What a reader has to know, below the table."""
+    grouped: bool = False
+    """Rows that begin alike belong together: people see what they share once, machines on every row."""
+
+    def shows_first(self, number: int) -> bool:
+        """Whether people see the first cell of this row."""
+        return not self.grouped or not number or self.rows[number][0] != self.rows[number - 1][0]
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """For each row one bar a group."""
+
+    id: str
+    title: str
+    groups: tuple[str, ...]
+    rows: tuple[tuple[str, tuple[float, ...]], ...]
+    """A label, and a value for each group; NaN: no bar."""
+    low: float
+    """Where the bars begin."""
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Histogram:
+    id: str
+    title: str
+    edges: tuple[float, ...]
+    """One more than counts. A value on an edge belongs to the bin above it; the last bin has both its edges."""
+    counts: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    id: str
+    title: str
+    x: str
+    """What is drawn to the right."""
+    y: str
+    points: tuple[tuple[float, float], ...]
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+    line: tuple[float, float] | None = None
+    """Slope and height at 0 of the trend line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Caution:
+    """What a reader must not overlook."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """What people wrote, unchanged."""
+
+    who: str
+    text: str
+
+
+Plot = Bars | Histogram | Scatter
+Block = Table | Plot | Text | Caution | Said
+
+
+@dataclass(frozen=True, slots=True)
+class Chapter:
+    id: str
+    title: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    title: str
+    chapters: tuple[Chapter, ...]
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        return tuple(each for chapter in self.chapters for each in chapter.blocks if isinstance(each, Table))
+
+    @property
+    def plots(self) -> tuple[Plot, ...]:
+        return tuple(
+            each
+            for chapter in self.chapters
+            for each in chapter.blocks
+            if isinstance(each, Bars | Histogram | Scatter)
+        )
+
+
+def chance_text(p: float) -> str:
+    """A p value in a sentence."""
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
+
+
+def written(cell: Cell, column: Column) -> str:
+    """A cell as people read it."""
+    if isinstance(cell, Interval):
+        if cell.low != cell.low:
+            return "-"
+        return f"{cell.low:.{column.decimals}f} to {cell.high:.{column.decimals}f}"
+    if cell is None or cell != cell:
+        return "-"
+    if isinstance(cell, float):
+        if column.style is Style.CHANCE:
+            return "< 0.001" if cell < 0.001 else f"{cell:.3f}"
+        shown = f"{cell:.{column.decimals}f}"
+        return shown.lstrip("-") if float(shown) == 0 else shown
+    return str(cell)

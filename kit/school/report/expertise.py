@@ -1,0 +1,141 @@
+"""Beginners and experts: the dissertation's Algorithm 4, what it weighs in truth, and three ways to cut a class in two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from kit.kernels.arrays import Flags, Floats
+from kit.school.report.inference import present
+from kit.school.report.measures import Group, Measure
+
+TOPICS: Final = ("robotics", "ros1", "ros2", "simulators", "flatland", "rl")
+"""What Algorithm 4 asks for, each rated 1 to 7 for the time before the lessons."""
+
+HALF_OF_SCALE: Final = 3.5
+NARROW: Final = 0.1
+"""A gap between the groups that is smaller than this is no division of people but of rounding."""
+SMALL: Final = 5
+"""A group of fewer says little of anybody else."""
+
+
+def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Floats | None:
+    """(n,) each student's score; NaN for who left one of the six topics blank. None where nobody rated one.
+
+    ``topics``: of each measure, by its id.
+    """
+    found = {topics[each.id]: each.values for each in prior}
+    if not set(TOPICS) <= set(found):
+        return None
+    ros = np.where(
+        np.isnan(found["ros1"]) | np.isnan(found["ros2"]), np.nan, np.maximum(found["ros1"], found["ros2"])
+    )
+    return np.asarray(_score({**{topic: found[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64)
+
+
+def _score(of: Mapping[str, Floats]) -> Floats:
+    """Algorithm 4; ``ros`` is the greater of ROS 1's and ROS 2's rating."""
+    overall = sum((of[topic] for topic in TOPICS), np.zeros(())) / len(TOPICS)
+    robotics_ros = (of["ros"] + of["robotics"]) / 2
+    parts = (of["robotics"], of["ros2"], of["flatland"], of["rl"], of["ros"], robotics_ros, overall)
+    score: Floats = sum(parts, np.zeros(())) / len(parts)
+    return score
+
+
+def effective_weights() -> tuple[tuple[str, float], ...]:
+    """What each rating counts for in the score in all, the greatest first; they add up to 1.
+
+    Several means of means hide this. ``ros`` is the greater of the two ROS ratings.
+    """
+    inputs = (*TOPICS, "ros")
+    found = [
+        (name, float(_score({other: np.array(float(other == name)) for other in inputs}))) for name in inputs
+    ]
+    return tuple(sorted(found, key=lambda each: -each[1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Division:
+    """A class in two."""
+
+    id: str
+    title: str
+    beginners: Group
+    experts: Group
+    cut: float
+    """Scores below it are beginners'."""
+    cautions: tuple[str, ...]
+
+    @property
+    def groups(self) -> tuple[Group, Group]:
+        return self.beginners, self.experts
+
+
+def divide(score: Floats, way: str) -> Division | None:
+    """The class divided in one of the ``WAYS``; None where fewer than two students have a score, or one group
+    would be empty."""
+    if len(present(score)) < 2:
+        return None
+    title, find = WAYS[way]
+    cut, experts = find(score)
+    beginners = ~np.isnan(score) & ~experts
+    if not experts.any() or not beginners.any():
+        return None
+    return Division(
+        way,
+        title,
+        Group("beginners", beginners),
+        Group("experts", experts),
+        cut,
+        tuple(_cautions(score, beginners, experts)),
+    )
+
+
+def _at(cut: float, score: Floats) -> tuple[float, Flags]:
+    return cut, np.nan_to_num(score, nan=-np.inf) >= cut
+
+
+def _at_half_of_scale(score: Floats) -> tuple[float, Flags]:
+    return _at(HALF_OF_SCALE, score)
+
+
+def _at_mean(score: Floats) -> tuple[float, Flags]:
+    return _at(float(present(score).mean()), score)
+
+
+def _into_halves(score: Floats) -> tuple[float, Flags]:
+    """The upper half are experts; with an odd number the one in the middle is a beginner. Of equal scores the
+    students who come first in the class are experts."""
+    order = np.argsort(-np.nan_to_num(score, nan=-np.inf), kind="stable")
+    chosen = order[: len(present(score)) // 2]
+    experts = np.zeros(len(score), dtype=np.bool_)
+    experts[chosen] = True
+    return float(score[chosen].min()), experts
+
+
+WAYS: Final[Mapping[str, tuple[str, Callable[[Floats], tuple[float, Flags]]]]] = MappingProxyType(
+    {
+        "scale": ("at 3.5, half of the scale", _at_half_of_scale),
+        "half": ("into two halves", _into_halves),
+        "mean": ("at the mean score", _at_mean),
+    }
+)
+"""By the word the user knows them by; the dissertation used ``mean``."""
+
+
+def _cautions(score: Floats, beginners: Flags, experts: Flags) -> list[str]:
+    found = []
+    gap = float(score[experts].min() - score[beginners].max())
+    if gap <= 1e-9:
+        found.append("it cuts through a tie: students with the same score are on both sides")
+    elif gap < NARROW:
+        found.append(f"the best beginner and the least expert are only {gap:.2f} apart")
+    for name, members in (("beginners", beginners), ("experts", experts)):
+        count = int(members.sum())
+        if count < SMALL:
+            found.append(f"only {count} {name[:-1] if count == 1 else name}")
+    return found

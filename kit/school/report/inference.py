@@ -1,0 +1,282 @@
+"""What can be said from few numbers: spread, intervals and tests that are exact for small groups.
+
+The tests need no distribution: they compare what was seen with what every other division of the same numbers into
+groups of the same size would have shown (R. A. Fisher, The Design of Experiments, 1935; E. J. G. Pitman, Supplement to
+the Journal of the Royal Statistical Society 4, 1937). Student's t for intervals of means stands here in forty lines:
+nothing else in the kit needs scipy, and the core is to install in seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from itertools import combinations, permutations
+from statistics import NormalDist
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from kit.kernels.arrays import Floats
+from kit.learning.policies.confidence_intervals import Interval
+
+SHUFFLES: Final = 20_000
+"""How many random rearrangements stand for all of them where all are too many."""
+MOST_SPLITS: Final = 200_000
+MOST_ORDERS: Final = 8
+"""Numbers of which every order is looked at: 8! = 40,320."""
+FINEST: Final = 2520
+"""The least common multiple of 1 to 10: means of up to ten whole numbers are multiples of one over it."""
+MOST_COUNTED: Final = 400
+"""Numbers up to which splits are counted instead of shuffled; beyond, a float could not hold the counts."""
+
+MOST_WORK: Final = 5e7
+"""Additions for counting one test's splits."""
+AT_ONCE: Final = 2_000_000
+"""Numbers in memory while shuffling."""
+
+_SAME: Final = 1e-9
+
+
+class Summary(NamedTuple):
+    """A group's numbers in short; NaN where there are too few to tell."""
+
+    n: int
+    mean: float
+    sd: float
+    """Of the sample: divided by n - 1."""
+    interval: Interval
+    """Of the mean, 95 percent, by Student's t."""
+
+
+class Chance(NamedTuple):
+    """How often chance alone would show as much."""
+
+    p: float
+    """Two-sided; NaN where nothing can be compared."""
+    arrangements: int
+    """Looked at."""
+    exact: bool
+    """Whether those were all."""
+
+
+NO_TEST: Final = Chance(math.nan, 0, exact=True)
+
+
+def present(values: Floats) -> Floats:
+    """Without the blanks, which are NaN."""
+    kept: Floats = values[~np.isnan(values)]
+    return kept
+
+
+def summary(values: Floats) -> Summary:
+    """Of the values that are there."""
+    kept = present(values)
+    n = len(kept)
+    mean = float(kept.mean()) if n else math.nan
+    if n < 2:
+        return Summary(n, mean, math.nan, Interval(math.nan, math.nan))
+    sd = float(kept.std(ddof=1))
+    half = t_quantile(0.975, n - 1) * sd / math.sqrt(n)
+    return Summary(n, mean, sd, Interval(mean - half, mean + half))
+
+
+def t_quantile(share: float, freedom: int) -> float:
+    """The value below which a share (of 0.5 to 1) of Student's t distribution lies."""
+    if not (0.5 <= share < 1 and freedom >= 1):
+        raise ValueError(f"no quantile {share:g} of Student's t with {freedom} degrees of freedom")
+    low, high = 0.0, 1.0
+    while t_share(high, freedom) < share:
+        high *= 2
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if t_share(middle, freedom) < share else (low, middle)
+    return (low + high) / 2
+
+
+def t_share(t: float, freedom: int) -> float:
+    """The share of Student's t distribution below ``t`` >= 0."""
+    return 1 - 0.5 * _beta_share(freedom / (freedom + t * t), freedom / 2, 0.5)
+
+
+def _beta_share(x: float, a: float, b: float) -> float:
+    """The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun 26.5.8)."""
+    if x <= 0 or x >= 1:
+        return float(x >= 1)
+    if x > (a + 1) / (a + b + 2):
+        return 1 - _beta_share(1 - x, b, a)
+    front = math.exp(
+        math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
+    )
+    # From the innermost term outwards. It takes about the root of a or b many; these are more than enough.
+    value = 1.0
+    for k in range(60 + 2 * int(math.sqrt(max(a, b))), 0, -1):
+        m = k // 2
+        if k % 2:
+            term = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
+        else:
+            term = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m))
+        value = 1 + term / value
+    return front / (a * value)
+
+
+def difference_test(
+    first: Floats, second: Floats, rng: np.random.Generator, shuffles: int = SHUFFLES
+) -> Chance:
+    """Whether two groups' means differ by more than a division by chance makes likely.
+
+    Every division of the pooled values into groups of these sizes is counted: by sums where the values are multiples
+    of one small fraction, as ratings and scores are; else one by one; with very many, at random from ``rng``.
+    """
+    first, second = present(first), present(second)
+    k, pooled = len(first), np.concatenate((first, second))
+    if not k or not len(second):
+        return NO_TEST
+    expected = pooled.sum() * k / len(pooled)
+    seen = abs(first.sum() - expected) - _SAME * max(1.0, float(np.abs(pooled).sum()))
+    whole = _as_integers(pooled)
+    if whole is not None and _countable(whole, k):
+        sums, counts = _subset_sums(whole, k)
+        unit = float(pooled.sum()) / whole.sum() if whole.sum() else 0.0
+        far = np.abs(sums * unit - expected) >= seen
+        return Chance(float(counts[far].sum() / counts.sum()), math.comb(len(pooled), k), exact=True)
+    if math.comb(len(pooled), k) <= MOST_SPLITS:
+        splits = np.array([pooled[list(chosen)].sum() for chosen in combinations(range(len(pooled)), k)])
+        return Chance(float(np.mean(np.abs(splits - expected) >= seen)), len(splits), exact=True)
+    weights = np.zeros(len(pooled))
+    weights[:k] = 1
+    return _by_chance(np.abs(_shuffled(pooled, weights, rng, shuffles) - expected) >= seen)
+
+
+def paired_test(differences: Floats, rng: np.random.Generator) -> Chance:
+    """Whether differences within pairs are farther from 0 on the whole than with signs drawn by chance."""
+    there = present(differences)
+    if not len(there):
+        return NO_TEST
+    sizes, total = np.abs(there), float(np.abs(there).sum())
+    seen = abs(float(there.sum())) - _SAME * max(1.0, total)
+    whole = _as_integers(sizes) if len(there) <= MOST_COUNTED else None
+    if whole is not None:
+        counts = np.zeros(int(whole.sum()) + 1)
+        counts[0] = 1
+        for number in whole.astype(np.int64):
+            counts[number:] += counts[: len(counts) - number].copy()
+        sums = (2 * np.arange(len(counts)) / whole.sum() - 1) * total
+        return Chance(float(counts[np.abs(sums) >= seen].sum() / counts.sum()), 2 ** len(there), exact=True)
+    if not total:
+        return Chance(1.0, 2 ** len(there), exact=True)
+    signs = rng.choice((-1.0, 1.0), size=(SHUFFLES, len(there)))
+    return _by_chance(np.abs(signs @ sizes) >= seen)
+
+
+def _shuffled(values: Floats, weights: Floats, rng: np.random.Generator, times: int) -> Floats:
+    """(times,) the weighted sum of the values in so many random orders."""
+    rows = max(1, AT_ONCE // len(values))
+    parts = [
+        rng.permuted(np.tile(values, (min(rows, times - start), 1)), axis=1) @ weights
+        for start in range(0, times, rows)
+    ]
+    return np.concatenate(parts)
+
+
+def _countable(whole: Floats, k: int) -> bool:
+    """Whether the sums of all splits can be counted in a moment, within what a float holds."""
+    small = min(k, len(whole) - k)
+    unit = max(1, int(np.gcd.reduce(whole.astype(np.int64))))
+    return len(whole) <= MOST_COUNTED and len(whole) * small * small * float(whole.max()) / unit <= MOST_WORK
+
+
+def _as_integers(values: Floats) -> Floats | None:
+    """The values as whole multiples of their common fraction; None if they have none of a small denominator."""
+    fractions = [Fraction(float(value)).limit_denominator(FINEST) for value in values]
+    unit = math.lcm(*(each.denominator for each in fractions))
+    if unit > FINEST:
+        return None
+    whole = np.array([float(each * unit) for each in fractions])
+    close = bool(np.all(np.abs(whole / unit - values) < _SAME))
+    return whole if close and whole.sum() and np.all(whole >= 0) and whole.sum() < 1_000_000 else None
+
+
+def _subset_sums(whole: Floats, k: int) -> tuple[Floats, Floats]:
+    """Every sum that ``k`` of the numbers can have, and how many choices have it."""
+    small = min(k, len(whole) - k)
+    numbers = whole.astype(np.int64)
+    common = int(np.gcd.reduce(numbers)) or 1
+    numbers //= common
+    counts = np.zeros((small + 1, int(np.sort(numbers)[-small:].sum()) + 1 if small else 1))
+    counts[0, 0] = 1
+    for number in numbers:
+        # Rows from the last: each number is taken once at most.
+        for taken in range(small, 0, -1):
+            counts[taken, number:] += counts[taken - 1, : counts.shape[1] - number]
+    sums = np.flatnonzero(counts[small])
+    kept: Floats = counts[small][sums]
+    chosen = sums if small == k else int(numbers.sum()) - sums
+    return np.asarray(chosen * common, dtype=np.float64), kept
+
+
+def correlation(x: Floats, y: Floats) -> float:
+    """Pearson's r of the pairs in which neither is blank; NaN where one does not vary."""
+    x, y = _pairs(x, y)
+    if len(x) < 3:
+        return math.nan
+    x, y = x - x.mean(), y - y.mean()
+    scale = math.sqrt(float(x @ x) * float(y @ y))
+    return float(x @ y) / scale if scale > _SAME else math.nan
+
+
+def rank_correlation(x: Floats, y: Floats) -> float:
+    """Spearman's rho."""
+    x, y = _pairs(x, y)
+    return correlation(ranks(x), ranks(y)) if len(x) else math.nan
+
+
+def ranks(values: Floats) -> Floats:
+    """From 1; equal values share the mean of their places."""
+    _, place, count = np.unique(values, return_inverse=True, return_counts=True)
+    last = np.cumsum(count)
+    return np.asarray((last - (count - 1) / 2)[place], dtype=np.float64)
+
+
+def correlation_test(
+    x: Floats,
+    y: Floats,
+    rng: np.random.Generator,
+    shuffles: int = SHUFFLES,
+) -> Chance:
+    """Whether two quantities go together (Pearson's r) more than in a random order of one of them."""
+    x, y = _pairs(x, y)
+    r = correlation(x, y)
+    if math.isnan(r):
+        return NO_TEST
+    x, y = x - x.mean(), y - y.mean()
+    seen = abs(r) * math.sqrt(float(x @ x) * float(y @ y)) * (1 - _SAME)
+    if len(y) <= MOST_ORDERS:
+        orders = np.array(list(permutations(y)))
+        return Chance(float(np.mean(np.abs(orders @ x) >= seen)), len(orders), exact=True)
+    return _by_chance(np.abs(_shuffled(y, x, rng, shuffles)) >= seen)
+
+
+def correlation_interval(r: float, n: int) -> Interval:
+    """95 percent, by Fisher's z (Metron 1, 1921); NaN below four pairs."""
+    if n < 4 or math.isnan(r):
+        return Interval(math.nan, math.nan)
+    if abs(r) >= 1 - _SAME:
+        return Interval(r, r)
+    half = NormalDist().inv_cdf(0.975) / math.sqrt(n - 3)
+    return Interval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
+
+
+def trend(x: Floats, y: Floats, degree: int = 1) -> Floats | None:
+    """The polynomial of least squares, highest power first; None for too few different places."""
+    x, y = _pairs(x, y)
+    return np.polyfit(x, y, degree) if len(np.unique(x)) > degree else None
+
+
+def _pairs(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    kept = ~(np.isnan(x) | np.isnan(y))
+    return x[kept], y[kept]
+
+
+def _by_chance(far: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Chance:
+    """What was seen counts as one of the arrangements, so that no p is zero (Phipson and Smyth, 2010)."""
+    return Chance(float((far.sum() + 1) / (len(far) + 1)), len(far), exact=False)

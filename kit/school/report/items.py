@@ -1,0 +1,93 @@
+"""How good the quiz's questions are: how hard, how well each goes with the rest, and who fell for which option.
+
+The measures are the classical ones: G. F. Kuder and M. W. Richardson, "The theory of the estimation of test
+reliability", Psychometrika 2 (1937), formula 20; the corrected item-total correlation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import Final
+
+from kit.kernels.arrays import Floats
+from kit.learning.policies.confidence_intervals import Interval, wilson
+from kit.school.quiz.answers import Outcome
+from kit.school.report.inference import correlation, present
+from kit.school.report.measures import Item, Quiz
+
+LOOSE: Final = 0.15
+"""An item that goes with the rest of the quiz less than this tells little of what the rest asks."""
+HARD: Final = 0.2
+EASY: Final = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class ItemAnalysis:
+    """One item as this class answered it."""
+
+    item: Item
+    n: int
+    """Who took the quiz."""
+    outcomes: dict[Outcome, int]
+    chosen: dict[int, int]
+    """How many chose each option, by its number from 0."""
+    keys: frozenset[int]
+    """The options that were counted as right."""
+    difficulty: float
+    """The share who answered rightly; NaN where nobody took it."""
+    interval: Interval
+    """Of that share, 95 percent, by Wilson."""
+    with_rest: float
+    """Correlation with the rest of the quiz; NaN where one of them does not vary."""
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What a teacher should look at."""
+        right = sum(self.chosen.get(key, 0) for key in self.keys)
+        lures = [option + 1 for option, n in self.chosen.items() if option not in self.keys and n > right]
+        checks = (
+            (len(self.keys) > 1, f"{len(self.keys)} different options counted as right"),
+            (
+                bool(lures),
+                f"option{'s' * (len(lures) > 1)} {', '.join(map(str, sorted(lures)))} drew more than the right one",
+            ),
+            (self.difficulty < HARD, f"only {self.difficulty:.0%} had it right"),
+            (self.difficulty > EASY, "nearly everybody had it right: it tells nobody apart"),
+            (self.with_rest < LOOSE, f"goes with the rest by r = {round(self.with_rest, 2) + 0.0:.2f} only"),
+        )
+        return tuple(text for holds, text in checks if holds)
+
+
+def analyse(quiz: Quiz, item: Item) -> ItemAnalysis:
+    """The item among the others of the quiz."""
+    replies = [each for each in quiz.replies[item.id] if each is not None]
+    right = quiz.right(item)
+    rest = [other for other in quiz.items if other != item]
+    hits = sum(each.outcome is Outcome.RIGHT for each in replies)
+    return ItemAnalysis(
+        item,
+        n=len(replies),
+        outcomes={outcome: sum(each.outcome is outcome for each in replies) for outcome in Outcome},
+        chosen=dict(sorted(Counter(each.chosen for each in replies if each.chosen is not None).items())),
+        keys=frozenset(
+            each.chosen for each in replies if each.outcome is Outcome.RIGHT and each.chosen is not None
+        ),
+        difficulty=hits / len(replies) if replies else math.nan,
+        interval=wilson(hits, len(replies)),
+        with_rest=correlation(right, quiz.share(rest)) if rest else math.nan,
+    )
+
+
+def kr20(quiz: Quiz) -> float:
+    """How consistent the quiz is in itself, at most 1; NaN below two items or where all scored the same."""
+    columns = [present(quiz.right(item)) for item in quiz.items]
+    k = len(columns)
+    if k < 2 or len(columns[0]) < 2:
+        return math.nan
+    totals: Floats = sum(columns[1:], columns[0])
+    spread = float(totals.var())
+    if spread <= 0:
+        return math.nan
+    return k / (k - 1) * (1 - sum(float(column.mean() * (1 - column.mean())) for column in columns) / spread)

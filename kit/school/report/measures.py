@@ -1,0 +1,160 @@
+"""What was asked of a class and what it said, as numbers by student; groups of students; means by group."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kit.kernels.arrays import Flags, Floats
+from kit.school.quiz.answers import Outcome
+from kit.school.report.inference import present
+from kit.school.survey.questions import Phase, Purpose, Question
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """One student's answer to one item. Only RIGHT counts as right; wrong, not sure and blank are told apart."""
+
+    outcome: Outcome
+    chosen: int | None = None
+    """The option's number from 0."""
+
+
+BLANK = Reply(Outcome.BLANK)
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A question of the quiz."""
+
+    id: str
+    topic: str
+    options: tuple[str, ...] = ()
+    """Their texts, where they are known."""
+    in_quiz: bool = False
+    """Whether the quiz asks it; else only lessons and repetition do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quiz:
+    """Items, and each student's reply to each: the class's answer sheet."""
+
+    items: tuple[Item, ...]
+    replies: Mapping[str, tuple[Reply | None, ...]]
+    """By item, in the order of the students; None: this student did not take the quiz."""
+
+    def right(self, item: Item) -> Floats:
+        """(n,) 1 for right, 0 for anything else, NaN for who did not take the quiz."""
+        return np.array(
+            [
+                np.nan if each is None else float(each.outcome is Outcome.RIGHT)
+                for each in self.replies[item.id]
+            ]
+        )
+
+    def share(self, items: Sequence[Item]) -> Floats:
+        """(n,) of these items answered rightly."""
+        return row_means([self.right(item) for item in items])
+
+    @property
+    def score(self) -> Floats:
+        """(n,) of all items."""
+        return self.share(self.items)
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """In the order in which they first come."""
+        return tuple(dict.fromkeys(item.topic for item in self.items))
+
+    def of_topic(self, topic: str) -> tuple[Item, ...]:
+        return tuple(item for item in self.items if item.topic == topic)
+
+    def nobody(self) -> Quiz:
+        """The same items, taken by nobody."""
+        return Quiz(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
+
+    def count(self, outcome: Outcome) -> Floats:
+        """(n,) items with that outcome, by student."""
+        taken = [self.replies[item.id] for item in self.items]
+        return np.array(
+            [
+                np.nan if any(row[i] is None for row in taken) else sum(_is(row[i], outcome) for row in taken)
+                for i in range(len(taken[0]) if taken else 0)
+            ],
+            dtype=np.float64,
+        )
+
+
+def _is(reply: Reply | None, outcome: Outcome) -> bool:
+    return reply is not None and reply.outcome is outcome
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measure:
+    """One quantity, of each student."""
+
+    id: str
+    label: str
+    values: Floats
+    """(n,), NaN where blank."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ratings:
+    """The answers on scales of a class."""
+
+    questions: tuple[Question, ...]
+    values: Mapping[tuple[Phase, str], Floats]
+    """By phase and question: (n,) of 1 to 7, NaN where blank."""
+
+    def measures(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
+        """One for each question that anybody answered then."""
+        return tuple(
+            Measure(each.id, each.text, values)
+            for each in self.questions
+            if each.purpose is purpose
+            and (values := self.values.get((phase, each.id))) is not None
+            and len(present(values))
+        )
+
+    def by_topic(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
+        """For each topic, each student's mean over its questions."""
+        topics: dict[str, list[Floats]] = {}
+        for measure in self.measures(purpose, phase):
+            topics.setdefault(self._topic(measure), []).append(measure.values)
+        return tuple(Measure(topic, topic, row_means(rows)) for topic, rows in topics.items())
+
+    def of_topic(self, purpose: Purpose, phase: Phase, topic: str) -> tuple[Measure, ...]:
+        return tuple(each for each in self.measures(purpose, phase) if self._topic(each) == topic)
+
+    def topics(self, purpose: Purpose, phase: Phase) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(self._topic(each) for each in self.measures(purpose, phase)))
+
+    def overall(self, purpose: Purpose, phase: Phase) -> Floats | None:
+        """Each student's mean over the topics' means, so that a topic of many questions counts no more than
+        another; None where nobody answered."""
+        topics = self.by_topic(purpose, phase)
+        return row_means([each.values for each in topics]) if topics else None
+
+    def _topic(self, measure: Measure) -> str:
+        return next(each.topic for each in self.questions if each.id == measure.id)
+
+
+def row_means(rows: Iterable[Floats]) -> Floats:
+    """(n,) the mean of what is there of each student; NaN where nothing is."""
+    table = np.stack(list(rows))
+    there = ~np.isnan(table)
+    count = there.sum(axis=0)
+    total = np.where(there, table, 0.0).sum(axis=0)
+    return np.asarray(np.where(count > 0, total / np.maximum(count, 1), np.nan), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
+    """Some of the students."""
+
+    name: str
+    members: Flags
+    """(n,)"""

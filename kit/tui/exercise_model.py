@@ -1,0 +1,124 @@
+"""An exercise on the bench: its file watched, a check under way at most, and what came of it. No Textual."""
+
+from __future__ import annotations
+
+import threading
+import time
+from pathlib import Path
+from typing import Final
+
+from kit.host.file_watcher import FileWatch
+from kit.school.lessons.checking import Check, Report, handed_in
+from kit.school.lessons.exercise_files import STARTER
+from kit.school.lessons.lesson_session import Visit
+from kit.school.lessons.records import Exercise
+
+BY_HAND = ".npz"
+"""What a drive by hand is handed in as."""
+
+RESCAN_S: Final = 1.0
+"""Between two looks for files that are new."""
+MOST_FILES: Final = 200
+"""No exercise has more; a folder that was unpacked there by mistake may."""
+
+
+class FilesWatch:
+    """Notices when any file of an exercise has been saved. One that is new counts from its next save on: editors
+    make files for a moment."""
+
+    def __init__(self, file: Path) -> None:
+        self._folder = file.parent
+        self._watches = {file: FileWatch(file)}
+        self._scan()
+
+    def has_changed(self) -> bool:
+        """Whether something was saved since the last time this was true. Call it often."""
+        if time.monotonic() - self._scanned >= RESCAN_S:
+            self._scan()
+        changed = [watch.has_changed() for watch in self._watches.values()]
+        return any(changed)
+
+    def _scan(self) -> None:
+        self._scanned = time.monotonic()
+        try:
+            for file in sorted(self._folder.rglob("*")):
+                parts = file.relative_to(self._folder).parts
+                if any(part.startswith((".", "__")) for part in parts) or file.name.endswith("~"):
+                    continue
+                if file not in self._watches and len(self._watches) < MOST_FILES and file.is_file():
+                    self._watches[file] = FileWatch(file)
+        except OSError:  # a network drive that is away comes back
+            return
+
+
+class Workbench:
+    """One exercise of a visit. ``look`` at it a few times a second; ``close`` it when done.
+
+    Raises WorkError where the student's files cannot be laid out.
+    """
+
+    def __init__(self, visit: Visit, exercise: Exercise) -> None:
+        self.exercise = exercise
+        self._visit = visit
+        self.file: Path = visit.lay_out(exercise)
+        """What the student edits."""
+        self._watch = FileWatch(handed_in(self.exercise, self.file))
+        self._check: Check | None = None
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether what is handed in is driven, not written."""
+        return self.exercise.file.endswith(BY_HAND)
+
+    @property
+    def has_others(self) -> bool:
+        """Whether there are more files to edit, beside the one."""
+        return (self.exercise.folder / STARTER).is_dir()
+
+    @property
+    def seconds(self) -> float | None:
+        """How long the check has been running; None while none is."""
+        return None if self._check is None else self._check.seconds
+
+    @property
+    def report(self) -> Report | None:
+        """The newest check's."""
+        return self._visit.report(self.exercise)
+
+    def start(self) -> None:
+        """Starts a check, unless one is running."""
+        if self._check is None:
+            self._watch = FileWatch(
+                handed_in(self.exercise, self.file)
+            )  # what is checked now need not be checked once more
+            self._check = self._visit.check(self.exercise)
+
+    def look(self) -> bool:
+        """Starts a check where the file was saved, and takes in one that has ended; says whether one has.
+
+        Raises ProgressError where the disk refuses to note it: the report is there all the same.
+        """
+        if self._check is None:
+            if self._watch.has_changed():
+                self.start()
+            return False
+        report = self._check.poll()
+        if report is None:
+            return False
+        self.close()
+        self._visit.take(self.exercise, report)
+        return True
+
+    def begin_again(self) -> Path | None:
+        """The exercise as at first; where the former files were kept. Raises WorkError."""
+        self.close()
+        kept = self._visit.begin_again(self.exercise)
+        self._watch = FileWatch(handed_in(self.exercise, self.file))
+        return kept
+
+    def close(self) -> None:
+        """Ends the check; nothing is noted of one that has not ended."""
+        if self._check is not None:
+            # It may take a moment to end what it has started. The interpreter waits for this thread.
+            threading.Thread(target=self._check.close, name="end of a check").start()
+            self._check = None

@@ -1,0 +1,57 @@
+"""Listening to a running world's graph for a screen: what happens in the world's thread, and no Textual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kit.msg.message import Message
+from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.graph.topic_stats import Flow, Said, Traffic
+
+if TYPE_CHECKING:
+    from kit.run.session import Session
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """A graph at one instant. Safe to hand over."""
+
+    state: GraphState
+    said: Mapping[Flow, Said]
+    chosen: str | None
+    """The topic or service whose newest message this is."""
+    newest: Message | None
+    paused: bool
+
+
+class Listening:
+    """Calls ``deliver`` with what there is to know, each time it is shown the session; in that very thread.
+
+    Costs the world nothing before the first time, and nothing after ``stop``.
+    """
+
+    def __init__(self, deliver: Callable[[Heard], None]) -> None:
+        self._deliver = deliver
+        self._traffic: Traffic | None = None
+        self._state: GraphState | None = None
+        self.chosen: str | None = None
+        """Set from any thread; heeded the next time."""
+
+    def __call__(self, session: Session) -> None:
+        graph = session.graph
+        if self._traffic is None or self._traffic.graph is not graph:
+            self.stop()
+            self._traffic = Traffic(graph)
+        self._traffic.choose(self.chosen)
+        if self._state is None or self._state.version != graph.directory.version:
+            self._state = snapshot(graph)
+        said, newest = self._traffic.said(), self._traffic.newest
+        self._deliver(Heard(self._state, said, self.chosen, newest, session.runner.paused))
+
+    def stop(self) -> None:
+        """In the world's thread too."""
+        if self._traffic is not None:
+            self._traffic.stop()
+        self._traffic = self._state = None

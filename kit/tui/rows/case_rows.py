@@ -1,0 +1,59 @@
+"""A case of the layer planner as rows of text: its picture, coloured, and words that are scrolled. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from types import MappingProxyType
+from typing import Final
+
+from kit.layers.drawing import MOST_IN_PICTURE, Glyphs, Line, draw_graph
+from kit.layers.guided_tour import Page
+from kit.layers.requirements import Case
+from kit.tui.widgets.text_rows import PLAIN, Row, row
+
+LEAST_WORDS: Final = 34
+"""Columns for words beside a picture."""
+
+_LOOKS: Final = MappingProxyType(
+    {"struck": "dim", "group edge": "good", "group": "good", "beam": "warn", "laser": "warn", "cursor": "key"}
+)
+"""How the parts of a picture are written; each has a shape of its own too."""
+
+
+def words_width(width: int) -> int:
+    """How many columns of a screen belong to words, the others to the picture."""
+    return max(LEAST_WORDS, width * 7 // 16)
+
+
+def drawn(lines: Iterable[Line]) -> list[Row]:
+    """A drawing in the screen's styles."""
+    return [tuple((span.text, _LOOKS.get(span.style, PLAIN)) for span in line) for line in lines]
+
+
+def picture(case: Case, page: Page, width: int, height: int, glyphs: Glyphs) -> list[Row]:
+    """The collision graph with what a page points at."""
+    if not case.names:
+        return [row(), row(("nobody is here yet: e to edit, x for examples", "dim"))]
+    if len(case.names) > MOST_IN_PICTURE:
+        return [row(), row((f"{len(case.names)} are too many for a picture", "dim"))]
+    lines = draw_graph(
+        case,
+        struck=page.struck,
+        group=page.group,
+        laser=page.laser,
+        width=max(1, width),
+        height=max(1, height),
+        glyphs=glyphs,
+    )
+    return drawn(lines)
+
+
+def scrolled(lines: Sequence[str], start: int, room: int) -> tuple[list[Row], int]:
+    """So many of the lines as there is room for, from ``start`` on as far as there are so many, and that start;
+    the last row says if there are more."""
+    start = max(0, min(start, len(lines) - room))
+    shown = [row(line) for line in lines[start : start + room]]
+    left = len(lines) - start - len(shown)
+    if left > 0 and shown:
+        shown[-1] = row((f"... {left + 1} more lines below", "dim"))
+    return shown, start

@@ -1,0 +1,268 @@
+"""A lesson's step as rows of text: heading, words, what can be foreseen, and what a check said. Pure."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from typing import Final
+
+from kit.school.lessons.checking import Judged, Report
+from kit.school.lessons.lesson_progress import Standing
+from kit.school.lessons.lesson_session import Hint
+from kit.school.lessons.markup import Style, parsed, rows
+from kit.school.lessons.records import Command, How, Option, Step, StepKind
+from kit.tui.widgets.text_rows import Part, Row, row, spread
+
+WIDTH: Final = 76
+"""Longer lines are hard to read, however wide the terminal."""
+MARGIN: Final = 2
+LONGEST_BAR: Final = 12
+LEAST_TITLE: Final = 8
+
+_STYLES: Final = {Style.PLAIN: "", Style.CODE: "code", Style.BOLD: "bold"}
+_KINDS: Final = {
+    StepKind.PREDICT: "Predict",
+    StepKind.RUN: "Run",
+    StepKind.EXPLAIN: "Read",
+    StepKind.MODIFY: "Change",
+    StepKind.MAKE: "Make",
+}
+_WHERE: Final = {
+    How.ALONE: "In a second terminal, or here with o:",
+    How.SCREEN: "Opens a screen, here with o:",
+    How.BESIDE: "In a second terminal, while a world runs:",
+}
+
+
+def heading(standing: Standing, step: Step, width: int) -> Row:
+    """Lesson, goal, which step of how many, and a bar of what is done. A long lesson's title gives way to the goal."""
+    count = len(standing.lesson.steps)
+    bar = progress_bar(standing, step) if count <= LONGEST_BAR else ""
+    where = f"step {step.number} of {count} "
+    title, room = standing.lesson.title, width - len(where) - len(bar) - len(step.goal) - 3
+    if len(title) > room:
+        title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""
+    left = row((title, "bold"), "  ", (step.goal, "dim")) if title else row((step.goal, "dim"))
+    return spread(left, row(where, (bar, "bold")), width)
+
+
+def progress_bar(standing: Standing, here: Step | None = None) -> str:
+    """One character a step: full where it is done, half where one stands."""
+    return "".join(
+        "█"
+        if standing.is_step_done(step)
+        else "▒"
+        if here is not None and step.number == here.number
+        else "░"
+        for step in standing.lesson.steps
+    )
+
+
+def title(step: Step, caption: str, width: int) -> Row:
+    """What kind of step, its title, and on the right what the scene does."""
+    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), row((caption, "dim")), width)
+
+
+def words(text: str, width: int) -> list[Row]:
+    """A lesson's text."""
+    room = min(width - 2 * MARGIN, WIDTH)
+    made: list[Row] = []
+    for each in rows(parsed(text), room):
+        if len(each) == 1 and len(each[0].text) > room:
+            made += [row(" " * MARGIN, (part, _STYLES[each[0].style])) for part in broken(each[0].text, room)]
+        else:
+            made.append(
+                row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
+            )
+    return made
+
+
+def broken(line: str, room: int) -> list[str]:
+    """A line of code that is too long, on several. A command goes on after a backslash, as a shell takes it."""
+    indent = line[: len(line) - len(line.lstrip())]
+    is_command = line.split()[:1] in (["kit"], ["grader"])
+    parts: list[str] = []
+    while len(line) > room:
+        first = len(line) - len(line.lstrip())
+        blank = line.rfind(" ", first, room - 1) if is_command else -1
+        cut = blank if blank > 0 else room
+        parts.append(f"{line[:cut]} \\" if blank > 0 else line[:cut])
+        line = indent + "  " + line[cut:].lstrip() if blank > 0 else line[cut:]
+    return [*parts, line]
+
+
+def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:
+    """The commands of a step, those of a kind under one line that says where to type them."""
+    made: list[Row] = []
+    for how, where in _WHERE.items():
+        lines = [line for command, line in filled if command.how is how]
+        if lines:
+            made += [row(), row(" " * MARGIN, (where, "dim"))]
+            parts = (part for line in lines for part in broken(" " * MARGIN + line, _room(width)))
+            made += [row(" " * MARGIN, (part, "code")) for part in parts]
+    return made
+
+
+def question(step: Step, chosen: Option | None, told: bool, width: int) -> list[Row]:
+    """The question and its options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x``
+    before a wrong choice."""
+    made = [row(" " * MARGIN, (line, "bold")) for line in _wrapped(step.question, width)]
+    for number, option in enumerate(step.options, 1):
+        mark, style = (">", "bold") if option is chosen else (" ", "")
+        if told and option.right:
+            mark, style = "+", "good"
+        elif told:
+            mark, style = ("x", "bad") if option is chosen else (" ", "dim")
+        made += _entry(mark, str(number), option.text, style, width)
+    return made
+
+
+def feedback(step: Step, chosen: Option, width: int) -> list[Row]:
+    """What is said to a prediction, and to the right one where it was another."""
+    right = next(option for option in step.options if option.right)
+    if chosen.right:
+        return [row(), *_told("Foreseen rightly.", "good", chosen.feedback, width)]
+    numbers = {id(option): number for number, option in enumerate(step.options, 1)}
+    return [
+        row(),
+        *_told(f"Foreseen {numbers[id(chosen)]}; it came otherwise.", "bold", chosen.feedback, width),
+        row(),
+        *_told(f"{numbers[id(right)]} it is.", "good", right.feedback, width),
+    ]
+
+
+def verdict(report: Report, hints: Sequence[Hint], width: int) -> list[Row]:
+    """What a check said, criterion by criterion; the hints opened so far below the criterion they help with."""
+    made: list[Row] = [row()]
+    if report.problem:
+        style = "warn" if report.verdict == "broken" else "bad"
+        made += [row(" " * MARGIN, (line, style)) for line in _wrapped(report.problem, width)]
+    for each in report.criteria:
+        made += _judged(each, width)
+        for hint in hints:
+            if hint.criterion.id == each.id:
+                made += _hint(hint, width)
+    return made
+
+
+def _judged(each: Judged, width: int) -> list[Row]:
+    mark, style = (
+        ("[ok]", "good") if each.passed else ("[--]", "dim") if each.status == "skipped" else ("[no]", "bad")
+    )
+    points = f"{each.points:g} of {each.max_points:g}"
+    first, *rest = textwrap.wrap(each.title, max(20, _room(width) - 7 - len(points))) or [""]
+    made = [
+        row(" " * MARGIN, (mark, style), " ", (first, "" if each.passed else "bold"), "  ", (points, "dim")),
+        *(row(" " * (MARGIN + 5), (line, "" if each.passed else "bold")) for line in rest),
+    ]
+    if each.passed:
+        return made
+    made += _indented(each.said, "", width)
+    if each.expected and each.actual:
+        made += _indented(f"wanted: {each.expected}", "dim", width)
+        made += _indented(f"found:  {each.actual}", "dim", width)
+    return made
+
+
+def _hint(hint: Hint, width: int) -> list[Row]:
+    more = f" ({hint.more} more)" if hint.more else ""
+    return _indented(f"Hint {hint.number}{more}: {hint.text}", "bold", width)
+
+
+def status(report: Report | None, standing: Standing, step: Step, by_hand: bool) -> Row:
+    """One line of where one is with an exercise."""
+    assert step.exercise is not None
+    begin = (
+        "d drives; leaving the drive checks it"
+        if by_hand
+        else "Save the file and it is checked; r checks too"
+    )
+    passed = step.exercise.name in standing.passed
+    if report is None:
+        best = standing.best.get(step.exercise.name)
+        if passed:
+            return row((" Passed before.", "good"), f" {begin}.")
+        return row((f" {begin}.", ""), (f" Best so far: {best:.0%} of the points." if best else "", "dim"))
+    if report.verdict == "broken":
+        return row((" No verdict: the check itself failed. r tries again.", "warn"))
+    points = f"{report.points:g} of {report.max_points:g} points, checked in {report.seconds:.1f} s."
+    if report.passed:
+        return row((" Passed: ", "good"), points, " n goes on; s shows one way to do it.")
+    if not report.criteria:
+        return row((" Not checked.", "bad"))
+    return row(
+        (" Not yet: ", "bad"), points, " h gives a hint." if any(each.hints for each in report.lost) else ""
+    )
+
+
+def checking(seconds: float) -> Row:
+    return row((f" Checking... {seconds:.1f} s", "bold"))
+
+
+def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
+    """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
+    head = " Kept in " if by_hand else " Edit "
+    tail = ", and what lies beside it" if others else ""
+    room = max(10, width - len(head))
+    parts = [path[at : at + room] for at in range(0, len(path), room)]
+    made = [
+        row((head if number == 0 else " " * len(head), "dim"), (part, "bold"))
+        for number, part in enumerate(parts)
+    ]
+    if len(parts[-1]) + len(tail) <= room:
+        made[-1] = (*made[-1], (tail, "dim"))
+    return made
+
+
+def ending(standing: Standing, width: int) -> list[Row]:
+    """The page after the last step."""
+    lesson = standing.lesson
+    made = [row()]
+    if standing.is_done:
+        made.append(row(" " * MARGIN, (f"{lesson.title} is done.", "good")))
+        made += [row(), row(" " * MARGIN, "You can now:")]
+        made += [line for outcome in lesson.outcomes for line in _entry(" ", "-", outcome, "", width)]
+    else:
+        open_steps = [step for step in lesson.steps if not standing.is_step_done(step)]
+        made.append(row(" " * MARGIN, ("That was the last step. Still open:", "bold")))
+        made += [line for step in open_steps for line in _entry(" ", str(step.number), step.title, "", width)]
+        made += [
+            row(),
+            *(row(" " * MARGIN, line) for line in _wrapped("b goes back, l lists all steps.", width)),
+        ]
+    best = [f"{each.name} {standing.best.get(each.name, 0.0):.0%}" for each in lesson.exercises]
+    if best:
+        made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
+    return made
+
+
+def _told(head: str, style: str, text: str, width: int) -> list[Row]:
+    first, *rest = textwrap.wrap(text, _room(width), initial_indent=" " * (len(head) + 1)) or [""]
+    return [
+        row(" " * MARGIN, (head, style), " ", first.strip()),
+        *(row(" " * MARGIN + line) for line in rest),
+    ]
+
+
+def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
+    first, *rest = textwrap.wrap(text, _room(width) - 3) or [""]
+    indent = " " * (MARGIN + 3)
+    head: tuple[Part, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"))
+    return [row(*head, "  ", (first, style)), *(row((indent + line, style)) for line in rest)]
+
+
+def _indented(text: str, style: str, width: int, indent: int = MARGIN + 5) -> list[Row]:
+    lines = [
+        line
+        for part in text.splitlines()
+        for line in textwrap.wrap(part, max(20, _room(width) - indent + MARGIN))
+    ]
+    return [row(" " * indent, (line, style)) for line in lines]
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    return [line for part in text.splitlines() for line in textwrap.wrap(part, _room(width))]
+
+
+def _room(width: int) -> int:
+    return max(20, min(width - 2 * MARGIN, WIDTH))

@@ -1,0 +1,102 @@
+"""The map of levels, and what is known of one, as rows of text. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from kit.school.game.drive_records import Noted
+from kit.school.game.ghosts import Ghost
+from kit.school.game.player_progress import LevelStanding
+from kit.school.game.race import Driver, Finish
+from kit.tui.widgets.text_rows import Part, Row, row
+
+CELL: Final = (20, 26)
+"""Columns of one level on the map: at least, and at most."""
+WIDTH: Final = 80
+STAR, NO_STAR, SHUT = "*", ".", "-"
+TITLES: Final = ("finished", "touched nothing", "under par")
+WHO: Final = {Driver.KEYS: "by hand", Driver.CONTROLLER: "by program", Driver.AGENT: "by agent"}
+
+
+def stars(standing: LevelStanding) -> str:
+    """``**.``, or ``---`` for a level that is not open yet."""
+    if not standing.is_open:
+        return SHUT * len(standing.stars)
+    return "".join(STAR if has else NO_STAR for has in standing.stars)
+
+
+def grid(standings: Sequence[LevelStanding]) -> list[list[int]]:
+    """Which levels stand in which row of the map: by number, from 0."""
+    rows = 1 + max((each.level.row for each in standings), default=-1)
+    return [[number for number, each in enumerate(standings) if each.level.row == at] for at in range(rows)]
+
+
+def level_map(standings: Sequence[LevelStanding], chosen: int) -> list[Row]:
+    """One row for each depth, an empty one between."""
+    made: list[Row] = []
+    for numbers in grid(standings):
+        width = max(CELL[0], min(CELL[1], WIDTH // max(1, len(numbers))))
+        made += [
+            row(*(part for number in numbers for part in _cell(standings[number], number == chosen, width))),
+            row(),
+        ]
+    return made[:-1]
+
+
+def _cell(standing: LevelStanding, is_chosen: bool, width: int) -> tuple[Part, ...]:
+    title = standing.level.title
+    room = width - 6
+    title = title if len(title) <= room else title[: room - 1] + "."
+    style = "bold" if is_chosen else "" if standing.is_open else "dim"
+    return (
+        (">" if is_chosen else " ", "bold"),
+        (stars(standing), "warn" if standing.count else "dim"),
+        (f" {title:<{room}} ", style),
+    )
+
+
+def about(standing: LevelStanding, ghosts: Sequence[Ghost], reference: Ghost | None) -> list[Row]:
+    """What the chosen level asks for, and how it was driven."""
+    level = standing.level
+    if not standing.is_open:
+        return [row((level.title, "bold"), f"  opens when you have finished {' or '.join(level.after)}.")]
+    times = [
+        f"{WHO[Driver(ghost.name)]} {standing.best[Driver(ghost.name)]:.1f} s"
+        for ghost in ghosts
+        if Driver(ghost.name) in standing.best
+    ]
+    best = ", ".join(times) or "not finished yet"
+    measure = "" if reference is None else f"; the reference takes {reference.seconds:.1f} s"
+    return [
+        row((level.title, "bold"), f"  {level.hint}"),
+        row(("par ", "dim"), f"{level.par:g} s{measure}"),
+        row(("best ", "dim"), best),
+    ]
+
+
+def result(level_title: str, par: float, finish: Finish, noted: Noted, reference: Ghost | None) -> list[Row]:
+    """What a drive earned: rows of a page."""
+    if finish.foul:
+        head = f" It does not count: {finish.foul}."
+    elif finish.failure is not None:
+        head = f" The program stopped: {finish.failure}"
+    elif finish.reached:
+        head = f" The target was reached after {finish.seconds:.2f} s, with {finish.bumps} bumps."
+    else:
+        head = f" The target was not reached in {finish.seconds:.0f} s."
+    made = [row(), row((f" {level_title}", "bold")), row(head), row()]
+    for title, has in zip(TITLES, noted.stars, strict=True):
+        extra = f" ({par:g} s)" if title == TITLES[-1] else ""
+        made.append(
+            row(
+                (f"   {STAR if has else NO_STAR} ", "warn" if has else "dim"),
+                (title + extra, "" if has else "dim"),
+            )
+        )
+    made.append(row())
+    if noted.is_best:
+        made.append(row(" This is your best so far; its ghost drives along next time."))
+    if reference is not None:
+        made.append(row(f" The reference takes {reference.seconds:.2f} s."))
+    return [*made, row()]

@@ -1,0 +1,93 @@
+"""A quiz question as rows of text: asked, then how sure, then what is said to the answer, all in one place. Pure."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from typing import Final
+
+from kit.school.quiz.answers import Choice, Outcome
+from kit.school.quiz.items import Item
+from kit.school.quiz.quiz_text import SURE_CHOICES, SURE_QUESTION, feedback, verdict, ways_on
+from kit.tui.widgets.text_rows import Row, row
+
+MARGIN: Final = 2
+WIDEST: Final = 92
+"""Longer lines are hard to read, however wide the terminal."""
+
+_LOOKS: Final = {
+    Outcome.RIGHT: "good",
+    Outcome.WRONG: "bad",
+    Outcome.NOT_SURE: "bold",
+    Outcome.BLANK: "bold",
+}
+
+
+def question_rows(item: Item, width: int) -> list[Row]:
+    """The question and its picture."""
+    room = _room(width)
+    rows = [row(" " * MARGIN + line) for line in textwrap.wrap(item.question, room)]
+    if item.picture:
+        rows += [row(), *(row(f"{'':{2 * MARGIN}}{line}".rstrip()) for line in item.picture)]
+    return [*rows, row()]
+
+
+def option_rows(item: Item, width: int, choice: Choice | None = None, *, told: bool = False) -> list[Row]:
+    """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
+    rows: list[Row] = []
+    for index, option in enumerate(item.options):
+        chosen = choice is not None and choice.option == index
+        mark, style = (">", "bold") if chosen else (" ", "")
+        if told and option.right:
+            mark, style = "+", "good"
+        elif told:
+            mark, style = ("x", "bad") if chosen else (" ", "dim")
+        rows += _entry(mark, str(index + 1), option.text, style, width)
+    if not told:
+        rows += _entry(" ", "0", "I am not sure", "dim", width)
+    return rows
+
+
+def sure_rows() -> list[Row]:
+    """How sure one is."""
+    parts: list[str | tuple[str, str]] = [" " * MARGIN, (SURE_QUESTION, "bold")]
+    for number, text in SURE_CHOICES:
+        parts += ["  ", (str(number), "bold"), f" {text}"]
+    return [row(), row(*parts)]
+
+
+def told_rows(item: Item, choice: Choice, width: int) -> list[Row]:
+    """The verdict, what is said to the choice, and where to go from here."""
+    room = _room(width)
+    style = _LOOKS[choice.outcome(item)]
+    lines = textwrap.wrap(feedback(item, choice), room)
+    return [
+        row(),
+        row(" " * MARGIN, (verdict(item, choice), style)),
+        *(row(" " * MARGIN + line) for line in lines),
+        *(row((" " * MARGIN + line, "dim")) for line in ways_on(item, room)),
+    ]
+
+
+def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
+    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
+    says if there are more."""
+    top = max(0, min(top, len(rows) - room))
+    shown = list(rows[top : top + room])
+    below = len(rows) - top - len(shown)
+    if below > 0 and shown:
+        shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
+    return shown, top
+
+
+def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
+    first, *rest = textwrap.wrap(text, _room(width) - 3) or [""]
+    indent = " " * (MARGIN + 3)
+    return [
+        row((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"), "  ", (first, style)),
+        *(row((indent + line, style)) for line in rest),
+    ]
+
+
+def _room(width: int) -> int:
+    return max(20, min(width, WIDEST) - 2 * MARGIN)

@@ -1,0 +1,94 @@
+"""The figures beside the world: heading, side panel and messages, as rows of text. Pure."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+from kit.ros.log import LoggingSeverity, LogRecord
+from kit.run.pacing import MAXIMUM, Pacing
+from kit.run.view import View, clock
+from kit.tui.widgets.text_rows import Part, Row, row, spread
+
+PANEL_WIDTH = 22
+
+_LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
+
+
+def heading(view: View, pacing: Pacing, width: int) -> Row:
+    """Map and controller on the left; state, speed and time on the right."""
+    who = view.controller or "nobody drives"
+    left = row((view.place, "bold"), "  ", who)
+    return spread(
+        left, (*_state(view, pacing), (f"  {clock(view.time_s, 2 if view.paused else 1)}", "bold")), width
+    )
+
+
+def _state(view: View, pacing: Pacing) -> Row:
+    if view.paused:
+        return row(("paused", "warn"))
+    asked = "max" if pacing.factor == MAXIMUM else f"x{pacing.factor:g}"
+    return row(
+        f"speed {asked}",
+        ("" if not pacing.reached else f" (x{pacing.reached:.{1 if pacing.reached < 100 else 0}f})", "dim"),
+    )
+
+
+def readout(view: View, drive: str | None) -> tuple[Row, ...]:
+    """The side panel, at most 20 rows of 22 characters."""
+    rows: list[Row] = []
+    if view.pose is not None:
+        rows += [
+            _title("pose"),
+            _figure("x", _two(view.pose.x), "m"),
+            _figure("y", _two(view.pose.y), "m"),
+            _figure("heading", f"{math.degrees(math.remainder(view.pose.theta, math.tau)):.0f}", "°"),
+            _title("speed"),
+            _figure("forward", _two(view.speed[0]), "m/s"),
+            _figure("turning", _two(view.speed[1]), "rad/s"),
+        ]
+    if view.nearest:
+        rows.append(_title("nearest"))
+        rows += [
+            _figure(side, "-" if distance is None else f"{distance:.2f}", "m")
+            for side, distance in view.nearest
+        ]
+    score = view.score
+    rows.append(_title("drive"))
+    rows.append(_figure("way", f"{score.distance_m:.1f}", "m"))
+    rows.append(_figure("bumps", f"{score.bumps}", ""))
+    if score.reached_s is not None:
+        rows.append(row(("target reached", "good")))
+        rows.append(_figure("after", f"{score.reached_s:.1f}", "s"))
+    elif score.target_m is not None:
+        rows.append(_figure("to target", f"{score.target_m:.2f}", "m"))
+    if drive is not None:
+        rows += [_title("keys"), row(f" {drive}")]
+    return tuple(rows)
+
+
+def _two(value: float) -> str:
+    """With two decimals, and no minus before a zero."""
+    return f"{round(value, 2) + 0.0:.2f}"
+
+
+def _title(text: str) -> Row:
+    return row((text, "dim"))
+
+
+def _figure(name: str, value: str, unit: str) -> Row:
+    return row(f" {name:<8}", (f"{value:>6}", "bold"), (f" {unit}", "dim"))
+
+
+def said(view: View, rows: int, width: int) -> tuple[Row, ...]:
+    """What went wrong with the controller, in sight as long as it holds; else the newest messages."""
+    if view.failure is not None:
+        lines = textwrap.wrap(str(view.failure), width, max_lines=rows, placeholder=" ...")
+        return tuple(row((line, "bad")) for line in lines)
+    return tuple(_message(record, width) for record in view.messages[-rows:])
+
+
+def _message(record: LogRecord, width: int) -> Row:
+    head = f"{clock(record.time_ns / 1e9):>7} {record.name}: "
+    text: Part = (record.text.partition("\n")[0][: max(0, width - len(head))], _LOUD.get(record.severity, ""))
+    return row((head, "dim"), text)

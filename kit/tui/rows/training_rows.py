@@ -1,0 +1,228 @@
+"""A training in words: heading, figures, cases, terms of the reward, the robot on its way. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from kit.render.curve import Axes, Curve
+from kit.render.roles import Role
+from kit.render.scene import FloatArray
+from kit.render.stacked_chart import Part, Shares
+from kit.tui.widgets.text_rows import Row, row, spread
+
+if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
+    from kit.learning.policies.demonstration import Moment
+    from kit.learning.training.run_status import CaseStanding, Standing
+
+OUTCOMES: Final = (
+    Part("reached", Role.TARGET, "█"),
+    Part("collided", Role.CONTACT, "▒"),
+    Part("timed out", Role.HIT, "░"),
+)
+"""In the order of ``kit.learning.environment.episode_stats.Outcome``, and called as there."""
+ASCII_OUTCOMES: Final = tuple(
+    Part(part.name, part.role, glyph) for part, glyph in zip(OUTCOMES, "#x.", strict=True)
+)
+OUTCOME_STYLES: Final = ("good", "bad", "warn")
+
+MARGIN: Final = 5
+"""Columns for the scales of the curve and of the outcomes."""
+THREE_CURVES_FROM: Final = 45
+"""Columns from which on the names of three curves fit."""
+NAME: Final = 15
+"""Columns for the name of a case where several stand in a row."""
+
+_STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {
+        "new": ("starting", "dim"),
+        "running": ("training", "good"),
+        "paused": ("paused", "warn"),
+        "finished": ("finished", "good"),
+        "stopped": ("stopped", "warn"),
+        "interrupted": ("interrupted", "warn"),
+        "failed": ("failed", "bad"),
+    }
+)
+
+
+def heading(name: str, standing: Standing, width: int) -> Row:
+    """What is learned on the left; on the right where it stands, and for how long it has been trained."""
+    left = row((name, "bold"), "  ", (standing.plan.title, "dim"))
+    right = row(_STATES[standing.summary.state], "  ", (clock(standing.summary.seconds), "bold"))
+    return spread(left, right, width)
+
+
+def clock(seconds: float) -> str:
+    """``0:42``, ``12:05``, ``3:00:10``."""
+    minutes, rest = divmod(int(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+def figures(standing: Standing, width: int) -> Row:
+    """Steps, speed, time left, and as much more as there is room for."""
+    summary = standing.summary
+    parts = [row((f"{summary.steps:,}", "bold"), (f" of {standing.plan.steps:,} steps", "dim"))]
+    if summary.state == "running" and standing.rate:
+        parts.append(row((f"{standing.rate:,.0f}", "bold"), (" steps/s", "dim")))
+    if standing.left_s is not None:
+        parts.append(row(("at most ", "dim"), (clock(standing.left_s), "bold"), (" left", "dim")))
+    if standing.adjacency:
+        parts.append(row(("side by side ", "dim"), (f"{standing.adjacency:.0%}", "bold")))
+    if standing.reward is not None:
+        parts.append(row(("reward ", "dim"), (f"{standing.reward:.2f}", "bold")))
+    shown: Row = parts[0]
+    for part in parts[1:]:
+        longer = (*shown, *row("   "), *part)
+        if sum(len(text) for text, _ in longer) <= width:
+            shown = longer
+    return shown
+
+
+def note(name: str, standing: Standing, width: int) -> Row:
+    """What happened last, and what can be done where nobody trains."""
+    state = standing.summary.state
+    if state == "interrupted":
+        return row((f"{name} was interrupted. p goes on from its last checkpoint."[:width], "warn"))
+    style = "bad" if state == "failed" else ""
+    hint = "  p goes on" if state == "stopped" else ""
+    return row((f"{standing.note}{hint}"[:width], style))
+
+
+def caption(moment: Moment, width: int) -> Row:
+    """Who drives where, and how it ended."""
+    policy = f"{'best, of' if moment.kept else 'after'} {_short(moment.trained)}"
+    left = row((moment.case, "bold"), (f"  {policy}", "dim"))
+    if moment.outcome is None:
+        return spread(left, (), width)
+    names = [part.name for part in OUTCOMES]
+    style = OUTCOME_STYLES[names.index(moment.outcome.value)]
+    return spread(left, row((moment.outcome.value, style)), width)
+
+
+def _short(steps: int) -> str:
+    """In few characters: 850, 49k, 1.25M."""
+    if steps < 1000:
+        return str(steps)
+    return f"{steps / 1000:.0f}k" if steps < 999_500 else f"{steps / 1e6:.2f}M"
+
+
+# What the curve and the outcomes are drawn from
+
+
+def axes(standing: Standing, kind: str) -> Axes:
+    """Of the curve: ``success`` or ``reward``."""
+    if kind == "reward":
+        return Axes("steps", margin=MARGIN)
+    return Axes("steps", low=0.0, high=1.0, goal=standing.plan.goal, margin=MARGIN)
+
+
+def curves(standing: Standing, kind: str, columns: int) -> tuple[Curve, ...]:
+    """Reward, or success: in training, and in tests on average and in the worst case, if there is room for both."""
+    batches, looks = standing.batches, standing.looks
+    if kind == "reward":
+        return (Curve("reward in training", batches.steps, batches.reward),)
+    share = batches.outcomes[:, 0] / batches.outcomes.sum(axis=1) if len(batches.steps) else np.empty(0)
+    trained = Curve("training", batches.steps, _two(share))
+    worst = Curve("worst", looks.steps, _two(looks.worst))
+    if columns < THREE_CURVES_FROM:
+        return trained, Curve("worst test", worst.x, worst.y)
+    return trained, Curve("test", looks.steps, _two(looks.mean)), worst
+
+
+def _two(values: FloatArray) -> FloatArray:
+    """With two decimals: their names show the newest."""
+    return np.round(values, 2)
+
+
+def shares(standing: Standing) -> Shares:
+    """How the episodes ended, batch by batch."""
+    return Shares(standing.batches.steps, standing.batches.outcomes)
+
+
+# What stands in the panel
+
+
+def pages(standing: Standing, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
+    """Cases, and terms of the reward, on as few pages as they fit on; at least one."""
+    width = max(width, NAME + 4)
+    blocks = [_cases(standing, width, height), _terms(standing, width)]
+    made: list[tuple[Row, ...]] = []
+    for title, rows in blocks:
+        for start in range(0, len(rows), max(1, height - 1)):
+            block = (title, *rows[start : start + max(1, height - 1)])
+            if made and len(made[-1]) + len(block) <= height:
+                made[-1] = (*made[-1], *block)
+            else:
+                made.append(block)
+    return tuple(made) or ((),)
+
+
+def _cases(standing: Standing, width: int, height: int) -> tuple[Row, list[Row]]:
+    """Every case: how its episodes ended in training and how many reached the target in the last test; where they
+    are too many, only the latter, several in a row."""
+    names = short_names([case.name for case in standing.cases])
+    cases = list(zip(names, standing.cases, strict=True))
+    if len(cases) < height:
+        wide = max(map(len, names), default=0)
+        bar = max(0, width - wide - 13)
+        title = row((f"{'case':{wide}} {'of late':{bar}} train  test"[:width], "dim"))
+        return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
+    per_row = max(1, (width + 1) // (NAME + 5))
+    tested = any(sum(case.tested) for case in standing.cases)
+    title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
+    cells = [_cell(name, case.tested if tested else case.trained, standing.plan.goal) for name, case in cases]
+    down = -(-len(cells) // per_row)
+    return title, [tuple(part for cell in cells[line::down] for part in cell) for line in range(down)]
+
+
+def _case(name: str, case: CaseStanding, bar: int) -> Row:
+    trained, tested = _percent(case.trained), _percent(case.tested)
+    return row(f"{name} ", *_bar(case.trained, bar), f"{trained:>6}", (f"{tested:>5} ", "bold"))
+
+
+def _bar(counts: Sequence[int], width: int) -> tuple[tuple[str, str], ...]:
+    total = sum(counts)
+    if not total:
+        return ((" " * width, ""),)
+    ends = [0, *(round(sum(counts[: place + 1]) / total * width) for place in range(len(counts)))]
+    lengths = [stop - start for start, stop in pairwise(ends)]
+    parts = zip(OUTCOMES, OUTCOME_STYLES, lengths, strict=True)
+    return tuple((part.glyph * length, style) for part, style, length in parts if length)
+
+
+def _cell(name: str, counts: Sequence[int], goal: float | None) -> Row:
+    enough = sum(counts) and goal is not None and counts[0] / sum(counts) >= goal
+    return row(f"{name:{NAME}.{NAME}}", (f"{_percent(counts):>4}", "good" if enough else "bold"), " ")
+
+
+def _percent(counts: Sequence[int]) -> str:
+    """Rounded down: 100 means all."""
+    return f"{100 * counts[0] // sum(counts)}" if sum(counts) else "-"
+
+
+def short_names(names: Sequence[str]) -> list[str]:
+    """Without the words that all begin with."""
+    words = [name.split("_") for name in names]
+    while len(words) > 1 and len({each[0] for each in words}) == 1 and all(each[1:] for each in words):
+        words = [each[1:] for each in words]
+    return ["_".join(each) for each in words]
+
+
+def _terms(standing: Standing, width: int) -> tuple[Row, list[Row]]:
+    """The reward of an episode by named term."""
+    total = "" if standing.reward is None else f" {standing.reward:.2f}"
+    title = row((f"reward of an episode{total}"[:width], "dim"))
+    per_row = max(1, width // 28)
+    cell = width // per_row
+    cells = [
+        row(f"{name:{cell - 10}.{cell - 10}}", (f"{value:>9.2f} ", "bold"))
+        for name, value in standing.terms.items()
+    ]
+    down = -(-len(cells) // per_row)
+    return title, [tuple(part for each in cells[line::down] for part in each) for line in range(down)]

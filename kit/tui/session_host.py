@@ -1,0 +1,226 @@
+"""The world behind the screen: a session in its own thread, and how the screen talks with it.
+
+Everything slow happens off the face's event loop: opening worlds, starting controllers, the physics itself.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from kit.controllers import ControllerFile
+from kit.run.pacing import Pacing
+from kit.run.view import Showing, View
+
+if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
+    from pathlib import Path
+
+    from kit.inspection.server import Door
+    from kit.run.recording import Recorder, Recording
+    from kit.run.runner import Runner
+    from kit.run.scenario import Place
+    from kit.run.session import Session
+    from kit.run.world_thread import LiveRun
+
+VIEW_INTERVAL: Final = 0.045
+"""Seconds between two views while the world runs: a little over twenty a second."""
+
+Wish: TypeAlias = "Callable[[Session], object]"
+
+
+class Running:
+    """At most one session at a time. ``on_view`` and ``on_trouble`` are called in other threads."""
+
+    def __init__(
+        self,
+        *,
+        on_view: Callable[[View], None],
+        on_trouble: Callable[[str], None],
+        seed: int = 0,
+        doors: Path | None = None,
+        records: bool = False,
+    ) -> None:
+        """``doors``: the folder of sockets through which other terminals look in; None: none does. ``records``:
+        whether the drive is recorded."""
+        self._on_view = on_view
+        self._on_trouble = on_trouble
+        self._seed = seed
+        self._doors = doors
+        self._records = records
+        self._recorder: Recorder | None = None
+        self._door: Door | None = None
+        self._session: Session | None = None
+        self._live: LiveRun | None = None
+        self._showing: Showing | None = None
+        self._shown = 0.0
+        self._beams = False
+        self._listener: Wish | None = None
+        self._is_closed = False
+        self._exchange = threading.Lock()
+        """Held while one world takes the place of another, or of none."""
+        self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._helper = threading.Thread(target=self._do_jobs, name="helper", daemon=True)
+        self._helper.start()
+
+    @property
+    def pacing(self) -> Pacing:
+        return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
+
+    def open(self, find: Callable[[], Place], controller: ControllerFile, *, paused: bool = False) -> None:
+        """Opens another world in place of the present one, which stays if that fails. ``paused``: it stands still."""
+
+        def job() -> None:
+            from kit.run.session import Session
+
+            session = Session(find(), seed=self._seed, watched=True)
+            self._record(session)
+            session.drive_with(controller)
+            session.runner.paused = paused
+            self._replace(session)
+
+        self._jobs.put(job)
+
+    def open_session(self, make: Callable[[], Session], factor: Callable[[Session], float]) -> None:
+        """Opens a world that makes its session by itself, at a speed of its own."""
+
+        def job() -> None:
+            session = make()
+            self._replace(session, factor(session))
+
+        self._jobs.put(job)
+
+    def wish(self, wish: Wish) -> None:
+        """Has something done to the session, in the world's thread, between two ticks."""
+        session, live = self._session, self._live
+        if session is not None and live is not None:
+            live.post(lambda runner: wish(session))
+
+    def drive_with(self, controller: ControllerFile) -> None:
+        """Another controller, in the world that is open by then."""
+        self._jobs.put(lambda: self.wish(lambda session: session.drive_with(controller)))
+
+    def set_factor(self, factor: float) -> None:
+        if self._live is not None:
+            self._live.set_factor(factor)
+
+    def set_paused(self, paused: bool) -> None:
+        if self._live is not None:
+            self._live.set_paused(paused)
+
+    def step(self) -> None:
+        if self._live is not None:
+            self._live.step()
+
+    def show_beams(self, shown: bool) -> None:
+        self._beams = shown
+        self.wish(lambda session: None)
+
+    def recording(self) -> Recording | None:
+        """The drive in the world that was opened last; None where nothing is recorded. To be asked after ``close``."""
+        return None if self._recorder is None else self._recorder.recording()
+
+    def listen(self, listener: Wish | None) -> None:
+        """Has the session shown to somebody else too, in the world's thread, as often as there are views."""
+        self._listener = listener
+        self.wish(lambda session: None)
+
+    def shut(self) -> None:
+        """Ends the world and its controller; another may be opened later. Does not wait."""
+
+        def job() -> None:
+            with self._exchange:
+                self._drop()
+
+        self._jobs.put(job)
+
+    def close(self) -> None:
+        """Ends the world and its controller, and waits for both; not for a world that is being opened."""
+        self._is_closed = True
+        self._jobs.put(None)
+        with self._exchange:
+            self._drop()
+
+    def _do_jobs(self) -> None:
+        while (job := self._jobs.get()) is not None and not self._is_closed:
+            try:
+                job()
+            except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
+                self._on_trouble(str(error))
+
+    def _record(self, session: Session) -> None:
+        """From the first tick on, for whoever wants to keep the drive."""
+        if self._records:
+            from kit.run.recording import Recorder
+
+            place = session.place
+            case = place.case.name if place.case is not None else None
+            self._recorder = Recorder(place.name, case, session.runner.simulation)
+            session.runner.observers.append(self._recorder)
+
+    def _replace(self, session: Session, factor: float | None = None) -> None:
+        with self._exchange:
+            if self._is_closed:
+                session.close()
+            else:
+                self._install(session, self.pacing.factor if factor is None else factor)
+
+    def _install(self, session: Session, factor: float) -> None:
+        from kit.run.world_thread import LiveRun
+
+        runner = session.runner
+        self._drop()
+        self._session, self._showing = session, Showing(session)
+        self._live = live = LiveRun(runner, factor=factor, on_change=self._changed)
+        runner.on_rate = lambda rate: self.set_factor(rate * runner.simulation.step_size)
+        if self._doors is not None:
+            from kit.inspection.server import open_door
+
+            name = (
+                session.place.title if session.place.name.endswith((".yaml", ".yml")) else session.place.name
+            )
+
+            def wake() -> None:
+                if runner.paused:  # nobody ticks: a visitor's words have to be looked at
+                    live.post(_nothing)
+
+            self._door = open_door(session.graph, self._doors, name, wake)
+            if self._door is not None:
+                runner.guests.append(self._door)
+        live.__enter__()
+        if runner.paused:  # nobody ticks, and yet it is to be seen
+            live.post(_nothing)
+
+    def _drop(self) -> None:
+        live, session, door = self._live, self._session, self._door
+        self._live = self._session = self._showing = self._door = None
+        if session is not None:
+            session.hang_up()  # or a controller that loops would have us wait for its deadline
+        if live is not None:
+            live.stop()
+        if door is not None:
+            door.close()
+        if session is not None:
+            session.close()
+
+    def _changed(self, runner: Runner) -> None:
+        """In the world's thread, after every stretch of ticks."""
+        showing, live, session = self._showing, self._live, self._session
+        if showing is None or live is None or session is None:
+            return
+        if live.failure is not None:
+            self._on_trouble(f"the world stopped: {live.failure}")
+        now = time.monotonic()
+        if runner.paused or now - self._shown >= VIEW_INTERVAL:
+            self._shown = now
+            session.look_around()
+            showing.beams = self._beams
+            self._on_view(showing.view())
+            if (listener := self._listener) is not None:
+                listener(session)
+
+
+def _nothing(runner: Runner) -> None:
+    """A job that only has the world look around."""

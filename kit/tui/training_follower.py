@@ -1,0 +1,171 @@
+"""A training behind the screen: its files read in one thread, its newest policy driving in another.
+
+The learner knows nothing of it: it writes its files whether somebody looks or not, and so is never slowed down.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:  # the learning side takes a moment to import: the frame is drawn first
+    from kit.learning.policies.demonstration import Demonstration, Moment
+    from kit.learning.training.events import Event
+    from kit.learning.training.run_status import Plan, Standing
+    from kit.learning.training.runs import Order, Run
+
+POLL_S: Final = 0.5
+"""Between two looks at the run's files, which may lie on a slow network drive."""
+HOLD_S: Final = 1.0
+"""How long the end of an episode stands still, to be read."""
+
+
+class Following:
+    """Callbacks are called in other threads."""
+
+    def __init__(
+        self,
+        run: Run,
+        *,
+        on_standing: Callable[[Standing], None],
+        on_moment: Callable[[Moment], None],
+        on_trouble: Callable[[str], None],
+    ) -> None:
+        self._run = run
+        self._on_standing = on_standing
+        self._on_moment = on_moment
+        self._on_trouble = on_trouble
+        self._told = ""
+        self._wishes: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._closed = threading.Event()
+        self._skipped = threading.Event()
+        self._case: str | None = None
+        self._kept = False
+        self._reader = threading.Thread(target=self._read, name="reader", daemon=True)
+        self._driver: threading.Thread | None = None
+
+    def start(self) -> None:
+        self._reader.start()
+
+    def ask(self, order: Order) -> None:
+        """Tells the learner, which obeys between two updates."""
+        self._wishes.put(lambda: self._run.ask(order))
+
+    def go_on(self) -> None:
+        """Starts a learner that goes on where the last one left off."""
+
+        def wish() -> None:
+            from kit.learning.training.worker import start
+
+            start(self._run)
+
+        self._wishes.put(wish)
+
+    def show_case(self, case: str | None) -> None:
+        """The case to drive from now on; None: one after the other."""
+        self._case = case
+        self.skip()
+
+    def skip(self) -> None:
+        """On to the next episode, now."""
+        self._skipped.set()
+
+    def close(self) -> None:
+        """Ends the looking, not the training."""
+        self._closed.set()
+        self._skipped.set()
+        self._wishes.put(None)
+        for thread in (self._reader, self._driver):
+            if thread is not None and thread.is_alive():
+                thread.join(timeout=2)
+
+    # The reader's thread
+
+    def _read(self) -> None:
+        from kit.learning.environment.tasks import UnknownTask
+        from kit.learning.training.algorithms import UnknownAlgorithm
+        from kit.learning.training.events import EventReader
+        from kit.learning.training.run_status import Logbook, plan_of
+        from kit.learning.training.runs import RunError
+
+        try:
+            plan = plan_of(self._run.config())
+        except (RunError, UnknownTask, UnknownAlgorithm) as error:
+            self._on_trouble(str(error))
+            return
+        logbook, reader, shown = Logbook(plan), EventReader(self._run.events_file), None
+        while not self._closed.is_set():
+            try:
+                # Asked first: whatever is written before the end is read below.
+                present = self._run.alive, self._run.asked()
+                new: list[Event] = list(reader.new())
+            except OSError as error:  # a network drive that is away comes back
+                self._tell(f"{self._run.folder}: {error.strerror}. Looking again.")
+            else:
+                for event in new:
+                    logbook.add(event)
+                self._kept = not present[0]
+                if new or present != shown:
+                    shown = present
+                    self._on_standing(logbook.standing(alive=present[0], order=present[1]))
+                if self._driver is None:
+                    self._begin_driving(plan)
+            self._do_wishes()
+
+    def _do_wishes(self) -> None:
+        """Waits for one, but not for long."""
+        from kit.learning.training.runs import RunError
+
+        try:
+            wish = self._wishes.get(timeout=POLL_S)
+        except Empty:
+            return
+        if wish is not None:
+            try:
+                wish()
+            except (RunError, OSError) as error:
+                self._on_trouble(str(error))
+
+    def _tell(self, trouble: str) -> None:
+        """Once."""
+        if trouble != self._told:
+            self._told = trouble
+            self._on_trouble(trouble)
+
+    def _begin_driving(self, plan: Plan) -> None:
+        self._driver = threading.Thread(target=self._drive, args=(plan,), name="driver", daemon=True)
+        self._driver.start()
+
+    # The driver's thread
+
+    def _drive(self, plan: Plan) -> None:
+        from kit.learning.policies.demonstration import Demonstration
+        from kit.learning.policies.policies import PolicyError
+        from kit.learning.training.runs import RunError
+
+        demonstration = Demonstration(self._run, greedy=plan.greedy)
+        while not self._closed.is_set():
+            self._skipped.clear()
+            demonstration.case = self._case
+            wait = POLL_S
+            try:
+                if demonstration.begin(kept=self._kept):
+                    self._drive_on(demonstration)
+                    wait = HOLD_S
+            except (PolicyError, RunError, OSError) as error:
+                self._tell(str(error))
+            self._skipped.wait(wait)
+
+    def _drive_on(self, demonstration: Demonstration) -> None:
+        """One episode, as fast as the robot would drive."""
+        due = time.monotonic()
+        self._on_moment(demonstration.moment())
+        while not demonstration.over:
+            due = max(due + demonstration.step_time, time.monotonic())
+            if self._skipped.wait(due - time.monotonic()) or self._closed.is_set():
+                return
+            demonstration.step()
+            self._on_moment(demonstration.moment())

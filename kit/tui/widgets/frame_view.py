@@ -1,0 +1,111 @@
+"""A widget that shows a frame of characters and repaints only what differs from the frame before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.color import Color as RichColor
+from rich.segment import Segment
+from rich.style import Style
+from textual.filter import LineFilter
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
+
+from kit.render.frame import Frame, diff
+from kit.render.roles import ANSI, Color, Ink, Palette, Role
+from kit.tui.textual_patches import crop_left
+
+
+class FrameView(Widget):
+    """Shows ``Frame``s in the colours of a palette. Does nothing while none is given."""
+
+    can_focus = False
+
+    def __init__(
+        self,
+        palette: Palette = ANSI,
+        *,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+        classes: str | None = None,
+    ) -> None:
+        super().__init__(id=id, classes=classes)
+        self._palette = palette
+        self._frame: Frame | None = None
+        self._strips: dict[int, Strip] = {}
+        self._styles: dict[tuple[int, int], Style | None] = {}
+
+    def on_mount(self) -> None:
+        crop_left(self.screen)
+
+    @property
+    def frame(self) -> Frame | None:
+        """What is shown."""
+        return self._frame
+
+    def show_frame(self, frame: Frame) -> bool:
+        """Shows a frame from now on; says whether anything looks different."""
+        spans = diff(self._frame, frame)
+        if self._frame is None or self._frame.shape != frame.shape:
+            self._strips.clear()
+        self._frame = frame
+        for span in spans:
+            self._strips.pop(span.row, None)
+        if spans:
+            self.refresh(*(Region(start, row, stop - start, 1) for row, start, stop in spans))
+        return bool(spans)
+
+    def show_nothing(self) -> None:
+        """No frame any more."""
+        if self._frame is not None:
+            self._frame = None
+            self._strips.clear()
+            self.refresh()
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """None: the palette is already what the terminal takes."""
+        return ()
+
+    def notify_style_update(self) -> None:
+        """The theme may have changed."""
+        super().notify_style_update()
+        self._strips.clear()
+        self._styles.clear()
+
+    def render_line(self, y: int) -> Strip:
+        strip = self._strips.get(y)
+        if strip is None:
+            strip = self._strips[y] = self._strip(y)
+        return strip
+
+    def _strip(self, y: int) -> Strip:
+        width = self.size.width
+        if self._frame is None or y >= self._frame.shape[0]:
+            return Strip([Segment(" " * width, self._style(0, 0))], width)
+        segments = [Segment(run.text, self._style(run.ink, run.paper)) for run in self._frame.runs(y)]
+        return Strip(segments, self._frame.shape[1]).adjust_cell_length(width, self._style(0, 0))
+
+    def _style(self, ink: int, paper: int) -> Style | None:
+        look = ink, paper
+        if look not in self._styles:
+            self._styles[look] = self._made_style(self._palette[Role(ink)], self._palette[Role(paper)])
+        return self._styles[look]
+
+    def _made_style(self, ink: Ink, paper: Ink) -> Style | None:
+        """None, which costs no bytes, for the terminal's own ink on its own paper."""
+        style = Style(
+            color=_rich(ink.color), bgcolor=_rich(paper.color), bold=ink.bold or None, dim=ink.dim or None
+        )
+        if not self.app.native_ansi_color:
+            style = self.rich_style + style
+        return style or None
+
+
+def _rich(color: Color) -> RichColor | None:
+    if isinstance(color, tuple):
+        return RichColor.from_rgb(*color)
+    return (
+        None
+        if color is None
+        else RichColor.parse(str(color) if isinstance(color, str) else f"color({color})")
+    )

@@ -1,0 +1,168 @@
+"""A lesson's scene as a widget: a world that runs for some seconds and then rests, the same each time it is shown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from textual.message import Message
+
+from kit.controllers import find
+from kit.render.scene import Scene as Picture
+from kit.run.view import View
+from kit.school.lessons.records import Scene
+from kit.tui.session_host import Running
+from kit.tui.theme import Look
+from kit.tui.widgets.world_view import WorldView
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kit.run.runner import Runner
+    from kit.run.session import Session
+    from kit.sim.simulation import Simulation
+
+TELEOP: Final = "teleop"
+
+
+class SceneView(WorldView):
+    """Shows one scene at a time. ``folder``: the student's controllers; ``doors``: where other terminals look in."""
+
+    class Moved(Message):
+        """There is a newer view."""
+
+    class Trouble(Message):
+        """The scene could not be opened; ``text`` says why."""
+
+        def __init__(self, text: str) -> None:
+            super().__init__()
+            self.text = text
+
+    DEFAULT_CSS = "SceneView { width: 1fr; height: 1fr; }"
+
+    def __init__(self, look: Look, folder: Path, doors: Path | None = None) -> None:
+        super().__init__(look.encoder, look.palette, id="scene")
+        self.view: View | None = None
+        """The newest; None before the first of a scene."""
+        self.scene: Scene | None = None
+        self._folder = folder
+        self._picture: Picture | None = None
+        self._announced = self._opening = False
+        self._behind = Running(on_view=self._view_arrived, on_trouble=self._trouble_arrived, doors=doors)
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether the student drives in it. Then it never rests."""
+        return self.scene is not None and self.scene.controller == TELEOP
+
+    @property
+    def is_resting(self) -> bool:
+        """Whether it has run for as long as it is to run."""
+        return (
+            self.scene is not None
+            and self.view is not None
+            and self.view.paused
+            and not self.by_hand
+            and self.view.time_s >= self.scene.seconds - 1e-6
+        )
+
+    def open(self, scene: Scene, *, still: bool) -> None:
+        """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
+        if self.scene is None or (scene.place, scene.case) != (self.scene.place, self.scene.case):
+            self.clear()  # not the place of the step before
+        self.scene, self.view, self._opening = scene, None, True
+        folder, by_hand = self._folder, self.by_hand
+
+        def make() -> Session:
+            """Called in the helper thread, which imports the physics while the words are on the screen already."""
+            from kit.run.scenario import find_place
+            from kit.run.session import Session
+
+            session = Session(find_place(scene.place, scene.case), seed=scene.seed, watched=True)
+            try:
+                if scene.controller:
+                    session.drive_with(find(scene.controller, folder))
+                    session.wait_until_driven()  # it drives from the first tick on, so that each time is the same
+            except BaseException:
+                session.close()
+                raise
+            runner = session.runner
+            if not by_hand:
+                runner.observers.append(_Rest(runner, round(scene.seconds / runner.simulation.step_size)))
+            runner.paused = still
+            self._opening = False
+            return session
+
+        self._behind.open_session(make, lambda session: 1.0)
+
+    def go(self) -> None:
+        """Lets it run."""
+        self._behind.set_paused(False)
+
+    def hold(self, held: bool) -> None:
+        """Stands still while something else is looked at."""
+        if self.view is not None and not self.is_resting:
+            self._behind.set_paused(held)
+
+    def again(self) -> None:
+        """The same from its first instant on, running."""
+        if self.scene is not None:
+            self.open(self.scene, still=False)
+
+    def shut(self) -> None:
+        """No scene any more."""
+        self.scene = self.view = None
+        self._behind.shut()
+
+    def press(self, messages: tuple[str, ...], strength: float) -> None:
+        """Hands driving keys to whoever listens in the scene."""
+        self._behind.wish(lambda session: session.keys.publish(messages, strength))
+
+    def draw(self) -> None:
+        """The newest view, as soon as the link has room."""
+        if self.view is not None:
+            self.offer(self._newest)
+
+    def on_unmount(self) -> None:
+        self._behind.close()
+
+    def _newest(self) -> Picture:
+        assert self._picture is not None  # nothing is offered before the first view
+        return self._picture
+
+    def _view_arrived(self, view: View) -> None:
+        """In the world's thread."""
+        if self._opening:  # still of the one before
+            return
+        self.view = view
+        self._picture = view.scene
+        if not self._announced:  # the newest wins: one announcement at a time is enough
+            self._announced = True
+            self.post_message(self.Moved())
+
+    def _trouble_arrived(self, text: str) -> None:
+        if self._opening:  # the one before would run on
+            self._behind.shut()
+        self.post_message(self.Trouble(text))
+
+    def on_scene_view_moved(self) -> None:
+        self._announced = False
+        if self.screen.is_active:
+            self.draw()
+
+
+class _Rest:
+    """Watches a runner, and has it stand still from a tick on."""
+
+    def __init__(self, runner: Runner, ticks: int) -> None:
+        self._runner = runner
+        self._ticks = ticks
+
+    def accepted(self, topic: str, message: object) -> None:
+        """What is said does not count."""
+
+    def called(self, service: str, *arguments: object) -> None:
+        """Likewise."""
+
+    def ticked(self, simulation: Simulation) -> None:
+        if simulation.tick >= self._ticks:
+            self._runner.pause()

@@ -1,0 +1,44 @@
+"""Stacked columns as a widget: how the episodes of each batch ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from textual import events
+
+from kit.render.roles import ANSI, Palette
+from kit.render.stacked_chart import Part, Shares, draw_shares
+from kit.tui.widgets.frame_view import FrameView
+
+
+class SharesView(FrameView):
+    """Shows shares; give it new data no more often than people look, twice a second at most."""
+
+    DEFAULT_CSS = "SharesView { width: 1fr; height: 10; }"
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        palette: Palette = ANSI,
+        *,
+        margin: int = 0,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+    ) -> None:
+        super().__init__(palette, id=id)
+        self._parts = parts
+        self._margin = margin
+        self._shares: Shares | None = None
+
+    def show(self, shares: Shares) -> bool:
+        """Draws these shares from now on; says whether anything looks different."""
+        self._shares = shares
+        return self._redraw()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._redraw()
+
+    def _redraw(self) -> bool:
+        columns, rows = self.size
+        if not columns or not rows or self._shares is None:
+            return False
+        return self.show_frame(draw_shares(self._shares, self._parts, columns, rows, self._margin))

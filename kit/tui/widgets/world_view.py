@@ -1,0 +1,166 @@
+"""The world as a widget: shows scenes, can be moved over them, and never outruns the link."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from textual import events
+from textual.message import Message
+from textual.timer import Timer
+
+from kit.render.camera import Camera
+from kit.render.encode import Braille, Encoder
+from kit.render.painter import Painter
+from kit.render.roles import ANSI, Palette
+from kit.render.scene import FloatArray, Scene
+from kit.tui.frame_throttle import FrameCredit
+from kit.tui.textual_patches import ask_cursor
+from kit.tui.widgets.frame_view import FrameView
+
+
+class WorldView(FrameView):
+    """Shows scenes. It fits them to its size until it is told to zoom, pan or follow.
+
+    ``offer`` paces itself: give it what makes the newest scene as often as there is news, and it draws as
+    many as the terminal keeps up with.
+    """
+
+    DEFAULT_CSS = "WorldView { width: 1fr; height: 1fr; }"
+
+    def __init__(
+        self,
+        encoder: Encoder | None = None,
+        palette: Palette = ANSI,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        id: str | None = None,  # noqa: A002 - Textual's own name
+        classes: str | None = None,
+    ) -> None:
+        super().__init__(palette, id=id, classes=classes)
+        self.credit = FrameCredit()
+        self._painter = Painter(encoder or Braille())
+        self._clock = clock
+        self._scene: Scene | None = None
+        self._camera: Camera | None = None
+        self._fitted: FloatArray | None = None
+        self._free = False
+        self._followed: int | None = None
+        self._offered: Callable[[], Scene] | None = None
+        self._later: Timer | None = None
+
+    @property
+    def camera(self) -> Camera | None:
+        """What is looked at; None before the first scene."""
+        return self._camera
+
+    @property
+    def followed(self) -> int | None:
+        """The number of the robot that is followed, from 0."""
+        return self._followed
+
+    def show(self, scene: Scene) -> bool:
+        """Draws a scene, now; says whether anything looks different. The same scene again costs nothing."""
+        if scene is self._scene:
+            return False
+        self._scene = scene
+        return self._redraw()
+
+    def clear(self) -> None:
+        """Shows nothing until the next scene, which is fitted anew."""
+        self._scene = self._camera = self._fitted = self._offered = None
+        self._free, self._followed = False, None
+        self.show_nothing()
+
+    def offer(self, make_scene: Callable[[], Scene]) -> None:
+        """Draws what ``make_scene`` gives as soon as the link has room. Of several offers made meanwhile only
+        the last is asked for its scene."""
+        self._offered = make_scene
+        self._draw_offered()
+
+    def fit(self) -> None:
+        """Shows all there is, and stops following."""
+        self._free, self._followed, self._fitted = False, None, None
+        self._redraw()
+
+    def zoom(self, steps: int) -> None:
+        """Nearer, or farther if negative: about the middle, or about the robot that is followed."""
+        self._move(lambda camera: camera.zoomed(steps))
+
+    def pan(self, columns: int, rows: int) -> None:
+        """Looks this many characters further to the right and up, and stops following."""
+        self._followed = None
+        self._move(lambda camera: camera.panned(columns, rows))
+
+    def follow(self, robot: int | None = 0) -> None:
+        """Keeps a robot in the calm middle of the picture; None stops that."""
+        self._followed = robot
+        self._move(lambda camera: camera)
+
+    def on_mount(self) -> None:
+        self.app.message_signal.subscribe(self, self._heard, immediate=True)
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._redraw()
+
+    def _move(self, change: Callable[[Camera], Camera]) -> None:
+        self._free = True
+        if self._camera is not None:
+            self._camera = change(self._camera)
+            self._redraw()
+
+    def _redraw(self) -> bool:
+        columns, rows = self.size
+        if self._scene is None or not columns or not rows:
+            return False
+        self._camera = self._aimed(self._scene, columns, rows)
+        return self.show_frame(self._painter.paint(self._scene, self._camera))
+
+    def _aimed(self, scene: Scene, columns: int, rows: int) -> Camera:
+        camera = self._camera
+        if camera is None or not self._free:
+            # Anew only for other walls or another size: a scene's bounds may move with what moves in it.
+            if (
+                camera is None
+                or self._fitted is not scene.walls
+                or (camera.columns, camera.rows) != (columns, rows)
+            ):
+                camera = Camera.fit(scene.bounds, columns, rows)
+                self._fitted = scene.walls
+            return camera
+        camera = camera.resized(columns, rows)
+        robots = scene.robots
+        if self._followed is not None and self._followed < len(robots):
+            robot = robots[self._followed]
+            camera = camera.following(*robot.pose.point(*robot.extent.middle))
+        return camera
+
+    def _draw_offered(self) -> None:
+        if self._offered is None or self._later is not None:
+            return
+        now = self._clock()
+        wait = self.credit.wait(now)
+        if wait > 0:
+            self._later = self.set_timer(wait, self._look_again)
+            return
+        make_scene, self._offered = self._offered, None
+        self.credit.drawn(now)
+        if self.show(make_scene()):
+            self.call_after_refresh(self._drawn)
+
+    def _heard(self, message: Message) -> None:
+        """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
+        if isinstance(message, events.CursorPosition):
+            self.credit.answered(self._clock())
+            if self._later is not None:
+                self._later.stop()
+            self._look_again()
+
+    def _look_again(self) -> None:
+        self._later = None
+        self._draw_offered()
+
+    def _drawn(self) -> None:
+        """The frame has gone out to the terminal."""
+        if ask_cursor(self.app):
+            self.credit.sent(self._clock())

@@ -1,0 +1,188 @@
+"""Ways and rides: short, clear of walls, gentle; and goals that cannot be reached are said to be so."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kit.fields.controller_setup import Course
+from kit.fields.occupancy_grid import Floor, wall_depth
+from kit.fields.planner import Size, Unreachable, Ways, evenly, sampled
+from kit.fields.trajectory import TICK, Comfort, Follower, Ride, plan_ride, twist_between
+from kit.geometry import Pose, wrap_angle
+from kit.run.scenario import Place, find_place
+from kit.world.catalogue import all_maps
+
+LIMITS = Comfort()
+SMALL = Size(0.14, 0.14)
+CASES = [
+    pytest.param(card.name, case.name, id=case.name)
+    for card in all_maps()
+    for case in card.cases
+    if card.robot != "tricycle"  # which has another drive
+]
+PAIRS = [
+    pytest.param(card.name, case.name, id=case.name)
+    for card in all_maps()
+    for case in card.cases
+    if card.partner
+]
+
+
+def course(place: Place) -> Course:
+    assert place.case is not None
+    return Course.open(place.world.file, place.partners, place.case.target, place.case.target_radius)
+
+
+def room(*walls: tuple[float, float, float, float]) -> Floor:
+    around = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
+    return Floor.of(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
+
+
+@pytest.mark.parametrize(("name", "case"), CASES)
+def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str, case: str) -> None:
+    place = find_place(name, case)
+    assert place.case is not None
+    here = course(place)
+    ride = here.ride(place.starts)
+    for first, start in zip(ride.poses[0], place.starts, strict=True):
+        assert math.dist(first[:2], start[:2]) < 0.06
+        assert abs(wrap_angle(first[2] - start.theta)) < 0.06
+    for robot, track in zip(here.robots, ride.tracks(), strict=True):
+        assert sampled(here.floor, here.floor.clearance, track).min() > robot.reach - 0.5 * here.floor.cell
+    assert math.dist(ride.poses[-1, :, :2].mean(axis=0), place.case.target) < 0.02
+
+
+@pytest.mark.parametrize(("name", "case"), PAIRS)
+def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) -> None:
+    place = find_place(name, case)
+    ride = course(place).ride(place.starts)
+    left, right = ride.tracks()
+    assert np.hypot(*(left - right).T) == pytest.approx(np.full(len(left), 0.3), abs=0.02)
+    commands = np.array(
+        [
+            [twist_between(Pose(*now), Pose(*then), TICK) for now, then in zip(one, other, strict=True)]
+            for one, other in zip(ride.poses[:-1].tolist(), ride.poses[1:].tolist(), strict=True)
+        ]
+    )
+    speed, turn = commands[..., 0], commands[..., 1]
+    assert speed.min() > -1e-3
+    assert speed.max() <= LIMITS.speed * 1.03
+    assert np.abs(turn).max() <= LIMITS.turn_rate * 1.1
+    assert np.abs(np.diff(speed, axis=0)).max() / TICK <= LIMITS.acceleration * 1.6
+    jerk = np.diff(speed, 2, axis=0) / TICK**2
+    assert np.abs(jerk).max() <= 2 * LIMITS.acceleration / LIMITS.easing * 2
+
+
+def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
+    floor = room((2, 0, 2, 3))
+    ways = Ways.to(floor, (3.5, 0.5), SMALL, (0.5, 0.5))
+    ways.check((0.5, 0.5))
+    way = ways.way((0.5, 0.5))
+    length = float(np.hypot(*np.diff(way, axis=0).T).sum())
+    shortest = 2 * math.hypot(1.5, 2.5)
+    assert shortest < length < 1.12 * shortest
+    assert sampled(floor, floor.clearance, way).min() >= 0.125
+
+
+@pytest.mark.parametrize(
+    ("walls", "size", "said"),
+    [
+        ([(2, 0, 2, 4)], SMALL, "walls close it off"),
+        ([(2, 0, 2, 1.9), (2, 2.1, 2, 4)], SMALL, "0.28 m wide: where it is narrowest, the widest leaves 0.2"),
+        ([(2, 0, 2, 1.8), (2, 2.2, 2, 4)], Size(0.25, 0.14, "the two"), "wide enough for the two, 0.50 m wide"),
+    ],
+)  # fmt: skip
+def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
+    walls: list[tuple[float, float, float, float]], size: Size, said: str
+) -> None:
+    ways = Ways.to(room(*walls), (3.5, 2.0), size, (0.5, 2.0))
+    with pytest.raises(Unreachable, match=said):
+        ways.check((0.5, 2.0))
+
+
+def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
+    floor = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
+    with pytest.raises(Unreachable, match="lies inside one"):
+        Ways.to(floor, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+    with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too near to a wall for the robot"):
+        Ways.to(floor, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+
+
+def test_how_deep_inside_a_wall() -> None:
+    floor = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
+    faces = floor.faces()
+    assert wall_depth(floor, faces, 2.5, 2.6) == pytest.approx(0.4)
+    assert wall_depth(floor, faces, 2.01, 2.6) == pytest.approx(0.01)
+    for x, y in ((0.5, 0.5), (2.0, 2.6), (1.99, 2.6), (3.99, 1.0)):
+        assert wall_depth(floor, faces, x, y) == 0
+
+
+def test_who_stands_elsewhere_lines_up_first() -> None:
+    way = evenly(np.array([(0.0, 0.0), (2.0, 0.0)]), 0.03)
+    ride = plan_ride(way, [Pose(0, 0.15, 0), Pose(0.4, -0.6, 2.0)], 0.3)
+    assert ride.poses[0, 1] == pytest.approx([0.4, -0.6, 2.0])
+    assert ride.poses[-1, 1, :2] == pytest.approx([2, -0.15], abs=1e-6)
+    first = int(np.argmax(ride.poses[:, 0, 0] > 1e-6))
+    assert ride.poses[first - 2, 1] == pytest.approx(
+        [0, -0.15, 0], abs=0.01
+    )  # there before the left one goes
+    assert np.hypot(*np.diff(ride.poses[:, 1, :2], axis=0).T).max() < LIMITS.speed * TICK * 1.05
+
+
+@given(st.floats(-0.05, 0.05), st.floats(-0.05, 0.05), st.floats(-0.4, 0.4))
+def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> None:
+    way = evenly(np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 0.5)]), 0.03)
+    ride = plan_ride(way, [Pose()], 0.3)
+    follower, pose = Follower(ride), Pose(x, y, theta)
+    for _ in range(3 * len(ride.poses)):
+        (command,) = follower.commands([pose])
+        half = pose.compose(Pose(0, 0, 0.5 * command.turn * TICK))
+        step = command.forward * TICK
+        pose = Pose(
+            pose.x + step * math.cos(half.theta),
+            pose.y + step * math.sin(half.theta),
+            pose.theta + command.turn * TICK,
+        )
+        if follower.is_over:
+            break
+    assert follower.is_over
+    assert math.dist(pose[:2], (3.0, 0.5)) < 0.03
+
+
+def test_who_falls_behind_is_waited_for() -> None:
+    ride = Ride(np.zeros((50, 2, 3)) + np.linspace(0, 1, 50)[:, None, None] * (1, 0, 0))
+    follower = Follower(ride)
+    for _ in range(10):
+        follower.commands([Pose(0.0, 0, 0), Pose(-0.5, 0, 0)])
+    assert follower.tick == 0
+
+
+@given(st.floats(-0.2, 0.2), st.floats(-0.3, 0.3), st.floats(-3, 3))
+def test_a_twist_leads_where_it_should(forward: float, turn: float, theta: float) -> None:
+    here = Pose(1, 2, theta)
+    radius = forward / turn if abs(turn) > 1e-6 else None
+    step = (
+        Pose(forward, 0, 0)
+        if radius is None
+        else Pose(radius * math.sin(turn), radius * (1 - math.cos(turn)), turn)
+    )
+    found = twist_between(here, here.compose(step), 1.0)
+    assert found.forward == pytest.approx(forward, abs=1e-6)
+    assert wrap_angle(found.turn - (turn if radius is not None else 0.0)) == pytest.approx(0, abs=1e-6)
+
+
+def test_the_robots_of_a_course() -> None:
+    robots = course(find_place("pair_turn")).robots
+    assert [robot.commands for robot in robots] == ["/left/cmd_vel", "/right/cmd_vel"]
+    assert [robot.odometry for robot in robots] == ["/left/odom", "/right/odom"]
+    assert [robot.half_width for robot in robots] == pytest.approx([0.085, 0.085])
+
+
+def test_a_robot_with_another_drive_is_refused() -> None:
+    with pytest.raises(LookupError, match="no DiffDrive"):
+        course(find_place("depot"))

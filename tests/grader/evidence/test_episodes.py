@@ -1,0 +1,190 @@
+"""Running a program: the world is ours, the clock is ours, and what is measured is what happened."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grader.assignment import Assignment, Shift, Trial
+from grader.checks.contract import Check
+from grader.checks.drives import CHECKS, Band, Topic, Topics
+from grader.evidence.drive_record import Drive
+from grader.evidence.episodes import Order, run, shifted
+from kit.controllers import find
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import GRADER
+from kit.run.recording import rerun
+from kit.run.scenario import find_place
+from tests.grader.conftest import FORWARD
+
+TURN = Trial(
+    "turn", find_place("turn"), 3.0, (1,), (), Shift(0.05, 0.05, 0.2), None, True, frozenset({"move_model"})
+)
+
+
+def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> Drive:
+    file = folder / "controller.py"
+    file.write_text(source)
+    return run(Order(trial, seed, "turn, seed 1", False), file, limits=GRADER, level=Level.LIMITED)
+
+
+@pytest.fixture(scope="module")
+def forward(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    return drive(tmp_path_factory.mktemp("forward"), FORWARD)
+
+
+def measure(name: str, seen: Drive, params: object | None = None) -> float:
+    check: Check = CHECKS[name]
+    return check.measure(seen, check.params() if params is None else params)
+
+
+def test_the_recording_runs_again_to_the_bit(forward: Drive) -> None:
+    again = rerun(forward.recording, forward.place.world)
+    assert np.array_equal(again.poses, forward.recording.poses)
+
+
+def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: Drive) -> None:
+    assert drive(tmp_path, FORWARD).fingerprint == forward.fingerprint
+    assert drive(tmp_path, FORWARD, seed=2).fingerprint != forward.fingerprint
+
+
+def test_a_seed_shifts_the_start_within_its_bounds() -> None:
+    home = TURN.home()
+    starts = [shifted(TURN, seed) for seed in range(50)]
+    assert len({start.x for start in starts}) == 50
+    assert all(abs(start.x - home.x) <= 0.05 and abs(start.theta - home.theta) <= 0.2 for start in starts)
+    assert shifted(dataclasses.replace(TURN, shift=Shift()), 3) == home
+
+
+def test_what_a_drive_measures(forward: Drive) -> None:
+    assert forward.outcome.startswith("not reached")
+    assert measure("runs", forward) == 1.0
+    assert measure("reached", forward) == 0.0
+    assert measure("in_time", forward) == math.inf
+    assert measure("moves", forward) == pytest.approx(0.3 * 2.8, abs=0.06)
+    assert measure("rate", forward) == pytest.approx(0.0, abs=0.05)
+    assert measure("rate", forward, Topic("/cmd_vel", 20.0)) == pytest.approx(0.5, abs=0.05)
+    assert measure("rate", forward, Topic("/nowhere", 20.0)) == math.inf
+    assert measure("smooth", forward) == 0.0
+    assert measure("topics", forward) == 1.0
+    assert measure("topics", forward, Topics(("/cmd_vel std_msgs/msg/String", "/cmd_vel"))) == 0.5
+    assert measure("bumps", forward) == 0.0
+    assert measure("top_speed", forward) == pytest.approx(0.3, abs=0.01)
+    assert measure("obeys", forward) == 0.0
+    assert measure("short_way", forward) == math.inf
+    assert 0.1 < measure("approach", forward) < 0.9
+    nearest = measure("clearance", forward)
+    assert 0.0 < nearest < 0.5
+    assert measure("keeps_distance", forward, Band(nearest - 0.01, 10.0)) == 1.0
+    assert measure("keeps_distance", forward, Band(5.0, 10.0)) == 0.0
+
+
+def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_path: Path) -> None:
+    still = drive(
+        tmp_path, "import rclpy\nfrom rclpy.node import Node\nrclpy.init()\nrclpy.spin(Node('still'))\n"
+    )
+    for name, check in CHECKS.items():
+        assert len(check.feedback) > 30, name
+        said = check.feedback.format(actual="1", full="2", where="here", passed=0, count=1)
+        assert "{" not in said
+        assert isinstance(measure(name, still), float)
+    for name in ("reached", "in_time", "approach", "moves", "smooth", "short_way", "rate", "topics"):
+        assert CHECKS[name].anchors.share(measure(name, still)) == 0.0, name
+
+
+def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
+    trial = dataclasses.replace(TURN, place=find_place("simple"), time_s=30.0, shift=Shift())
+    seen = drive(tmp_path, find("avoid").file.read_text(), trial)
+    assert seen.score.reached_s is not None
+    assert seen.seconds == pytest.approx(seen.score.reached_s, abs=0.02)
+    assert "#" in seen.picture()
+    assert measure("reached", seen) == 1.0
+    assert measure("approach", seen) == 1.0
+    assert measure("short_way", seen) > 1.0
+
+
+@pytest.mark.parametrize("speed", [5.0, 20.0, 500.0])
+def test_no_speed_is_too_high_to_be_measured(tmp_path: Path, speed: float) -> None:
+    seen = drive(tmp_path, FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}"))
+    assert measure("top_speed", seen) > 4.9
+    assert CHECKS["top_speed"].anchors.share(measure("top_speed", seen)) == 0.0
+
+
+CALLS_HOME = (
+    FORWARD
+    + """
+from flatland_msgs.srv import MoveModel
+from geometry_msgs.msg import Pose2D
+
+class Forward(Forward):
+    def __init__(self):
+        super().__init__()
+        home = self.declare_parameter("home", [0.0, 0.0, 0.0]).value
+        model = self.declare_parameter("model", "serp").value
+        self.client = self.create_client(MoveModel, "/move_model")
+        dx = DX
+        pose = Pose2D(x=home[0] + dx, y=home[1], theta=home[2])
+        self.create_timer(2.0, lambda: self.client.call_async(MoveModel.Request(name=model, pose=pose)))
+"""
+)
+
+
+def test_a_robot_may_be_sent_home_and_nowhere_else(tmp_path: Path) -> None:
+    home = drive(tmp_path, CALLS_HOME + "DX = 0.0\n")
+    assert home.failure is None
+    assert home.refused == ()
+    jump = np.abs(np.diff(home.track[:, 1])).max()
+    assert jump > 0.3
+    assert measure("top_speed", home) == pytest.approx(0.3, abs=0.05), "sent home, not driven"
+    away = drive(tmp_path, CALLS_HOME + "DX = 0.001\n")
+    assert away.refused == ("move_model",)
+    assert np.abs(np.diff(away.track[:, 1])).max() < 0.1
+    forbidden = dataclasses.replace(TURN, services=frozenset())
+    assert drive(tmp_path, CALLS_HOME + "DX = 0.0\n", forbidden).refused == ("move_model",)
+
+
+def test_a_program_that_stops_the_clock_does_not_stop_it(tmp_path: Path) -> None:
+    source = FORWARD.replace(
+        "        self.create_timer",
+        "        from std_srvs.srv import Empty\n"
+        "        self.create_client(Empty, '/pause').call_async(Empty.Request())\n"
+        "        self.create_timer",
+    )
+    seen = drive(tmp_path, source)
+    assert seen.steps == 300
+    assert seen.refused == ("pause",)
+
+
+def test_noise_is_the_grader_s(tmp_path: Path) -> None:
+    source = FORWARD.replace(
+        "        self.create_timer",
+        "        from sensor_msgs.msg import LaserScan\n"
+        "        self.create_subscription(LaserScan, 'static_laser', lambda s: print(s.ranges[45]), 10)\n"
+        "        self.create_timer",
+    )
+    readings = {}
+    for noise in (0.0, 0.3):
+        trial = dataclasses.replace(TURN, noise=noise, shift=Shift())
+        readings[noise] = np.array([float(line) for line in drive(tmp_path, source, trial).printed])
+    steady = np.abs(np.diff(readings[0.0], 2))
+    assert steady.max() < 0.05
+    assert np.abs(np.diff(readings[0.3], 2)).max() > 0.2
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [("import rclpy\n1/0\n", 2), ("def main(:\n", 1), (FORWARD.replace("x=SPEED", "x='a'"), 13)],
+)
+def test_a_program_that_fails_says_where(tmp_path: Path, source: str, line: int) -> None:
+    seen = drive(tmp_path, source)
+    assert seen.failure is not None
+    assert seen.failure.line == line
+    assert seen.picture() == "" or "#" in seen.picture()
+
+
+def test_an_assignment_knows_its_trials(quick: Assignment) -> None:
+    assert quick.trial("turn").name == "turn"

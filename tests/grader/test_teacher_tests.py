@@ -1,0 +1,160 @@
+"""A teacher's own tests earn points, say what they mean, and are never taken from what lies around."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.cohort.gradebook import rows
+from grader.cohort.queue import Queue, prepare
+from grader.cohort.work import work
+from grader.reading import read
+from grader.result import Result, Status, Test, Verdict, Visibility
+from grader.session import Terms, grade
+from grader.submission import Submission
+from grader.teacher_tests import declared
+from kit.host.sandbox.confinement import Level
+from kit.world.problems import WorldError
+from tests.grader.conftest import FORWARD, QUICK, write_assignment
+from tests.grader.test_grading import run_pytest
+
+DESK = Terms(Level.LIMITED)
+
+OWN = '''
+import pytest
+
+@pytest.mark.points(2)
+def test_it_drives(grading):
+    """It stands still."""
+    (drive,) = grading.evidence("moves")
+    assert drive.score.distance_m > 0.5
+
+@pytest.mark.points(4, visibility="after_due", hints=["Look left.", "Turn."])
+def test_it_turns(grading):
+    """The robot never turns."""
+    (drive,) = grading.evidence("moves")
+    assert abs(drive.track[:, 2] - drive.track[0, 2]).max() > 0.5
+
+@pytest.mark.points(3)
+def test_it_says_why(grading):
+    (drive,) = grading.evidence("moves")
+    assert drive.steps > 10_000, f"only {drive.steps} ticks"
+
+@pytest.mark.points(1)
+@pytest.mark.parametrize("metres", [0.1, 0.2, 50.0, 60.0])
+def test_it_comes_far(grading, metres):
+    """Farther."""
+    assert grading.evidence("moves")[0].score.distance_m > metres
+
+@pytest.mark.points(1)
+def test_for_another_day(grading):
+    pytest.skip("Later.")
+'''
+
+
+def folder_with(tmp_path: Path, own: str, sheet: str = QUICK + "tests: [test_own.py]\n") -> Path:
+    folder = write_assignment(tmp_path / "q", sheet)
+    (folder / "test_own.py").write_text(own)
+    return folder
+
+
+def graded(folder: Path) -> tuple[Result, dict[str, Test]]:
+    submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    result = grade(read(folder), submission, DESK)
+    return result, {test.id: test for test in result.tests}
+
+
+def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
+    folder = folder_with(tmp_path, OWN)
+    result, tests = graded(folder)
+    assert read(folder).max_points == result.max_points == 6 + 11
+    drives, turns, says, far = (
+        tests[f"test_it_{name}"] for name in ("drives", "turns", "says_why", "comes_far")
+    )
+    assert (drives.status, drives.points, drives.title) == (Status.PASS, 2.0, "It drives")
+    assert (turns.status, turns.points, turns.rationale) == (Status.FAIL, 0.0, "The robot never turns.")
+    assert (turns.visibility, turns.hints) == (Visibility.AFTER_DUE, ("Look left.", "Turn."))
+    assert (says.status, says.rationale) == (Status.FAIL, "only 400 ticks")
+    assert (far.status, far.points, far.rationale) == (Status.PARTIAL, 0.5, "Farther.")
+    assert tests["test_for_another_day"].status is Status.SKIPPED
+    assert "assert" not in "".join(test.rationale for test in tests.values()), "no test's source is told"
+    assert graded(folder)[0].tests == result.tests
+
+
+@pytest.mark.parametrize("body", ["raise KeyError('ours')", "grading.evidence('nothing')", "import nowhere"])
+def test_one_that_breaks_costs_nobody_anything(tmp_path: Path, body: str) -> None:
+    own = f"import pytest\n@pytest.mark.points(2)\ndef test_ours(grading):\n    {body}\n"
+    result, tests = graded(folder_with(tmp_path, own))
+    assert tests["test_ours"].status is Status.GRADER_ERROR
+    assert tests["test_ours"].log
+    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+
+
+def test_a_file_that_cannot_be_loaded_is_the_graders_fault(tmp_path: Path) -> None:
+    own = "import nowhere, pytest\n@pytest.mark.points(2)\ndef test_ours(grading): pass\n"
+    assert graded(folder_with(tmp_path, own))[1]["test_ours"].status is Status.GRADER_ERROR
+
+
+def test_what_is_not_named_is_not_run(tmp_path: Path) -> None:
+    """Whoever hands in may work in the assignment's folder."""
+    marker = tmp_path / "ran"
+    own = f"open({str(marker)!r}, 'w')\nimport pytest\n@pytest.mark.points(9)\ndef test_free(): pass\n"
+    result, tests = graded(folder_with(tmp_path, own, QUICK))
+    assert set(tests) == {"runs", "moves", "reached"}
+    assert result.max_points == 6
+    assert not marker.exists()
+
+
+@pytest.mark.parametrize(
+    ("own", "sheet", "said"),
+    [
+        (OWN, QUICK + "tests: [own.py]\n", "must be a file test_"),
+        (OWN, QUICK + "tests: [test_none.py]\n", "must be a file test_"),
+        ("def test_x(:\n", QUICK + "tests: [test_own.py]\n", "test_own.py"),
+        ("@mark.points(1 + 1j)\ndef test_x(): pass\n", QUICK + "tests: [test_own.py]\n", "test_own.py:1"),
+        ("@mark.points(-1)\ndef test_x(): pass\n", QUICK + "tests: [test_own.py]\n", "a number from 0"),
+        ("@mark.points(1, weight=2)\ndef test_x(): pass\n", QUICK + "tests: [test_own.py]\n", "visibility"),
+    ],
+)
+def test_a_teachers_mistake_is_told_with_its_place(tmp_path: Path, own: str, sheet: str, said: str) -> None:
+    with pytest.raises(WorldError, match=said) as caught:
+        read(folder_with(tmp_path, own, sheet))
+    assert "assignment.yaml:" in str(caught.value)
+
+
+def test_marks_are_read_without_running_anything(tmp_path: Path) -> None:
+    file = tmp_path / "test_x.py"
+    file.write_text(
+        "raise SystemExit\n@pytest.mark.points(2.5)\ndef test_a_b(): 'Say so.'\ndef test_c(): pass\n"
+    )
+    assert [(each.title, each.points, each.feedback) for each in declared(file)] == [
+        ("A b", 2.5, "Say so."),
+        ("C", 0.0, ""),
+    ]
+
+
+def test_a_cohort_counts_them(tmp_path: Path) -> None:
+    queue = Queue(tmp_path / "queue")
+    handed = tmp_path / "in"
+    handed.mkdir()
+    (handed / "ada.py").write_text(FORWARD)
+    (handed / "link.py").symlink_to("/etc/passwd")
+    prepare(queue, handed, read(folder_with(tmp_path, OWN)), Terms(Level.LIMITED, may_fall=False))
+    work(queue, *queue.waiting())
+    ada, link = rows(queue)
+    assert (ada.max_points, link.max_points) == (17.0, 17.0)
+    assert (ada.tests["test_it_drives"], ada.tests["test_it_turns"]) == (2.0, 0.0)
+
+
+def test_the_plugin_gives_them_their_points_too(tmp_path: Path) -> None:
+    file = tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    code, text, report = run_pytest(folder_with(tmp_path, OWN), file)
+    assert code == 1, text
+    points = {
+        case.attrib["name"]: {each.attrib["name"]: each.attrib["value"] for each in case.iter("property")}
+        for case in report.iter("testcase")
+    }
+    assert points["test_it_drives"] == {"points": "2", "max_points": "2"}
+    assert points["test_it_turns"] == {"points": "0", "max_points": "4"}

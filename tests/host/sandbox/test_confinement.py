@@ -1,0 +1,496 @@
+"""What a locked-in program cannot do, on every level that this machine allows, and what it still can.
+
+Each attack is a function that returns 1 if it got what it wanted. A refusal is an OSError, and 0.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import os
+import struct
+import subprocess
+import tempfile
+import textwrap
+import time
+from array import array
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from kit.controllers import find
+from kit.host.failure import FailureKind, GuestError
+from kit.host.node_process import Guest
+from kit.host.sandbox import landlock, seccomp
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.limits import MIB
+from kit.host.sandbox.probe import Rung, highest, probe
+from kit.host.student_functions import StudentFunctions
+from kit.msg.geometry_msgs import Twist
+from kit.msg.sensor_msgs import LaserScan
+from kit.ros.graph.graph import Graph
+from tests.host.conftest import LINUX, QUICK, Student
+
+
+def above(file: Path) -> list[Path]:
+    """The folders that somebody else must be able to enter to read a test's file; with xdist one more."""
+    return list(itertools.takewhile(lambda folder: folder != Path(tempfile.gettempdir()), file.parents))
+
+
+@cache
+def _rungs() -> tuple[Rung, ...]:
+    return probe()
+
+
+@pytest.fixture(params=list(Level)[1:], ids=lambda level: f"L{level}")
+def level(request: pytest.FixtureRequest) -> Level:
+    """Every level that locks in, where it can be had."""
+    wanted: Level = request.param
+    rung = _rungs()[wanted]
+    if not rung.is_available:
+        pytest.skip(rung.reason)
+    return wanted
+
+
+ATTACKS = {
+    "read a file outside": "return len(open(secret).read())",
+    "list a folder outside": "return len(os.listdir(os.path.dirname(secret)))",
+    "read the passwords' file": "return len(open('/etc/passwd').read())",
+    "read through a link": "os.symlink(secret, 'link'); return len(open('link').read())",
+    "read through a hard link": "os.link(secret, 'link'); return len(open('link').read())",
+    "write a file outside": "open(secret, 'a').write('x'); return 1",
+    "make a file outside": "open(secret + '.new', 'w'); return 1",
+    "make a file in its own folder": "open(os.path.dirname(__file__) + '/new', 'w'); return 1",
+    "change its own source": "open(__file__, 'a').write('x'); return 1",
+    "make a file in /tmp": "open('/tmp/new-of-a-test', 'w'); return 1",
+    "make a file in shared memory": "open('/dev/shm/new-of-a-test', 'w'); return 1",
+    "shorten a file outside": "os.truncate(secret, 0); return 1",
+    "remove a file outside": "os.unlink(secret); return 1",
+    "rename a file outside": "os.rename(secret, secret + '2'); return 1",
+    "change a file's rights": "os.chmod(secret, 0o777); return 1",
+    "change a file's time": "os.utime(secret, (0, 0)); return 1",
+    "change a file's owner": "os.chown(secret, os.getuid(), os.getgid()); return 1",
+    "write into the library": "open(os.__file__, 'a'); return 1",
+    "fork": "return 1 + os.fork()",
+    "start a program": "import subprocess; subprocess.run(['/bin/true']); return 1",
+    "spawn a program": "return os.posix_spawn('/bin/true', ['true'], {})",
+    "replace itself": "os.execv('/bin/true', ['true'])",
+    "start a worker": "import multiprocessing as m; p = m.Process(target=print); p.start(); return 1",
+    "vfork past the library": "return 1 + call(58, 1071)",
+    "clone3": "return 1 + call(435, 435, None, 0)",
+    "connect over TCP": "import socket; socket.create_connection(('127.0.0.1', 9), 1); return 1",
+    "send over UDP": "import socket; s = socket.socket(type=socket.SOCK_DGRAM); s.sendto(b'x', ('127.0.0.1', 9)); return 1",
+    "open a local socket": "import socket; socket.socket(socket.AF_UNIX); return 1",
+    "open a raw socket": "import socket; socket.socket(socket.AF_PACKET, socket.SOCK_RAW); return 1",
+    "signal the process above": "os.kill(os.getppid() or grader, 0); return 1",
+    "signal the grader": "os.kill(grader, 0); return 1",
+    "signal everybody": "os.kill(-1, 0); return 1",
+    "signal its group": "os.kill(0, 0); return 1",
+    "signal by descriptor": "os.pidfd_open(grader); return 1",
+    "read the grader's environment": "return len(open(f'/proc/{grader}/environ', 'rb').read())",
+    "read the grader's memory": "return len(open(f'/proc/{grader}/maps').read())",
+    "read the grader's arguments": "return len(open(f'/proc/{grader}/cmdline').read())",
+    "open the grader's files": "return len(os.listdir(f'/proc/{grader}/fd'))",
+    "trace the grader": "return 1 + call(101, 117, 16, grader, 0, 0)",
+    "read the grader's memory at once": "return 1 + call(310, 270, grader, None, 0, None, 0, 0)",
+    "limit the grader": "import resource; resource.prlimit(grader, resource.RLIMIT_NOFILE, (9, 9)); return 1",
+    "slow the grader down": "os.setpriority(os.PRIO_PROCESS, grader, 19); return 1",
+    "raise its own limits": "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40)); return 1",
+    "become another user": "os.setuid(12345); return 1",
+    "mount": "return 1 + call(165, 40, b'none', b'.', b'tmpfs', 0, b'')",
+    "make a namespace": "return 1 + call(272, 97, 0x10000000)",
+    "change its root": "os.chroot('.'); return 1",
+    "load a filter program": "return 1 + call(321, 280, 0, None, 0)",
+    "use a keyring": "return 1 + call(250, 219, 0, -3, 1)",
+    "use io_uring": "return 1 + call(425, 425, 1, None)",
+    "watch performance": "return 1 + call(298, 241, None, 0, -1, -1, 0)",
+    "catch page faults": "return 1 + call(323, 282, 0)",
+    "use memory that nobody counts": "return 1 + call(319, 279, b'x', 0)",
+    "use shared memory": "return 1 + call(29, 194, 0, 4096, 0o600)",
+    "open a file by handle": "return 1 + call(304, 265, 3, None, 0)",
+    "set the clock": "import time; time.clock_settime(time.CLOCK_REALTIME, 0); return 1",
+    "name the machine": "import socket; socket.sethostname('x'); return 1",
+    "make a device": "os.mknod('zero', 0o20600, os.makedev(1, 5)); return 1",
+    "use a call of another architecture": "return 1 + call(0x40000000 + 39, 10**6)",
+}  # fmt: skip
+
+HEAD = """
+import ctypes, os
+_libc = ctypes.CDLL(None, use_errno=True)
+
+def call(x86, arm, *arguments):
+    number = x86 if os.uname().machine == "x86_64" else arm
+    result = _libc.syscall(ctypes.c_long(number), *arguments)
+    if result < 0:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+    return result
+"""
+
+
+COUNTED = [Level.ANOTHER_USER] if os.geteuid() == 0 else [Level.FILTERED, Level.SEPARATE]
+"""The levels on which the kernel counts a program's threads: it never counts root's."""
+
+
+def _attack_file(student: Student) -> Path:
+    source = HEAD
+    for i, body in enumerate(ATTACKS.values()):
+        source += f"\ndef attack{i}(secret, grader):\n    try:\n        {body}\n    except (OSError, ValueError): return 0\n"
+    return student(source)
+
+
+def test_no_attack_gets_anywhere(student: Student, tmp_path: Path, level: Level) -> None:
+    secret = tmp_path / "hidden" / "solution.txt"
+    secret.parent.mkdir()
+    secret.write_text("forty-two")
+    record = {"secret": str(secret), "grader": os.getpid()}
+    file = _attack_file(student)
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        assert functions.level is level
+        gained = [name for i, name in enumerate(ATTACKS) if functions.call(f"attack{i}", [record]) != [0.0]]
+    assert gained == []
+    assert secret.read_text() == "forty-two"
+    assert sorted(path.name for path in secret.parent.iterdir()) == ["solution.txt"]
+    assert sorted(path.name for path in file.parent.iterdir()) == ["work.py"]
+
+
+@LINUX
+def test_without_a_cage_the_attacks_do_work(student: Student, tmp_path: Path) -> None:
+    """So the test above does not pass because the attacks are clumsy. Harmless ones only."""
+    secret = tmp_path / "solution.txt"
+    secret.write_text("forty-two")
+    harmless = (
+        "read a file outside", "list a folder outside", "read through a link", "write a file outside",
+        "make a file outside", "change its own source", "change a file's rights", "change a file's time",
+        "start a program", "spawn a program", "vfork past the library", "send over UDP", "open a local socket",
+        "signal the process above", "signal the grader", "signal its group", "signal by descriptor",
+        "read the grader's environment", "read the grader's arguments", "open the grader's files",
+        "use shared memory", "use memory that nobody counts",
+    )  # fmt: skip
+    record = {"secret": str(secret), "grader": os.getpid()}
+    names = list(ATTACKS)
+    for name in harmless:
+        if name == "vfork past the library":
+            continue  # would go on with the parent's stack
+        with StudentFunctions(_attack_file(student), limits=QUICK) as functions:
+            assert functions.call(f"attack{names.index(name)}", [record]) != [0.0], name
+
+
+def test_honest_work_goes_on(student: Student, level: Level) -> None:
+    student("FACTOR = 3", "friend.py")
+    student("2.5", "numbers.txt")
+    file = student(
+        """
+        import asyncio, datetime, os, random, tempfile, threading
+        import friend
+
+        def reads_its_folder():
+            return friend.FACTOR * float(open(os.path.dirname(__file__) + "/numbers.txt").read())
+
+        def writes():
+            with open("log.txt", "w") as log: log.write("x" * 1000)
+            os.mkdir("d"); os.rename("log.txt", "d/log.txt"); os.remove("d/log.txt"); os.rmdir("d")
+            with tempfile.TemporaryFile() as file: file.write(b"y")
+            with open(os.devnull, "w") as null: null.write("z")
+            return len(os.listdir())
+
+        def threads():
+            found = []
+            workers = [threading.Thread(target=found.append, args=(i,)) for i in range(4)]
+            for worker in workers: worker.start()
+            for worker in workers: worker.join()
+            return len(found)
+
+        def waits():
+            async def soon():
+                await asyncio.sleep(0.01)
+                return 1
+            return asyncio.run(soon())
+
+        def numbers():
+            import numpy
+            a = numpy.ones((64, 64))
+            return float((a @ a).sum())
+
+        def chance():
+            return len(os.urandom(4)) + random.SystemRandom().random() * 0 + datetime.datetime.now().year * 0
+        """
+    )
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        results = {name: functions.call(name, [{}]) for name in functions.names}
+    assert results == {
+        "reads_its_folder": [7.5],
+        "writes": [0.0],
+        "threads": [4.0],
+        "waits": [1.0],
+        "numbers": [64.0**3],
+        "chance": [4.0],
+    }
+
+
+def test_a_controller_runs_on_every_level(student: Student, level: Level) -> None:
+    avoid = find("avoid").file
+    graph = Graph()
+    commands: list[Twist] = []
+    node = graph.create_node("world")
+    node.create_subscription(Twist, "cmd_vel", commands.append, 10)
+    scans = node.create_publisher(LaserScan, "static_laser", 10)
+    with Guest.start(graph, avoid, limits=QUICK, level=level) as guest:
+        scans.publish(LaserScan(ranges=array("f", [3.0] * 91)))
+        while graph.run_due() or guest.exchange():
+            pass
+        assert guest.failure is None
+        assert [command.linear.x for command in commands] == [1.0]
+
+
+def test_every_failure_is_still_told(student: Student, level: Level) -> None:
+    cases = {
+        "return 1 / 0": (FailureKind.EXCEPTION, 2),
+        "open('/etc/passwd')": (FailureKind.EXCEPTION, 2),
+        "while True: pass": (FailureKind.TIMEOUT, 2),
+        "x = bytearray(10**11)": (FailureKind.MEMORY, 2),
+        "import os; os.abort()": (FailureKind.CRASH, 2),
+        "import os; os._exit(0)": (FailureKind.EXIT, None),
+    }
+    limits = dataclasses.replace(QUICK, reply_s=0.5)
+    for body, expected in cases.items():
+        with StudentFunctions(student(f"def f():\n    {body}"), limits=limits, level=level) as functions:
+            with pytest.raises(GuestError) as caught:
+                functions.call("f", [{}])
+            assert (caught.value.failure.kind, caught.value.failure.line) == expected, body
+
+
+def test_processor_time_runs_out_in_a_cage_too(student: Student, level: Level) -> None:
+    limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
+    with StudentFunctions(student("def f():\n    while True: pass"), limits=limits, level=level) as functions:
+        with pytest.raises(GuestError, match="processor time") as caught:
+            functions.call("f", [{}])
+        assert caught.value.failure.kind is FailureKind.TIMEOUT
+
+
+@pytest.mark.parametrize("level", [Level.SEPARATE, Level.ANOTHER_USER], ids=["L2", "L3"], indirect=True)
+def test_a_separate_program_is_alone_and_its_disk_is_small(student: Student, level: Level) -> None:
+    file = student(
+        """
+        import errno, os
+        def alone():
+            assert os.getpid() == 2 and os.getppid() == 1
+            return sum(map(os.path.exists, ("/etc/passwd", "/home", "/proc/1", "/bin/sh", "/dev/shm")))
+        def fill():
+            try:
+                for i in range(100):
+                    with open(f"file{i}", "wb") as out: out.write(bytes(2**20))
+            except OSError as full:
+                assert full.errno == errno.ENOSPC
+                return i
+        """
+    )
+    limits = dataclasses.replace(QUICK, scratch=8 * MIB, reply_s=10)
+    with StudentFunctions(file, limits=limits, level=level) as functions:
+        assert functions.call("alone", [{}]) == [0.0]
+        (written,) = functions.call("fill", [{}])
+        assert 5 <= written <= 8
+
+
+@pytest.mark.parametrize("level", [Level.FILTERED, Level.SEPARATE], ids=["L1", "L2"], indirect=True)
+def test_a_file_that_lies_beside_the_runs_own_folders(
+    tmp_path: Path, level: Level, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    file = tmp_path / "work.py"
+    file.write_text("def f():\n    open('x', 'w').write('y')\n    return 1")
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        assert functions.call("f", [{}]) == [1.0]
+    assert [path.name for path in tmp_path.iterdir()] == ["work.py"]
+
+
+@pytest.mark.parametrize("level", [Level.ANOTHER_USER], ids=["L3"], indirect=True)
+def test_two_runs_have_two_users(student: Student, level: Level) -> None:
+    file = student("import os\ndef user(): return os.getuid() + 0.5 * (os.getgid() != os.getuid())")
+    with (
+        StudentFunctions(file, limits=QUICK, level=level) as first,
+        StudentFunctions(file, limits=QUICK, level=level) as second,
+    ):
+        users = {functions.call("user", [{}])[0] for functions in (first, second)}
+    assert len(users) == 2
+    assert min(users) >= 1_500_000_000
+
+
+@LINUX
+@pytest.mark.parametrize("level", COUNTED, ids=str, indirect=True)
+def test_threads_are_counted(student: Student, level: Level) -> None:
+    source = """
+        import threading, time
+        def f():
+            for i in range(1000):
+                threading.Thread(target=time.sleep, args=(5,), daemon=True).start()
+        """
+    limits = dataclasses.replace(QUICK, processes=16, memory=4096 * MIB)
+    with (
+        StudentFunctions(student(source), limits=limits, level=level) as functions,
+        pytest.raises(GuestError, match="can't start new thread"),
+    ):
+        functions.call("f", [{}])
+
+
+def test_the_ladder_says_what_is_missing() -> None:
+    rungs = _rungs()
+    assert [rung.level for rung in rungs] == list(Level)
+    assert rungs[0].is_available
+    assert all(rung.reason for rung in rungs)
+    assert highest() == max(rung.level for rung in rungs if rung.is_available)
+
+
+@LINUX
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can try it as somebody else")
+def test_without_rights_the_ladder_ends_where_they_are_needed(student: Student) -> None:
+    """As nobody: Landlock and seccomp still hold; a user for each run cannot be had, and why."""
+    attack = student("def f(path):\n    try: return len(open(path).read())\n    except OSError: return 0")
+    script = f"""
+        import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r})
+        from pathlib import Path
+        from kit.host.student_functions import StudentFunctions
+        from kit.host.sandbox.confinement import Level
+        from kit.host.sandbox.probe import probe
+        for rung in probe(): print(rung.level.value, rung.is_available, rung.reason)
+        for level in (Level.LIMITED, Level.FILTERED):
+            with StudentFunctions(Path({str(attack)!r}), level=level) as functions:
+                print(level.value, functions.call("f", [{{"path": "/etc/passwd"}}])[0] > 0)
+        """
+    for folder in above(attack):
+        folder.chmod(0o755)
+    python = "/usr/bin/python3"
+    trial = [python, "-c", "import sys; sys.exit(sys.version_info < (3, 11))"]
+    if not Path(python).exists() or subprocess.run(trial, user=65534, check=False).returncode:
+        pytest.skip(f"{python} is not there, or too old; nobody cannot read root's")
+    run = subprocess.run(
+        [python, "-B", "-c", textwrap.dedent(script)],
+        user=65534, group=65534, extra_groups=[], env={"TMPDIR": "/tmp"}, cwd="/",
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    lines = run.stdout.splitlines()
+    assert run.returncode == 0, run.stderr
+    assert lines[3].startswith("3 False")
+    assert "needs root" in lines[3]
+    assert lines[-2:] == ["0 True", "1 False"]
+
+
+SHIELD = """
+import sys, os
+sys.path.insert(0, {root!r})
+from pathlib import Path
+from kit.host.student_functions import StudentFunctions
+from kit.host.sandbox.confinement import shield_this_process
+shield_this_process()
+with StudentFunctions(Path({file!r})) as functions:
+    print(functions.call("f", [{{"grader": os.getpid()}}]))
+"""
+
+
+@LINUX
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs to become nobody; as nobody there is nothing to become")
+def test_a_shielded_grader_keeps_its_secrets_even_without_a_cage(student: Student) -> None:
+    file = student(
+        """
+        def f(grader):
+            seen = 0
+            for name in ("environ", "maps", "mem"):
+                try:
+                    with open(f"/proc/{grader}/{name}", "rb") as opened: seen += 1
+                except OSError: pass
+            return seen
+        """
+    )
+    for folder in above(file):
+        folder.chmod(0o755)
+    python = "/usr/bin/python3"
+    code = SHIELD.format(root=str(Path(__file__).parents[2]), file=str(file))
+    for expected, script in (("[0.0]", code), ("[3.0]", code.replace("\nshield_this_process()", ""))):
+        run = subprocess.run(
+            [python, "-B", "-c", script],
+            user=65534, group=65534, extra_groups=[], env={"TMPDIR": "/tmp"}, cwd="/",
+            capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        if run.returncode and "PermissionError" in run.stderr:
+            pytest.skip("nobody cannot read this checkout or Python")
+        assert run.stdout.strip() == expected, run.stderr
+
+
+def test_a_level_that_cannot_be_had_is_refused(student: Student, monkeypatch: pytest.MonkeyPatch) -> None:
+    missing = [rung for rung in _rungs() if not rung.is_available]
+    if not missing:
+        pytest.skip("this machine allows every level")
+    with pytest.raises(GuestError) as caught:
+        StudentFunctions(student("def f(): return 1"), level=missing[0].level)
+    assert caught.value.failure.kind is FailureKind.CONFINEMENT
+
+
+@pytest.mark.parametrize("machine", seccomp.ARCHITECTURES)
+def test_the_filter_decides_each_call_rightly(machine: str) -> None:
+    """Runs the filter's own instructions over calls of both architectures."""
+    architecture = seccomp.ARCHITECTURES[machine]
+    column = architecture.column
+    code = seccomp.program(architecture, own_process=4711)
+    allow, kill = 0x7FFF0000, 0x80000000
+
+    def decide(number: int, first: int = 0, audit: int = architecture.audit) -> int:
+        return _interpret(code, number, audit, first)
+
+    for name, numbers in seccomp.DENIED.items():
+        number = numbers[column]
+        if number is not None:
+            assert decide(number) == 0x00050001, name
+    assert decide(seccomp.CLONE3) == 0x00050026
+    assert decide(500) == 0x00050026
+    assert decide(architecture.clone, 0x003D0F00) == allow  # what a new thread asks for
+    assert decide(architecture.clone, 0x01200011) == 0x00050001  # what fork() asks for
+    assert decide(architecture.kill, 4711) == allow
+    assert decide(architecture.kill, 4712) == 0x00050001
+    assert decide(architecture.kill, 2**32 - 1) == 0x00050001
+    assert decide(architecture.tgkill, 4711) == allow
+    assert decide(architecture.prlimit64, 0) == allow
+    assert decide(architecture.prlimit64, 4711) == allow
+    assert decide(architecture.prlimit64, 1) == 0x00050001
+    read, mmap = {"x86_64": (0, 9), "aarch64": (63, 222)}[machine]
+    assert decide(read) == decide(mmap) == allow
+    assert decide(read, audit=0x40000003) == kill
+
+
+def _interpret(code: bytes, number: int, audit: int, first: int) -> int:
+    """Classic BPF, as far as the filter uses it."""
+    data = struct.pack("<IIQ6Q", number, audit, 0, first, 0, 0, 0, 0, 0)
+    instructions = list(struct.iter_unpack("=HBBI", code))
+    accumulator = at = 0
+    while True:
+        operation, yes, no, operand = instructions[at]
+        at += 1
+        if operation == 0x20:
+            (accumulator,) = struct.unpack_from("<I", data, operand)
+        elif operation == 0x06:
+            return int(operand)
+        else:
+            tests = {
+                0x15: accumulator == operand,
+                0x25: accumulator > operand,
+                0x45: bool(accumulator & operand),
+            }
+            at += yes if tests[operation] else no
+
+
+@LINUX
+def test_the_cage_is_quick_to_close(student: Student) -> None:
+    """Level 1 adds less than 20 ms to a start; measured as the best of several, and with room to spare."""
+    if landlock.abi() == 0:
+        pytest.skip("no Landlock")
+
+    def best(level: Level) -> float:
+        times = []
+        for _ in range(5):
+            began = time.perf_counter()
+            functions = StudentFunctions(file, limits=QUICK, level=level)
+            times.append(time.perf_counter() - began)
+            functions.close()
+        return min(times)
+
+    file = student("")
+    assert best(Level.FILTERED) - best(Level.LIMITED) < 0.12

@@ -1,0 +1,166 @@
+"""A file that is saved, in the ways editors do it, and the exchange of a running version for the new one."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from kit.host.failure import FailureKind, GuestError
+from kit.host.file_watcher import EMPTY_S, SETTLED_S, FileWatch
+from kit.host.node_process import Guest
+from kit.msg.std_msgs import String
+from kit.ros.graph.graph import Graph
+from tests.host.conftest import QUICK, Student
+
+
+class Desk:
+    """A watched file and a clock that goes when told to."""
+
+    def __init__(self, file: Path) -> None:
+        self.now = 0.0
+        self.file = file
+        self.file.write_text("one")
+        self.watch = FileWatch(file, clock=lambda: self.now)
+
+    def noticed(self, seconds: float = 2.0) -> int:
+        """How often a change is noticed within so long a time, looking 50 times a second."""
+        count = 0
+        for _ in range(round(seconds * 50)):
+            self.now += 0.02
+            count += self.watch.has_changed()
+        return count
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(tmp_path / "work.py")
+
+
+def test_a_file_as_it_is_has_not_changed(desk: Desk) -> None:
+    assert desk.noticed() == 0
+
+
+def test_a_file_written_in_place(desk: Desk) -> None:
+    desk.file.write_text("three")
+    assert desk.noticed() == 1
+    assert desk.noticed() == 0
+
+
+def test_a_file_replaced_by_another_of_the_same_size_and_time(desk: Desk) -> None:
+    """As on file systems that count seconds."""
+    before = desk.file.stat()
+    new = desk.file.with_suffix(".new")
+    new.write_text("two")
+    os.utime(new, ns=(before.st_atime_ns, before.st_mtime_ns))
+    new.replace(desk.file)
+    assert desk.noticed() == 1
+
+
+def test_a_file_removed_and_then_written(desk: Desk) -> None:
+    desk.file.unlink()
+    assert desk.noticed() == 0
+    desk.file.write_text("back")
+    assert desk.noticed() == 1
+
+
+def test_a_file_emptied_and_then_filled_is_one_change(desk: Desk) -> None:
+    desk.file.write_text("")
+    assert desk.noticed(EMPTY_S * 0.8) == 0
+    desk.file.write_text("filled")
+    assert desk.noticed() == 1
+
+
+def test_a_file_emptied_for_good(desk: Desk) -> None:
+    desk.file.write_text("")
+    assert desk.noticed(EMPTY_S * 1.5) == 1
+
+
+def test_a_file_written_bit_by_bit_is_one_change(desk: Desk) -> None:
+    for i in range(20):
+        desk.file.write_text("x" * (i + 2))
+        assert desk.noticed(SETTLED_S * 0.6) == 0
+    assert desk.noticed() == 1
+
+
+def test_a_file_written_back_as_it_was_is_no_change(desk: Desk) -> None:
+    before = desk.file.stat()
+    desk.file.write_text("tmp")
+    desk.file.write_text("one")
+    os.utime(desk.file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert desk.noticed() == 0
+
+
+SOURCE = """
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Greeter(Node):
+    def __init__(self):
+        super().__init__("greeter")
+        out = self.create_publisher(String, "greetings", 10)
+        self.create_timer(0.1, lambda: out.publish(String(data="{word}")))
+"""
+
+
+def test_the_old_version_drives_until_the_new_one_has_started(student: Student) -> None:
+    graph = Graph()
+    heard: list[String] = []
+    graph.create_node("desk").create_subscription(String, "/greetings", heard.append, 10)
+
+    def tick(guest: Guest) -> list[str]:
+        heard.clear()
+        graph.advance(graph.now_ns + 100_000_000)
+        guest.exchange()
+        graph.run_due()
+        return [message.data for message in heard]
+
+    file = student(SOURCE.format(word="old"))
+    old = Guest.start(graph, file, limits=QUICK)
+    assert tick(old) == ["old"]
+
+    file.write_text("syntax error here")
+    broken = Guest(graph, file, limits=QUICK)
+    with pytest.raises(GuestError) as caught:
+        broken.wait_until_started()
+    broken.close()
+    assert (caught.value.failure.kind, caught.value.failure.line) == (FailureKind.SYNTAX, 1)
+    assert tick(old) == ["old"]
+
+    file.write_text(SOURCE.format(word="new"))
+    new = Guest(graph, file, limits=QUICK)
+    assert tick(old) == ["old"]
+    while not new.is_started():
+        assert tick(old) == ["old"]
+    old.close()
+    new.join()
+    assert set(tick(new)) == {"new"}
+    assert tick(new) == ["new"]
+    assert [node.get_name() for node in graph.nodes] == ["desk", "greeter"]
+    new.close()
+
+
+def test_of_a_folder_every_file_counts_but_hidden_ones(tmp_path: Path) -> None:
+    now = 0.0
+    (tmp_path / "maps").mkdir()
+    for name in ("world.yaml", "maps/hall.yaml"):
+        (tmp_path / name).write_text("one")
+    watch = FileWatch(tmp_path, clock=lambda: now)
+
+    def noticed() -> int:
+        nonlocal now
+        count = 0
+        for _ in range(100):
+            now += 0.02
+            count += watch.has_changed()
+        return count
+
+    assert noticed() == 0
+    (tmp_path / "maps" / ".hall.yaml.swp").write_text("an editor's")
+    assert noticed() == 0
+    (tmp_path / "maps" / "hall.yaml").write_text("two, longer")
+    assert noticed() == 1
+    (tmp_path / "world.yaml").rename(tmp_path / "other.yaml")
+    assert noticed() == 1
+    assert noticed() == 0

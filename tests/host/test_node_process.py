@@ -1,0 +1,842 @@
+"""Student nodes as guests: they take part in the graph as if they were in it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from array import array
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kit.host.failure import FailureKind, GuestError
+from kit.host.node_process import Guest
+from kit.msg.geometry_msgs import Twist
+from kit.msg.nav_msgs import Odometry
+from kit.msg.sensor_msgs import LaserScan
+from kit.msg.std_msgs import String
+from kit.msg.std_srvs import SetBool, Trigger
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import Node
+from kit.ros.node.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from tests.host.conftest import QUICK, Student
+
+TICK_NS = 100_000_000
+
+ECHO = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Echo(Node):
+    def __init__(self):
+        super().__init__("echo")
+        self.back = self.create_publisher(String, "answers", 10)
+        self.create_subscription(String, "questions", self.on_question, 10)
+
+    def on_question(self, message):
+        self.back.publish(String(data=message.data.upper()))
+"""
+
+MAIN = """
+def main(args=None):
+    rclpy.init(args=args)
+    rclpy.spin(Echo())
+"""
+
+GUARD = """
+if __name__ == "__main__":
+    main()
+"""
+
+
+class Bench:
+    """A graph with one node of ours, and a clock."""
+
+    def __init__(self) -> None:
+        self.graph = Graph(log_sink=lambda record: self.log.append(record.text))
+        self.log: list[str] = []
+        self.node: Node = self.graph.create_node("bench")
+        self.heard: list[Any] = []
+        self.guests: list[Guest] = []
+        self._publishers: dict[str, Any] = {}
+
+    def start(self, file: Path, **options: Any) -> Guest:
+        guest = Guest.start(self.graph, file, **{"limits": QUICK, **options})
+        self.guests.append(guest)
+        self.settle()
+        return guest
+
+    def listen(self, cls: Any, topic: str, qos: QoSProfile | int = 10) -> list[Any]:
+        heard: list[Any] = []
+        self.node.create_subscription(cls, topic, heard.append, qos)
+        return heard
+
+    def say(self, topic: str, message: Any) -> None:
+        if topic not in self._publishers:
+            self._publishers[topic] = self.node.create_publisher(type(message), topic, 10)
+        self._publishers[topic].publish(message)
+        self.settle()
+
+    def settle(self) -> None:
+        """What the runner does in each tick."""
+        for _ in range(100):
+            self.graph.run_due()
+            spoken = [guest.exchange() for guest in self.guests]
+            if not any(spoken):
+                return
+        raise AssertionError("they talk without end")
+
+    def tick(self, count: int = 1) -> None:
+        for _ in range(count):
+            self.graph.advance(self.graph.now_ns + TICK_NS)
+            self.settle()
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    for guest in made.guests:
+        guest.close()
+
+
+def texts(messages: list[Any]) -> list[str]:
+    return [message.data for message in messages]
+
+
+@pytest.mark.parametrize(
+    "source",
+    [ECHO, ECHO + MAIN, ECHO + MAIN + GUARD, ECHO + "rclpy.init()\nrclpy.spin(Echo())"],
+    ids=["class", "main", "guard", "script"],
+)
+def test_every_way_to_write_a_node_file_is_the_same(bench: Bench, student: Student, source: str) -> None:
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(student(source))
+    bench.say("/questions", String(data="why"))
+    bench.say("/questions", String(data="how"))
+    assert texts(answers) == ["WHY", "HOW"]
+    assert guest.failure is None
+    assert guest.is_running
+
+
+def test_question_and_answer_take_no_time(bench: Bench, student: Student) -> None:
+    """Ours -> student's -> other student's -> ours, all at one instant."""
+    answers = bench.listen(String, "/answers")
+    bench.start(student(ECHO.replace('"answers"', '"halfway"')))
+    second = ECHO.replace('"questions"', '"halfway"').replace("upper", "title").replace('"echo"', '"second"')
+    bench.start(student(second, "second.py"))
+    before = bench.graph.now_ns
+    bench.say("/questions", String(data="why not"))
+    assert texts(answers) == ["Why Not"]
+    assert bench.graph.now_ns == before
+
+
+def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from rclpy.node import Node
+        from rclpy.qos import qos_profile_sensor_data
+        from geometry_msgs.msg import Twist
+        from sensor_msgs.msg import LaserScan
+        from std_srvs.srv import Trigger, SetBool
+
+        class Mine(Node):
+            def __init__(self):
+                super().__init__("mine", namespace="robot")
+                self.create_publisher(Twist, "cmd_vel", 7)
+                self.create_subscription(LaserScan, "/scan", print, qos_profile_sensor_data)
+                self.create_service(Trigger, "~/go", lambda q, a: a)
+                self.create_client(SetBool, "/toggle")
+        """
+    )
+    guest = bench.start(file)
+    view = bench.node
+    assert ("mine", "/robot") in view.get_node_names_and_namespaces()
+    assert ("/robot/cmd_vel", ["geometry_msgs/msg/Twist"]) in view.get_publisher_names_and_types_by_node(
+        "mine", "/robot"
+    )
+    (publisher,) = view.get_publishers_info_by_topic("/robot/cmd_vel")
+    assert publisher.qos_profile.depth == 7
+    (subscription,) = view.get_subscriptions_info_by_topic("/scan")
+    assert subscription.qos_profile.is_best_effort == qos_profile_sensor_data.is_best_effort
+    services = dict(view.get_service_names_and_types())
+    assert services["/robot/mine/go"] == ["std_srvs/srv/Trigger"]
+    assert "/robot/mine/get_parameters" in services
+    assert ("/toggle", ["std_srvs/srv/SetBool"]) in view.get_client_names_and_types_by_node("mine", "/robot")
+    guest.close()
+    assert view.get_node_names() == ["bench"]
+    assert not view.count_publishers("/robot/cmd_vel")
+
+
+def test_a_guest_sees_the_graph(bench: Bench, student: Student) -> None:
+    answers = bench.listen(String, "/answers")
+    bench.node.create_service(Trigger, "/ours", lambda request, response: response)
+    file = student(
+        ECHO.replace(
+            "message.data.upper()",
+            "repr((sorted(self.get_node_names()), self.count_subscribers('/answers'),"
+            " self.count_publishers('/questions'), '/ours' in dict(self.get_service_names_and_types())))",
+        )
+    )
+    bench.start(file)
+    bench.say("/questions", String())
+    late = bench.graph.create_node("late")
+    bench.say("/questions", String())
+    late.destroy_node()
+    bench.say("/questions", String())
+    without = repr((["bench", "echo"], 1, 1, True))
+    assert texts(answers) == [without, repr((["bench", "echo", "late"], 1, 1, True)), without]
+
+
+def test_endpoints_that_come_and_go_later(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Changing(Node):
+            def __init__(self):
+                super().__init__("changing")
+                self.extra = None
+                self.create_subscription(String, "orders", self.on_order, 10)
+
+            def on_order(self, message):
+                if message.data == "open":
+                    self.extra = self.create_publisher(String, "extra", 10)
+                    self.extra.publish(String(data="open"))
+                else:
+                    self.destroy_publisher(self.extra)
+        """
+    )
+    extra = bench.listen(String, "/extra")
+    bench.start(file)
+    assert bench.node.count_publishers("/extra") == 0
+    bench.say("/orders", String(data="open"))
+    assert bench.node.count_publishers("/extra") == 1
+    assert texts(extra) == ["open"]
+    bench.say("/orders", String(data="close"))
+    assert bench.node.count_publishers("/extra") == 0
+
+
+def test_timers_keep_the_worlds_time(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import time
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Clock(Node):
+            def __init__(self):
+                super().__init__("clock")
+                self.out = self.create_publisher(String, "ticks", 10)
+                self.create_timer(0.25, self.on_timer)
+
+            def on_timer(self):
+                now = self.get_clock().now().nanoseconds
+                assert now == time.time_ns()
+                self.out.publish(String(data=str(now // 1_000_000)))
+        """
+    )
+    ticks = bench.listen(String, "/ticks")
+    guest = bench.start(file)
+    exchanges = 0
+    for _ in range(10):
+        bench.graph.advance(bench.graph.now_ns + TICK_NS)
+        exchanges += guest.exchange()
+        bench.settle()
+    assert texts(ticks) == ["300", "500", "800", "1000"]
+    assert exchanges == 4, "asked although nothing was due"
+
+
+LOOPS = {
+    "sleep": "while rclpy.ok():\n    out.publish(String(data='x'))\n    time.sleep(0.2)",
+    "rate": "rate = node.create_rate(5)\nthreading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()\n"
+    "while rclpy.ok():\n    out.publish(String(data='x'))\n    rate.sleep()",
+    "spin_once": "while rclpy.ok():\n    out.publish(String(data='x'))\n    rclpy.spin_once(node, timeout_sec=0.2)",
+    "clock": "while rclpy.ok():\n    out.publish(String(data='x'))\n    node.get_clock().sleep_for(Duration(seconds=0.2))",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("loop", LOOPS)
+def test_programs_with_a_loop_of_their_own(bench: Bench, student: Student, loop: str) -> None:
+    head = (
+        "import time, threading, rclpy\nfrom rclpy.duration import Duration\nfrom std_msgs.msg import String\n"
+        "rclpy.init()\nnode = rclpy.create_node('looper')\nout = node.create_publisher(String, 'beat', 10)\n"
+    )
+    beat = bench.listen(String, "/beat")
+    guest = bench.start(student(head + LOOPS[loop]))
+    bench.tick(10)
+    assert guest.failure is None
+    assert len(beat) == 6
+
+
+def test_a_program_that_never_waits_does_not_stop_the_time(bench: Bench, student: Student) -> None:
+    loop = "\nrclpy.init()\necho = Echo()\nwhile rclpy.ok():\n    rclpy.spin_once(echo, timeout_sec=0)\n"
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(student(ECHO + loop))
+    for text in "abc":
+        bench.say("/questions", String(data=text))
+        bench.tick()
+    assert texts(answers) == ["A", "B", "C"]
+    assert guest.failure is None
+
+
+def test_services_both_ways(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.node import Node
+        from std_srvs.srv import SetBool, Trigger
+
+        class Servant(Node):
+            def __init__(self):
+                super().__init__("servant")
+                self.create_service(Trigger, "/student", self.on_call)
+                self.ours = self.create_client(SetBool, "/ours", callback_group=ReentrantCallbackGroup())
+                assert self.ours.wait_for_service(1.0) and not self.create_client(Trigger, "/no").service_is_ready()
+
+            async def on_call(self, request, response):
+                answer = await self.ours.call_async(SetBool.Request(data=True))
+                response.success, response.message = answer.success, answer.message + "!"
+                return response
+        """
+    )
+
+    def ours(request: Any, response: Any) -> Any:
+        response.success, response.message = request.data, "said ours"
+        return response
+
+    bench.node.create_service(SetBool, "/ours", ours)
+    bench.start(file)
+    client = bench.node.create_client(Trigger, "/student")
+    assert client.service_is_ready()
+    future = client.call_async(Trigger.Request())
+    bench.settle()
+    assert future.result() == Trigger.Response(success=True, message="said ours!")
+
+
+def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from std_msgs.msg import String
+        from std_srvs.srv import Trigger
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("asker")
+            client = node.create_client(Trigger, "/ours")
+            while not client.wait_for_service(timeout_sec=0.5):
+                node.get_logger().info("waiting for /ours")
+            future = client.call_async(Trigger.Request())
+            rclpy.spin_until_future_complete(node, future)
+            node.create_publisher(String, "answers", 10).publish(String(data=future.result().message))
+        """
+    )
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(file)
+    bench.tick(11)
+
+    def ours(request: Any, response: Any) -> Any:
+        response.message = "here"
+        return response
+
+    bench.node.create_service(Trigger, "/ours", ours)
+    bench.tick()
+    assert texts(answers) == ["here"]
+    assert guest.has_ended
+    assert not guest.is_running
+    assert guest.failure is None
+    assert sum("waiting for /ours" in line.text for line in guest.take_output().lines) == 2
+
+
+def test_arguments_reach_the_nodes(bench: Bench, student: Student) -> None:
+    source = ECHO.replace("self.back =", "self.declare_parameter('suffix', '')\n        self.back =").replace(
+        "message.data.upper()", "message.data + self.get_parameter('suffix').value"
+    )
+    answers = bench.listen(String, "/elsewhere")
+    arguments = ["--ros-args", "-p", "suffix:=?!", "-r", "answers:=elsewhere", "-r", "__node:=renamed"]
+    bench.start(student(source + MAIN + GUARD), args=arguments)
+    assert "renamed" in bench.node.get_node_names()
+    bench.say("/questions", String(data="why"))
+    assert texts(answers) == ["why?!"]
+
+
+def test_scans_arrive_to_the_bit_and_nan_with_them(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import math
+        from rclpy.node import Node
+        from sensor_msgs.msg import LaserScan
+
+        class Mirror(Node):
+            def __init__(self):
+                super().__init__("mirror")
+                self.out = self.create_publisher(LaserScan, "back", 10)
+                self.create_subscription(LaserScan, "scan", self.out.publish, 10)
+        """
+    )
+    back = bench.listen(LaserScan, "/back")
+    bench.start(file)
+    scan = LaserScan(angle_min=-math.pi, ranges=array("f", [0.1, math.nan, math.inf, 1e-30, 3.0]))
+    scan.header.stamp.sec = 12
+    bench.say("/scan", scan)
+    (copy,) = back
+    assert copy.ranges.tobytes() == scan.ranges.tobytes()
+    assert (copy.header, copy.angle_min) == (scan.header, scan.angle_min)
+
+
+def test_what_is_not_finite_fails_at_the_students_line(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        from geometry_msgs.msg import Twist
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Wild(Node):
+            def __init__(self):
+                super().__init__("wild")
+                self.out = self.create_publisher(Twist, "cmd_vel", 10)
+                self.create_subscription(String, "go", self.on_go, 10)
+
+            def on_go(self, message):
+                command = Twist()
+                command.angular.z = float(message.data)
+                self.out.publish(command)
+        """
+    )
+    commands = bench.listen(Twist, "/cmd_vel")
+    guest = bench.start(file)
+    bench.say("/go", String(data="0.5"))
+    assert commands[0].angular.z == 0.5
+    bench.say("/go", String(data="nan"))
+    assert len(commands) == 1
+    assert guest.failure is not None
+    assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 15)
+    assert "angular.z of the Twist for /cmd_vel is not a finite number" in guest.failure.message
+
+
+def test_messages_among_a_guests_own_nodes_arrive_once(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Talker(Node):
+            def __init__(self):
+                super().__init__("talker")
+                self.out = self.create_publisher(String, "chat", 10)
+                self.create_subscription(String, "questions", lambda m: self.out.publish(m), 10)
+
+        class Counter(Node):
+            def __init__(self):
+                super().__init__("counter")
+                self.count = 0
+                self.out = self.create_publisher(String, "counts", 10)
+                self.create_subscription(String, "chat", self.on_chat, 10)
+
+            def on_chat(self, message):
+                self.count += 1
+                self.out.publish(String(data=str(self.count)))
+
+        def main():
+            rclpy.init()
+            executor = SingleThreadedExecutor()
+            for node in (Talker(), Counter()):
+                executor.add_node(node)
+            executor.spin()
+        """
+    )
+    chat, counts = bench.listen(String, "/chat"), bench.listen(String, "/counts")
+    bench.start(file)
+    bench.say("/questions", String(data="a"))
+    bench.say("/questions", String(data="b"))
+    assert (texts(chat), texts(counts)) == (["a", "b"], ["1", "2"])
+
+
+def test_a_late_subscription_gets_what_was_kept(bench: Bench, student: Student) -> None:
+    lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    bench.node.create_publisher(String, "/map", lasting).publish(String(data="the map"))
+    answers = bench.listen(String, "/answers")
+    source = ECHO.replace(
+        '"questions", self.on_question, 10', '"map", self.on_question, QoSProfile(depth=1, durability=1)'
+    )
+    bench.start(
+        student(source.replace("from rclpy.node", "from rclpy.qos import QoSProfile\nfrom rclpy.node"))
+    )
+    assert texts(answers) == ["THE MAP"]
+
+
+def test_quality_of_service_that_does_not_fit_is_told(bench: Bench, student: Student) -> None:
+    bench.node.create_publisher(String, "/questions", qos_profile_sensor_data)
+    guest = bench.start(student(ECHO))
+    assert any("RELIABILITY" in line.text for line in guest.take_output().lines)
+
+
+def test_watchers_see_what_nobody_subscribes(bench: Bench, student: Student) -> None:
+    seen: list[tuple[str, str]] = []
+    bench.graph.watch(lambda now, node, topic, message: seen.append((node.get_name(), topic)))
+    bench.start(student(ECHO))
+    bench.say("/questions", String(data="x"))
+    assert seen.count(("echo", "/answers")) == 1
+
+
+def test_a_reset_forgets_what_is_on_its_way(bench: Bench, student: Student) -> None:
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(student(ECHO))
+    publisher = bench.node.create_publisher(String, "/questions", 10)
+    bench.settle()
+    publisher.publish(String(data="lost"))
+    bench.graph.discard()
+    bench.settle()
+    assert answers == []
+    bench.say("/questions", String(data="kept"))
+    assert texts(answers) == ["KEPT"]
+    assert guest.failure is None
+
+
+def test_time_that_jumps_back(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Clock(Node):
+            def __init__(self):
+                super().__init__("clock")
+                self.out = self.create_publisher(String, "ticks", 10)
+                self.create_timer(1.0, lambda: self.out.publish(String()))
+        """
+    )
+    ticks = bench.listen(String, "/ticks")
+    bench.start(file)
+    bench.tick(25)
+    assert len(ticks) == 2
+    bench.graph.advance(0)
+    bench.settle()
+    bench.tick(9)
+    assert len(ticks) == 2
+    bench.tick(2)
+    assert len(ticks) == 3
+
+
+def test_a_failing_callback_ends_the_guest_only(bench: Bench, student: Student) -> None:
+    file = student(ECHO.replace("message.data.upper()", "message.data + 1"))
+    guest = bench.start(file)
+    other = bench.start(student(ECHO.replace('"echo"', '"other"').replace("answers", "others"), "other.py"))
+    others = bench.listen(String, "/others")
+    bench.say("/questions", String(data="x"))
+    assert guest.failure is not None
+    assert (guest.failure.kind, guest.failure.file, guest.failure.line) == (
+        FailureKind.EXCEPTION,
+        "work.py",
+        13,
+    )
+    assert "TypeError" in guest.failure.message
+    assert "(in on_question)" in guest.failure.message
+    assert not guest.is_running
+    assert "echo" not in bench.node.get_node_names()
+    bench.say("/questions", String(data="y"))
+    assert texts(others) == ["X", "Y"]
+    assert other.failure is None
+    assert not guest.exchange()
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "line", "words"),
+    [
+        ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() has not come back within 0.5 s"),
+        ("import sys; sys.exit(1)", FailureKind.EXIT, 13, "sys.exit(1)"),
+        ("import os; os._exit(1)", FailureKind.EXIT, None, "os._exit(1)"),
+        ("x = bytearray(10**12)", FailureKind.MEMORY, 13, "600 MiB"),
+        ("self.back.publish('text')", FailureKind.EXCEPTION, 13, "Expected"),
+        ("String(data=3)", FailureKind.EXCEPTION, 13, "must be of type 'str'"),
+        ("self.nothing", FailureKind.EXCEPTION, 13, "no attribute 'nothing'"),
+    ],
+)
+def test_every_failure_of_a_node(
+    bench: Bench, student: Student, change: str, kind: FailureKind, line: int | None, words: str
+) -> None:
+    source = ECHO.replace("self.back.publish(String(data=message.data.upper()))", change)
+    guest = bench.start(student(source), limits=dataclasses.replace(QUICK, reply_s=0.5))
+    bench.say("/questions", String(data="x"))
+    assert guest.failure is not None
+    assert (guest.failure.kind, guest.failure.line) == (kind, line)
+    assert words in guest.failure.message
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("x = 1", "no main() to call"),
+        ("def main(): pass", "without making a node"),
+        ("from rclpy.node import Node\nclass A(Node): ...\nclass B(Node): ...", "A and B"),
+        (
+            "from rclpy.node import Node\nclass A(Node):\n  def __init__(self): super().__init__('no-good!')",
+            "no-good!",
+        ),
+        ("from rclpy.node import Nod", "cannot import name 'Nod'"),
+        ("from turtle_msgs.msg import Shell", "No module named 'turtle_msgs'"),
+        ("import sys\nif __name__ == '__main__': sys.exit(2)", "sys.exit(2)"),
+    ],
+)
+def test_a_file_that_cannot_be_a_guest(student: Student, source: str, words: str) -> None:
+    graph = Graph()
+    with pytest.raises(GuestError) as caught:
+        Guest.start(graph, student(source), limits=QUICK)
+    assert words in str(caught.value)
+    assert caught.value.failure.file == "work.py"
+    assert graph.nodes == ()
+
+
+def test_a_base_class_is_not_a_second_node(bench: Bench, student: Student) -> None:
+    bench.start(
+        student(ECHO + "\nclass Louder(Echo):\n    def __init__(self):\n        super().__init__()\n")
+    )
+    assert "echo" in bench.node.get_node_names()
+
+
+def test_sys_exit_of_main_at_the_end_is_an_end(bench: Bench, student: Student) -> None:
+    source = "import sys, rclpy\ndef main():\n    rclpy.init()\n    rclpy.create_node('brief')\n    rclpy.shutdown()\n"
+    guest = bench.start(student(source + "if __name__ == '__main__':\n    sys.exit(main())\n"))
+    assert guest.has_ended
+    assert guest.failure is None
+    assert bench.node.get_node_names() == ["bench"]
+
+
+def test_a_thread_that_fails_is_told(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import threading, time, rclpy
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("threaded")
+            node.create_subscription(String, "go", on_go, 10)
+            threading.Thread(target=rclpy.spin, args=(node,)).start()
+
+        def on_go(message):
+            raise ValueError(message.data)
+        """
+    )
+    guest = bench.start(file)
+    bench.tick()
+    bench.say("/go", String(data="from a thread"))
+    bench.tick(3)
+    assert guest.failure is not None
+    assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 12)
+    assert "from a thread" in guest.failure.message
+
+
+@pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
+def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: Student, end: str) -> None:
+    file = student(
+        f"""
+        import threading, time, rclpy
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("threaded")
+            threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+            until = time.monotonic() + 0.3
+            while time.monotonic() < until: pass
+            {end}
+        """
+    )
+    guest = bench.start(file)
+    deadline = time.monotonic() + 10
+    while guest.is_running and time.monotonic() < deadline:
+        bench.tick()
+        time.sleep(0.02)
+    assert not guest.is_running
+    assert guest.has_ended == (end == "return")
+    if guest.failure is not None:
+        assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 10)
+
+
+def test_a_program_may_close_what_it_prints_to(bench: Bench, student: Student) -> None:
+    answers = bench.listen(String, "/answers")
+    bench.start(
+        student(ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr = None"))
+    )
+    bench.say("/questions", String(data="still there"))
+    assert texts(answers) == ["STILL THERE"]
+
+
+def test_a_program_that_closed_what_it_prints_to_still_fails_with_words(
+    bench: Bench, student: Student
+) -> None:
+    source = ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr.close()")
+    guest = bench.start(
+        student(source.replace("self.back.publish(", "self.deeper(") + "    def deeper(self, x): 1 / 0\n")
+    )
+    bench.say("/questions", String(data="x"))
+    assert guest.failure is not None
+    assert guest.failure.kind is FailureKind.EXCEPTION
+    assert "ZeroDivisionError" in guest.failure.message
+    assert any("in on_question: self.deeper(" in line.text for line in guest.take_output().lines)
+
+
+def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Student) -> None:
+    file = student(
+        """
+        import threading, rclpy
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.executors import MultiThreadedExecutor
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("many")
+            out = node.create_publisher(String, "answers", 10)
+            group = ReentrantCallbackGroup()
+
+            def on_question(message):
+                sum(range(200_000))
+                out.publish(message)
+
+            node.create_subscription(String, "questions", on_question, 10, callback_group=group)
+            executor = MultiThreadedExecutor(2)
+            executor.add_node(node)
+            executor.spin()
+        """
+    )
+    answers = bench.listen(String, "/answers")
+    guest = bench.start(file)
+    bench.tick()
+    for text in "abcde":
+        bench.say("/questions", String(data=text))
+    assert texts(answers) == list("abcde")
+    assert guest.failure is None
+
+
+def test_a_thread_that_never_waits_here_is_tolerated(bench: Bench, student: Student) -> None:
+    """As in the dissertation: one thread learns and blocks until the next scan, another one spins."""
+    file = student(
+        """
+        import threading, rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        class Env(Node):
+            def __init__(self):
+                super().__init__("env")
+                self.arrived = threading.Event()
+                self.out = self.create_publisher(String, "actions", 10)
+                self.create_subscription(String, "questions", lambda message: self.arrived.set(), 10)
+
+            def learn(self):
+                step = 0
+                while True:
+                    self.arrived.wait()
+                    self.arrived.clear()
+                    step += 1
+                    self.out.publish(String(data=str(step)))
+
+        def main():
+            rclpy.init()
+            env = Env()
+            threading.Thread(target=env.learn, daemon=True).start()
+            rclpy.spin(env)
+        """
+    )
+    actions = bench.listen(String, "/actions")
+    guest = bench.start(file)
+    for _ in range(20):
+        bench.say("/questions", String())
+        bench.tick()
+    assert guest.failure is None
+    assert actions
+    assert texts(actions) == [str(i + 1) for i in range(len(actions))]
+
+
+WALK = """
+import math, random
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+
+class Walk(Node):
+    def __init__(self):
+        super().__init__("walk")
+        self.out = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_subscription(Odometry, "odom", self.on_odom, 10)
+        self.names = {"left", "right", "up", "down"}
+
+    def on_odom(self, odom):
+        twist = Twist()
+        twist.linear.x = random.gauss(0, 1) + math.sin(odom.pose.pose.position.x)
+        twist.angular.z = random.uniform(-1, 1) * len(next(iter(self.names)))
+        self.out.publish(twist)
+"""
+
+
+def test_the_same_run_to_the_bit(student: Student) -> None:
+    def run(seed: int) -> list[tuple[str, str]]:
+        bench = Bench()
+        commands = bench.listen(Twist, "/cmd_vel")
+        guest = bench.start(student(WALK), seed=seed)
+        try:
+            odom, x = Odometry(), 0.0
+            for _ in range(200):
+                odom.pose.pose.position.x = x
+                bench.tick()
+                bench.say("/odom", odom)
+                x += commands[-1].linear.x * 0.1
+        finally:
+            guest.close()
+        return [(command.linear.x.hex(), command.angular.z.hex()) for command in commands]
+
+    first = run(3)
+    assert len(first) == 200
+    assert run(3) == first
+    assert run(4) != first
+
+
+def test_logs_and_prints_are_kept_apart_and_in_order(bench: Bench, student: Student) -> None:
+    guest = bench.start(
+        student(ECHO.replace("self.back.publish", "self.get_logger().warning('heard'); print"))
+    )
+    bench.say("/questions", String(data="x"))
+    lines = guest.take_output().lines
+    assert any(
+        line.stream == "err" and "[WARN]" in line.text and "[echo]: heard" in line.text for line in lines
+    )
+    assert any(line.stream == "out" and "data='X'" in line.text for line in lines)
+
+
+def test_a_guest_is_light(bench: Bench, student: Student) -> None:
+    heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch", "site")
+    source = ECHO.replace("message.data.upper()", f"str([name for name in {heavy} if name in sys.modules])")
+    answers = bench.listen(String, "/answers")
+    bench.start(student("import sys" + source))
+    bench.say("/questions", String())
+    assert texts(answers) == ["[]"]
+
+
+def test_several_guests_start_side_by_side(student: Student) -> None:
+    graph = Graph()
+    guests = [
+        Guest(graph, student(ECHO.replace('"echo"', f'"echo{i}"'), f"echo{i}.py"), limits=QUICK)
+        for i in range(3)
+    ]
+    try:
+        waiting = list(guests)
+        while waiting:
+            waiting = [guest for guest in waiting if not guest.is_started()]
+        for guest in guests:
+            guest.join()
+        assert [node.get_name() for node in graph.nodes] == ["echo0", "echo1", "echo2"]
+    finally:
+        for guest in guests:
+            guest.close()
+    assert graph.nodes == ()

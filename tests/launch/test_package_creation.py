@@ -1,0 +1,104 @@
+"""New packages: complete, launched as they lie, and such as setuptools and colcon take."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.launch.package_creation import create_package
+from kit.ros.packages import PackageError, read_package
+from kit.run.scenario import place_in_file
+from kit.world.catalogue import UnknownMap
+from tests.launch.conftest import Launched
+
+
+@pytest.fixture
+def kit(tmp_path: Path) -> Callable[..., tuple[str, str, int]]:
+    def run(*words: str) -> tuple[str, str, int]:
+        result = CliRunner(env={"KIT_WORKSPACE": str(tmp_path / "workspace")}).invoke(main, words)
+        return result.stdout, result.stderr, result.exit_code
+
+    return run
+
+
+@pytest.mark.parametrize("map_name", ["simple", "maze", "turn"])
+def test_a_new_package_is_launched_as_it_lies(map_name: str, launch: Launched, tmp_path: Path) -> None:
+    folder = create_package("my_robot", tmp_path / "src", map_name=map_name, node="walker")
+    package = read_package(folder)
+    assert package.file_of(package.executable("walker")) == folder / "my_robot" / "walker.py"
+    place_in_file(folder / "world" / "world.yaml")  # nothing outside the package is named
+    out, err, code = launch(folder, "speed:=0.3", "--until", "1")
+    assert code == 0, err
+    assert "[walker-2]: process started" in out
+
+
+def test_setuptools_installs_what_the_launch_file_names(tmp_path: Path) -> None:
+    """What colcon does with a package of the build type ament_python."""
+    pytest.importorskip("setuptools")  # not the project's own: a Python of 3.12 or later comes without
+    folder = create_package("my_robot", tmp_path)
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-W",
+            "ignore",
+            "setup.py",
+            "-q",
+            "egg_info",
+            "install_data",
+            "--install-dir",
+            str(tmp_path / "install"),
+        ],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    share = tmp_path / "install" / "share"
+    assert (share / "ament_index/resource_index/packages/my_robot").is_file()
+    assert (share / "my_robot/package.xml").is_file()
+    assert (share / "my_robot/launch/my_robot.launch.py").is_file()
+    installed = {path.name for path in (share / "my_robot/world").iterdir()}
+    assert installed == {path.name for path in (folder / "world").iterdir()}
+    points = (folder / "my_robot.egg-info/entry_points.txt").read_text()
+    assert "driver = my_robot.driver:main" in points
+
+
+@pytest.mark.parametrize("name", ["My", "9lives", "with-dash", "", "launch", "../up"])
+def test_names_that_cannot_be_are_refused(name: str, tmp_path: Path) -> None:
+    with pytest.raises(PackageError, match="cannot be called"):
+        create_package(name, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_overwritten_and_nothing_half_made(tmp_path: Path) -> None:
+    create_package("mine", tmp_path)
+    with pytest.raises(PackageError, match="is there already"):
+        create_package("mine", tmp_path)
+    with pytest.raises(UnknownMap):
+        create_package("yours", tmp_path, map_name="atlantis")
+    with pytest.raises(PackageError, match="cannot be made"):
+        create_package("theirs", Path("/proc/nowhere"))
+    assert [path.name for path in tmp_path.iterdir()] == ["mine"]
+
+
+def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int]], tmp_path: Path) -> None:
+    out, err, code = kit("pkg", "create", "my_robot")
+    assert (err, code) == ("", 0)
+    assert out.endswith("\nkit launch my_robot\n")
+    folder = tmp_path / "workspace" / "packages" / "my_robot"
+    assert kit("pkg") == kit("pkg", "executables", "my_robot") == ("my_robot driver\n", "", 0)
+    assert kit("pkg", "list") == kit("ros", "pkg", "list") == ("my_robot\n", "", 0)
+    assert kit("pkg", "prefix", "my_robot") == (f"{folder}\n", "", 0)
+    assert kit("pkg", "xml", "my_robot")[0] == (folder / "package.xml").read_text()
+    out, err, code = kit("pkg", "executables", "yours")
+    assert code == 2
+    assert "not found; there are: my_robot" in err
+    assert kit("pkg", "create", "my_robot")[2] == 2
+    assert kit("launch", "my_robot", "--steps", "5")[2] == 0

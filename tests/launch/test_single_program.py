@@ -1,0 +1,122 @@
+"""One program by itself: beside a running world, alone, and together with another."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from kit.inspection.client import Visit
+from kit.inspection.world_sockets import running_worlds, sockets_folder
+from tests.inspection.conftest import until
+from tests.launch.conftest import Workshop, kit
+
+HELLO = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Hello(Node):
+    def __init__(self):
+        super().__init__("hello")
+        self.declare_parameter("word", "hello")
+        self.out = self.create_publisher(String, "words", 10)
+        self.create_timer(0.05, self.speak)
+
+    def speak(self):
+        self.out.publish(String(data=self.get_parameter("word").value))
+"""
+
+HEAR = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Hear(Node):
+    def __init__(self):
+        super().__init__("hear")
+        self.create_subscription(String, "words", self.hear, 10)
+
+    def hear(self, message):
+        print("heard", message.data, self.get_clock().now().nanoseconds > 0)
+"""
+
+
+def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
+    """The first runs alone, in real time; the second finds it and joins."""
+    workspace = tmp_path / "workspace"
+    (tmp_path / "hello.py").write_text(HELLO)
+    (tmp_path / "hear.py").write_text(HEAR)
+    with kit(workspace, "ros", "run", tmp_path / "hello.py", "--ros-args", "-p", "word:=bonjour") as first:
+        until(lambda: running_worlds(sockets_folder(workspace)))
+        with kit(workspace, "ros", "run", tmp_path / "hear.py") as second:
+            assert second.stdout is not None
+            assert [second.stdout.readline() for _ in range(3)] == ["heard bonjour True\n"] * 3
+            with Visit(running_worlds(sockets_folder(workspace))[0]) as visit:
+                names = {handle.full_name for handle in visit.graph.directory.nodes}
+            assert {"/hello", "/hear"} <= names
+            second.send_signal(signal.SIGINT)
+            rest, _ = second.communicate(timeout=10)
+            assert "Traceback" not in rest
+            assert second.returncode == 130
+        first.send_signal(signal.SIGINT)
+        rest, _ = first.communicate(timeout=10)
+        assert (rest, first.returncode) == ("", 130)
+    assert not list((workspace / ".running").rglob("*.sock"))
+
+
+def test_a_package_s_program_runs_beside_a_world(workshop: Workshop, tmp_path: Path) -> None:
+    """In the world's time, with the world's services; the world goes on when it has ended."""
+    folder = workshop.package(
+        "visitor",
+        "",
+        mover="""
+        from flatland_msgs.srv import MoveModel
+        from geometry_msgs.msg import Pose2D
+        client = self.create_client(MoveModel, "/move_model")
+        client.wait_for_service()
+        future = client.call_async(MoveModel.Request(name="nobody", pose=Pose2D()))
+        rclpy.spin_until_future_complete(self, future)
+        print(future.result().message, self.get_clock().now().nanoseconds > 0)
+        raise SystemExit(0)
+        """,
+    )
+    source = folder / "visitor" / "mover.py"
+    source.write_text(
+        source.read_text().replace("rclpy.spin(Mover())", "Mover()").replace("raise SystemExit(0)", "")
+    )
+    workspace = tmp_path / "workspace"
+    with kit(workspace, "run", "simple", "--serve", "--steps", "100000") as world:
+        until(lambda: running_worlds(sockets_folder(workspace)))
+        (workspace / "packages").mkdir(parents=True, exist_ok=True)
+        (workspace / "packages" / "visitor").symlink_to(folder)
+        with kit(workspace, "ros", "run", "visitor", "mover") as visitor:
+            said, _ = visitor.communicate(timeout=30)
+        assert 'model with name "nobody" does not exist True' in said
+        assert visitor.returncode == 0
+        with kit(workspace, "ros", "node", "list") as listing:
+            assert "/flatland_server" in listing.communicate(timeout=30)[0]
+        with kit(workspace, "ros", "run", "visitor", "nothing") as wrong:
+            assert "has no executable 'nothing'; it has: mover" in wrong.communicate(timeout=30)[0]
+        assert wrong.returncode == 2
+        with kit(workspace, "ros", "run", tmp_path / "none.py") as wrong:
+            assert "none.py" in wrong.communicate(timeout=30)[0]
+        assert wrong.returncode == 2
+        world.send_signal(signal.SIGINT)
+        summary, _ = world.communicate(timeout=30)
+    assert "fingerprint" in summary
+
+
+def test_a_run_keeps_a_bag(tmp_path: Path) -> None:
+    from kit.ros.bags import read_bag
+
+    with kit(
+        tmp_path / "workspace", "run", "simple", "--steps", "100", "--bag", tmp_path / "bag", "-s", "sqlite3"
+    ) as run:
+        run.communicate(timeout=60)
+    assert run.returncode == 0
+    bag = read_bag(tmp_path / "bag")
+    assert {topic.name: topic.count for topic in bag.topics}["/static_laser"] == 10
+    assert bag.storage == "sqlite3"
+    with kit(tmp_path / "workspace", "run", "simple", "--steps", "1", "--bag", tmp_path / "bag") as again:
+        assert "is there already" in again.communicate(timeout=60)[0]
+    assert again.returncode == 2

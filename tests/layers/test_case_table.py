@@ -1,0 +1,166 @@
+"""A case typed by hand: whatever is typed is a case, can be undone, and reads back as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kit.layers.case_table import Editing, Kind
+from kit.layers.examples import EXAMPLES
+from kit.layers.reading import read_requirements, written
+from kit.layers.requirements import Case, CaseError, Contact, Sight
+
+EMPTY = Editing(Case(()))
+
+
+def typed(*names: tuple[Kind, str]) -> Editing:
+    editing = EMPTY
+    for kind, name in names:
+        editing = editing.with_new(kind, name)
+    return editing
+
+
+ROOM = typed(("map", "walls"), ("body", "robot"), ("laser", "eye"))
+
+
+def test_the_smallest_case_from_nothing() -> None:
+    editing = ROOM.moved(-1, -5).turned()
+    assert editing.meaning == "walls and robot must collide"
+    editing = editing.moved(1, 0).turned()
+    assert editing.meaning == "eye must see walls"
+    assert editing.case.requirements == (Contact("walls", "robot"), Sight("eye", "walls"))
+
+
+def test_a_mark_turns_through_all_three_and_back() -> None:
+    pair = ROOM.moved(-1, -5)
+    said = []
+    for _ in range(4):
+        said.append(pair.meaning.removeprefix("walls and robot "))
+        pair = pair.turned()
+    assert said == ["must not collide", "must collide", "may share a layer", "must not collide"]
+    sight = ROOM.moved(0, 1)
+    said = []
+    for _ in range(4):
+        said.append(sight.meaning)
+        sight = sight.turned()
+    assert said == [
+        "eye must not see robot",
+        "eye must see robot",
+        "eye may see robot",
+        "eye must not see robot",
+    ]
+
+
+def test_the_cursor_stays_in_the_table() -> None:
+    assert (ROOM.row, ROOM.column) == (2, 0)
+    assert ROOM.moved(0, 9).column == 1
+    assert ROOM.moved(9, 0).row == 2
+    assert ROOM.moved(0, 1).moved(-2, 0).column == 0
+    assert EMPTY.moved(1, 1) == EMPTY
+    assert EMPTY.meaning == "nobody is here yet"
+
+
+@pytest.mark.parametrize(
+    "key", ["two maps", "itself", "no name", "a space", "twice", "a part of a whole", "nothing"]
+)
+def test_what_cannot_be_is_refused_with_a_reason(key: str) -> None:
+    two_maps = typed(("map", "walls"), ("map", "floor")).moved(0, -1)
+    refused = {
+        "two maps": two_maps.turned,
+        "itself": typed(("body", "robot")).turned,
+        "no name": lambda: ROOM.with_new("body", ""),
+        "a space": lambda: ROOM.with_new("body", "my robot"),
+        "twice": lambda: ROOM.with_new("map", "robot"),
+        "a part of a whole": lambda: ROOM.with_new("body", "robot.arm"),
+        "nothing": EMPTY.without_row,
+    }
+    with pytest.raises(CaseError) as caught:
+        refused[key]()
+    assert str(caught.value)
+
+
+def test_a_row_is_deleted_with_all_that_is_said_of_it() -> None:
+    editing = ROOM.moved(-1, 0).turned().moved(1, 0).turned()
+    without_map = editing.moved(-2, 0).without_row()
+    assert without_map.case.names == ("robot",)
+    assert without_map.case.requirements == ()
+    without_laser = editing.without_row()
+    assert without_laser.case.lasers == ()
+    assert without_laser.case.names == ("walls", "robot")
+
+
+def test_every_change_can_be_undone() -> None:
+    steps = [EMPTY]
+    for change in (
+        lambda editing: editing.with_new("map", "walls"),
+        lambda editing: editing.with_new("body", "robot"),
+        lambda editing: editing.turned(),
+        lambda editing: editing.with_new("laser", "eye"),
+        lambda editing: editing.without_row(),
+    ):
+        steps.append(change(steps[-1].moved(0, -5)))
+    editing = steps[-1]
+    for before in reversed(steps[:-1]):
+        editing = editing.undone()
+        assert editing.case == before.case
+    with pytest.raises(CaseError):
+        editing.undone()
+
+
+def test_parts_of_one_model_are_free_by_assumption_and_not_by_themselves() -> None:
+    editing = typed(("body", "cart.front"), ("body", "cart.back"))
+    assert editing.case.relation("cart.front", "cart.back") == "apart"
+    free = Editing(editing.written, row=1, never=True)
+    assert free.case.relation("cart.front", "cart.back") == "either"
+    with pytest.raises(CaseError):
+        free.turned()
+
+
+KEYS: dict[str, Callable[[Editing, int], Editing]] = {
+    "up": lambda editing, number: editing.moved(-1, 0),
+    "down": lambda editing, number: editing.moved(1, 0),
+    "left": lambda editing, number: editing.moved(0, -1),
+    "right": lambda editing, number: editing.moved(0, 1),
+    "turn": lambda editing, number: editing.turned(),
+    "map": lambda editing, number: editing.with_new("map", f"map{number}"),
+    "body": lambda editing, number: editing.with_new("body", f"body{number}"),
+    "part": lambda editing, number: editing.with_new("body", f"cart.part{number}"),
+    "laser": lambda editing, number: editing.with_new("laser", f"laser{number}"),
+    "delete": lambda editing, number: editing.without_row(),
+    "undo": lambda editing, number: editing.undone(),
+}
+
+
+@given(st.lists(st.sampled_from(list(KEYS)), max_size=60))
+def test_whatever_is_typed_is_a_case_that_reads_back(keys: list[str]) -> None:
+    editing = EMPTY
+    for number, key in enumerate(keys):
+        try:
+            editing = KEYS[key](editing, number)
+        except CaseError:
+            continue
+        assert 0 <= editing.row < max(1, editing.rows)
+        assert editing.meaning
+    if editing.case.entities:
+        assert_reads_back(editing.case)
+
+
+def assert_reads_back(case: Case) -> None:
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "case.layers.yaml"
+        file.write_text(written(case))
+        read = read_requirements(file).case
+    assert set(read.names) == set(case.names)
+    assert set(read.requirements) == set(case.requirements)
+    assert read.either == case.either
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_example_can_be_edited(name: str) -> None:
+    editing = Editing(EXAMPLES[name], row=1)
+    assert editing.with_new("body", "newcomer").undone().case == EXAMPLES[name]

@@ -1,0 +1,127 @@
+"""What the batch engine takes of a world, and how it names what it cannot take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.batch_map import Ground, Unsupported, fleet_of, ground_of
+from tests.sim.workshop import Workshop
+
+Mapped = Mapping[str, Any]
+SQUARE = [[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]]
+BESIDE = [[0.3, 0.1], [0.1, 0.1], [0.1, -0.1], [0.3, -0.1]]
+"""Not around the lidar."""
+LASER = {"type": "Laser", "name": "lidar", "body": "base", "range": 10, "layers": ["seen"]} | {
+    "angle": {"min": -1, "max": 1, "increment": 0.5}
+}
+DRIVE = {"type": "DiffDrive", "name": "drive", "body": "base"}
+ROUND = {"type": "circle", "radius": 0.1, "density": 1, "layers": ["wall"]}
+ROOM = {"wall seen": [(-2, -2, 2, -2), (2, -2, 2, 2), (2, 2, -2, 2), (-2, 2, -2, -2)]}
+
+
+def footprint(**changes: Any) -> dict[str, Any]:
+    return {"type": "polygon", "points": SQUARE, "density": 1, "layers": ["wall"]} | changes
+
+
+def body(name: str = "base", **changes: Any) -> dict[str, Any]:
+    return {"name": name, "footprints": [footprint()]} | changes
+
+
+def robot(**changes: Any) -> dict[str, Any]:
+    return {"bodies": [body()], "plugins": [DRIVE, LASER]} | changes
+
+
+@pytest.fixture
+def workshop(tmp_path: Path) -> Workshop:
+    return Workshop(tmp_path)
+
+
+def ground(workshop: Workshop, models: Mapped, **changes: Any) -> Ground:
+    drivers = [name for name in models if name.startswith("robot")]
+    layers = changes.pop("layers", ROOM)
+    return ground_of(workshop.world(models, layers, **changes), "test", drivers)
+
+
+def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
+    post = {"bodies": [{"name": "post", "type": "static", "footprints": [footprint(layers=[])]}]}
+    taken = ground(workshop, {"robot": robot(), "post": post})
+    assert len(taken.walls) == 4
+    assert len(taken.robot.directions) == 5
+    assert (taken.robot.reach, taken.robot.noise) == (10.0, 0.0)
+    around = robot(plugins=[DRIVE, LASER | {"layers": ["all"]}])
+    assert len(ground(workshop, {"robot": around, "post": post}).walls) == 4  # it stands inside its hull
+    (hull,) = taken.robot.hull
+    assert sorted(hull) == sorted((x, y) for x in (-0.1, 0.1) for y in (-0.1, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("models", "reason"),
+    [
+        ({"robot": robot(bodies=[body(footprints=[ROUND])])}, "round footprint"),
+        (
+            {"robot": robot(bodies=[body(footprints=[footprint(layers=["wall", "seen"], points=BESIDE)])])},
+            "does not see itself",
+        ),
+        ({"robot": robot(bodies=[body(), body("arm")])}, "joints"),
+        ({"robot": robot(bodies=[body(pose=[1, 0, 0])])}, "at the origin"),
+        ({"robot": robot(bodies=[body(type="kinematic")])}, "dynamic"),
+        ({"robot": robot(bodies=[body(footprints=[footprint(sensor=True)])])}, "colliding"),
+        ({"robot": robot(plugins=[DRIVE])}, "one Laser, not 0"),
+        ({"robot": robot(plugins=[DRIVE, LASER, LASER | {"name": "second"}])}, "one Laser, not 2"),
+        ({"robot": robot(plugins=[LASER])}, "one DiffDrive, not 0"),
+        ({"robot": robot(plugins=[DRIVE, LASER, {"type": "Gps", "name": "gps", "body": "base"}])}, "no Gps"),
+        ({"robot": robot(plugins=[DRIVE, LASER | {"origin": [0.1, 0, 0]}])}, "at the origin"),
+        (
+            {"robot": robot(plugins=[DRIVE | {"linear_dynamics": {"acceleration_limit": 1}}, LASER])},
+            "no limits",
+        ),
+        ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "not the body cart"),
+        ({"robot": robot(), "post": {"bodies": [body("post", type="static")]}}, "walls and robots, no post"),
+        ({"robot_1": robot(), "robot_2": robot()}, "see each other"),
+        ({"robot_1": robot(), "robot_2": robot(), "robot_3": robot()}, "not 3"),
+    ],
+)
+def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, reason: str) -> None:
+    with pytest.raises(Unsupported, match=reason) as refusal:
+        ground(workshop, models)
+    assert "the batch engine" in str(refusal.value)
+
+
+def test_walls_must_be_both_touched_and_seen(workshop: Workshop) -> None:
+    glass = ROOM | {"glass": [(-1, 0, 1, 0)]}
+    seeing = robot(plugins=[DRIVE, LASER | {"layers": ["seen", "glass"]}])
+    with pytest.raises(Unsupported, match="touches and sees"):
+        ground(workshop, {"robot": seeing}, layers=glass)
+
+
+def test_a_plugin_of_the_world_is_refused(workshop: Workshop) -> None:
+    walls = {"type": "RandomWall", "name": "walls", "layer": "wall", "num_of_walls": 1, "wall_wall_dist": 1}
+    with pytest.raises(Unsupported, match="no RandomWall of the whole world"):
+        ground(workshop, {"robot": robot()}, plugins=[walls | {"double_wall": False, "robot_name": "robot"}])
+
+
+def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
+    small = ground(workshop, {"robot": robot()})
+    many = Ground("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
+    fleet = fleet_of([small, many, small])
+    for number, each in enumerate((small, many, small)):
+        first, end = fleet.walls.starts[fleet.blocks[number : number + 2]]
+        ours = {tuple(wall) for wall in fleet.walls.ends[first:end].tolist()}
+        assert ours == {tuple(wall) for wall in each.walls.tolist()}
+    assert fleet.blocks.tolist()[0] == 0
+    assert fleet.radius == pytest.approx(np.hypot(0.1, 0.1))
+    assert len(fleet.beams.cos) == len(small.robot.directions)
+    assert fleet.views.grids[:, 2].astype(bool).tolist() == [True, False, True]
+
+
+def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
+    one = ground(workshop, {"robot": robot()})
+    other = ground(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
+    with pytest.raises(Unsupported, match="alike"):
+        fleet_of([one, other])
+    assert fleet_of([one], noise=0.1).noise == 0.1

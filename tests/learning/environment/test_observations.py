@@ -1,0 +1,73 @@
+"""What an agent sees, as numbers: sectors, sizes, bounds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.observations import (
+    AHEAD,
+    NINE,
+    NINETEEN,
+    RAYS,
+    SEVENTEEN,
+    SIDE_RAYS,
+    Observation,
+)
+
+every_one = pytest.mark.parametrize("seen", [NINE, SEVENTEEN, NINETEEN])
+
+
+def degrees(ray: int) -> float:
+    """From straight ahead, to the left positive."""
+    return (ray - AHEAD) * 4.0
+
+
+def test_the_dissertations_rays() -> None:
+    assert [degrees(ray) for ray in SEVENTEEN.rays] == [0, 8, -8, 92, -92]
+    assert [[degrees(ray) for ray in side] for side in SIDE_RAYS] == [[-84, -100], [84, 100]]
+    assert (NINE.size, SEVENTEEN.size, NINETEEN.size) == (9, 17, 19)
+
+
+def test_nine_sectors_of_ten_rays_the_last_of_eleven() -> None:
+    _, stretches = NINE.tables(1)
+    assert [(end - first) for _, first, end in stretches.tolist()] == [10] * 8 + [11]
+
+
+def test_twelve_sectors_narrow_ahead_and_wide_behind() -> None:
+    sizes = np.bincount(SEVENTEEN.sectors)
+    assert sizes.tolist() == [16, 15, *[5] * 9, 15]
+    ahead = [degrees(ray) for ray in range(RAYS) if SEVENTEEN.sectors[ray] == 6]
+    assert ahead == [-8, -4, 0, 4, 8]
+    assert {SEVENTEEN.sectors[0], SEVENTEEN.sectors[RAYS - 1]} == {0}
+
+
+@every_one
+def test_stretches_are_the_sectors(seen: Observation) -> None:
+    single, stretches = seen.tables(2)
+    again = np.full(RAYS, -1)
+    for sector, first, end in stretches.tolist():
+        assert (again[first:end] == -1).all()
+        again[first:end] = sector
+    assert again.tolist() == list(seen.sectors)
+    assert single.shape == (2, len(seen.rays) + 2 * seen.side_rays)
+
+
+@every_one
+@pytest.mark.parametrize("robots", [1, 2])
+@pytest.mark.parametrize("target", [False, True])
+@pytest.mark.parametrize("arrived", [False, True])
+def test_the_space_has_a_bound_for_every_number(
+    seen: Observation, robots: int, target: bool, arrived: bool
+) -> None:
+    more = replace(seen, target=target, arrived=arrived)
+    space = more.space(robots)
+    assert more.size == seen.size + 2 * target + arrived
+    assert space.shape == (robots * more.size,)
+    high, low = space.high.reshape(robots, -1), space.low.reshape(robots, -1)
+    assert (high[:, : seen.size] == seen.clip * seen.scale).all()
+    assert (low < 0).sum() == robots * target
+    if arrived:
+        assert (high[:, -1] == 1).all()

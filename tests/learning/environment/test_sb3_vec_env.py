@@ -1,0 +1,119 @@
+"""Many worlds for stable-baselines3: the same as one by one, and an algorithm takes them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.env import TaskEnv
+from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, Task
+
+pytestmark = pytest.mark.skipif(
+    find_spec("stable_baselines3") is None, reason="the extra learn is not installed"
+)
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
+def test_one_world_of_stable_baselines_is_the_environment(task: Task) -> None:
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    from kit.learning.environment.sb3_vec_env import make_vec
+
+    task = replace(task, max_steps=25)
+    plain, ours = DummyVecEnv([lambda: TaskEnv(task)]), make_vec(task, 1, seed=9)
+    plain.seed(9)
+    ours.seed(9)
+    assert np.array_equal(plain.reset(), ours.reset())
+    ours.action_space.seed(0)
+    for _ in range(80):
+        actions = np.array([ours.action_space.sample()])
+        one, other = plain.step(actions), ours.step(actions)
+        for a, b in zip(one[:3], other[:3], strict=True):
+            assert np.array_equal(a, b)
+        if one[2][0]:
+            (expected,), (info,) = one[3], other[3]
+            assert np.array_equal(info["terminal_observation"], expected["terminal_observation"])
+            assert info["TimeLimit.truncated"] == expected["TimeLimit.truncated"]
+            assert (info["case"], info["outcome"]) == (expected["case"], expected["outcome"])
+
+
+def test_infos_tell_of_the_episode() -> None:
+    from kit.learning.environment.sb3_vec_env import make_vec
+
+    env = make_vec(replace(WHEELCHAIRS, max_steps=10), 5, seed=1)
+    env.reset()
+    rewards, told = np.zeros(5), 0
+    for _ in range(25):
+        _, earned, dones, infos = env.step(np.array([env.action_space.sample() for _ in range(5)]))
+        rewards += earned
+        assert [bool(info) for info in infos] == dones.tolist()
+        for world in np.flatnonzero(dones).tolist():
+            info = infos[world]
+            assert info["episode"]["r"] == pytest.approx(rewards[world], abs=1e-5)
+            assert sum(info["terms"].values()) == pytest.approx(rewards[world], abs=1e-4)
+            assert info["is_success"] == (info["outcome"] == "reached")
+            assert info["TimeLimit.truncated"] == (info["outcome"] == "timed out")
+            assert 0.0 <= info["adjacency"] <= 1.0
+            rewards[world] = 0.0
+            told += 1
+    assert told >= 5
+
+
+@pytest.mark.parametrize("task", [TURN, HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
+def test_ppo_takes_it(task: Task) -> None:
+    from stable_baselines3 import PPO
+
+    from kit.learning.environment.sb3_vec_env import make_vec
+
+    model = PPO(
+        "MlpPolicy", make_vec(task, 8, seed=0), n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0
+    )
+    model.learn(256)
+    assert model.num_timesteps == 256
+
+
+def test_what_would_set_one_world_apart_is_refused() -> None:
+    from kit.learning.environment.sb3_vec_env import make_vec
+
+    env = make_vec(TURN, 2)
+    assert env.get_attr("n") == [2, 2]
+    assert env.env_is_wrapped(object) == [False, False]
+    with pytest.raises(AttributeError, match="one"):
+        env.set_attr("n", 3)
+    with pytest.raises(AttributeError, match="one"):
+        env.env_method("reset")
+
+
+def test_half_of_every_case_is_seen_in_a_mirror() -> None:
+    from kit.learning.environment.mirror import Mirror
+    from kit.learning.environment.sb3_vec_env import HalfMirrored, make_vec
+
+    task = HALLWAY.on("left_door", "turn_left_90", "straight")
+    plainly, mirrored = make_vec(task, 12, 3, stay=True), HalfMirrored(make_vec(task, 12, 3, stay=True))
+    mirror, which = Mirror(task), np.array([3, 4, 5, 9, 10, 11])
+    others = np.setdiff1d(np.arange(12), which)
+    seen: Any = (plainly.reset(), mirrored.reset())
+    chance = np.random.default_rng(0)
+    over = 0
+    for _ in range(120):
+        assert (seen[1][which] == mirror.observations(seen[0][which])).all()
+        assert (seen[1][others] == seen[0][others]).all()
+        actions = chance.integers(0, 7, 12)
+        shown = actions.copy()
+        shown[which] = mirror.actions(actions[which])
+        (first, rewards, dones, infos), (second, rewards2, dones2, infos2) = (
+            plainly.step(actions),
+            mirrored.step(shown),
+        )
+        assert (rewards == rewards2).all()
+        assert (dones == dones2).all()
+        for number in np.flatnonzero(dones):
+            last, last2 = infos[number]["terminal_observation"], infos2[number]["terminal_observation"]
+            assert (last2 == (mirror.observations(last) if number in which else last)).all()
+            over += 1
+        seen = (first, second)
+    assert over

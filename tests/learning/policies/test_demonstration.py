@@ -1,0 +1,87 @@
+"""The newest policy at the wheel: case after case, a newer policy from the next episode on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.episode_stats import Outcome
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.policies.demonstration import Demonstration
+from kit.learning.policies.policies import Chance, Layer, Network, Policy, PolicyError, save_policy
+from kit.learning.training.runs import Run, RunConfig, new_run
+
+FORWARD, LEFT = 0, 1
+
+
+def always(move: int, steps: int) -> Policy:
+    """Of the task *turn*, whatever it sees."""
+    bias = np.zeros(3, dtype=np.float32)
+    bias[move] = 1.0
+    layer = Layer(np.zeros((9, 3), dtype=np.float32), bias)
+    return Policy(Network((layer,), "tanh"), (3,), Chance("softmax", 1.0), TaskChoice("turn"), steps)
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    return new_run(tmp_path, RunConfig(TaskChoice("turn")))
+
+
+def end(demonstration: Demonstration) -> None:
+    while not demonstration.over:
+        demonstration.step()
+
+
+def test_without_a_policy_nobody_drives(run: Run) -> None:
+    assert not Demonstration(run).begin()
+
+
+def test_cases_take_turns_and_one_can_be_chosen(run: Run) -> None:
+    save_policy(always(FORWARD, 100), run.newest_policy)
+    demonstration = Demonstration(run)
+    seen = []
+    for case in (None, None, "turn_b_to_a", "turn_b_to_a"):
+        demonstration.case = case
+        assert demonstration.begin()
+        first = demonstration.moment()
+        assert (first.step, first.outcome, first.trained) == (0, None, 100)
+        end(demonstration)
+        last = demonstration.moment()
+        assert last.case == first.case
+        assert last.outcome is Outcome.COLLIDED
+        assert len(last.scene.trails[0]) > 1
+        seen.append(last.case)
+    assert seen == ["turn_a_to_b", "turn_b_to_a", "turn_b_to_a", "turn_b_to_a"]
+
+
+def test_a_newer_policy_waits_for_the_end_of_the_episode(run: Run) -> None:
+    save_policy(always(FORWARD, 100), run.newest_policy)
+    demonstration = Demonstration(run)
+    demonstration.begin()
+    demonstration.step()
+    save_policy(always(LEFT, 2000), run.newest_policy)
+    end(demonstration)
+    assert demonstration.moment().trained == 100
+    demonstration.begin()
+    assert demonstration.moment().trained == 2000
+    end(demonstration)
+    assert demonstration.moment().outcome is Outcome.TIMED_OUT
+
+
+def test_once_all_is_over_the_best_one_drives(run: Run) -> None:
+    save_policy(always(LEFT, 2000), run.newest_policy)
+    demonstration = Demonstration(run)
+    demonstration.begin(kept=True)
+    assert not demonstration.moment().kept
+    save_policy(always(FORWARD, 100), run.best_policy)
+    demonstration.begin(kept=True)
+    assert demonstration.moment().kept
+    assert demonstration.moment().trained == 100
+
+
+def test_a_damaged_policy_says_so(run: Run) -> None:
+    run.newest_policy.write_bytes(b"half")
+    with pytest.raises(PolicyError, match=r"newest\.npz"):
+        Demonstration(run).begin()

@@ -1,0 +1,160 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.tasks import UnknownTask, find_task
+from kit.learning.policies.policies import (
+    Chance,
+    Layer,
+    Lstm,
+    Network,
+    Policy,
+    PolicyError,
+    Table,
+    load_policy,
+    save_policy,
+    to_bytes,
+)
+from kit.learning.training.algorithms import ALGORITHMS, Algorithm
+from kit.learning.training.presets import find_preset
+from kit.learning.training.training import fitted, make_learner
+
+
+def layer(rng: np.random.Generator, inputs: int, outputs: int) -> Layer:
+    weights, bias = rng.normal(size=(inputs, outputs)), rng.normal(size=outputs)
+    return Layer(weights.astype(np.float32), bias.astype(np.float32))
+
+
+def made(choices: tuple[int, ...] = (3,), *, recurrent: bool = False, seed: int = 0) -> Policy:
+    """A policy that sees nine numbers."""
+    rng = np.random.default_rng(seed)
+    lstm = Lstm(layer(rng, 9, 20), layer(rng, 5, 20)) if recurrent else None
+    layers = (layer(rng, 5 if recurrent else 9, 8), layer(rng, 8, sum(choices)))
+    return Policy(Network(layers, "tanh", lstm), choices, Chance("softmax"), TaskChoice("turn"), 1234)
+
+
+def table() -> Policy:
+    values = np.arange(27 * 3, dtype=np.float32).reshape(27, 3) % 7
+    brain = Table(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
+    return Policy(brain, (3,), Chance("epsilon", 0.5), TaskChoice("turn"), 9)
+
+
+POLICIES = {"network": made(), "two heads": made((4, 4)), "memory": made(recurrent=True), "table": table()}
+SEEN = np.random.default_rng(1).random((50, 9), dtype=np.float32)
+
+
+@pytest.mark.parametrize("policy", POLICIES.values(), ids=POLICIES)
+def test_comes_back_from_its_file_as_it_was(policy: Policy, tmp_path: Path) -> None:
+    save_policy(policy, tmp_path / "p.npz")
+    back = load_policy(tmp_path / "p.npz")
+    assert to_bytes(back) == to_bytes(policy)
+    assert (back.choices, back.chance, back.trained_on, back.steps) == (
+        *(policy.choices, policy.chance, policy.trained_on),
+        policy.steps,
+    )
+    one, other = policy.player(50), back.player(50)
+    for _ in range(3):
+        assert one.act(SEEN).tolist() == other.act(SEEN).tolist()
+
+
+@pytest.mark.parametrize("keep", [0, 10, 200, 900])
+def test_half_a_file_is_refused(keep: int, tmp_path: Path) -> None:
+    file = tmp_path / "p.npz"
+    file.write_bytes(to_bytes(made())[:keep])
+    with pytest.raises(PolicyError, match=r"p\.npz"):
+        load_policy(file)
+
+
+def test_a_file_with_code_in_it_is_refused(tmp_path: Path) -> None:
+    np.savez(tmp_path / "p.npz", about=np.array([object()]))
+    with pytest.raises(PolicyError, match="damaged"):
+        load_policy(tmp_path / "p.npz")
+
+
+def test_a_missing_file_is_missing(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        load_policy(tmp_path / "p.npz")
+
+
+def test_one_world_alone_acts_as_among_many() -> None:
+    for policy in POLICIES.values():
+        together = policy.player(50).act(SEEN)
+        alone = [policy.player(1).act(SEEN[i : i + 1])[0] for i in range(50)]
+        assert np.array(alone).tolist() == together.tolist()
+
+
+def test_memory_is_cleared_where_an_episode_begins() -> None:
+    brain = made(recurrent=True).brain
+    policy = replace(POLICIES["memory"], brain=brain, choices=(1,) * 3)
+    fresh, old = policy.player(50), policy.player(50)
+    for _ in range(3):
+        old.act(1 - SEEN)
+    begun = np.arange(50) % 2 == 0
+    fresh.act(SEEN)
+    old.act(SEEN, begun)
+    assert np.array_equal(old.memory[begun], fresh.memory[begun])
+    assert not np.isclose(old.memory[~begun], fresh.memory[~begun]).all(axis=(1, 2)).any()
+
+
+def test_softmax_draws_in_proportion() -> None:
+    bias = np.log(np.array([0.5, 0.3, 0.2], dtype=np.float32))
+    brain = Network((Layer(np.zeros((9, 3), np.float32), bias),), "tanh")
+    policy = replace(made(), brain=brain)
+    drawn = policy.player(20_000, np.random.default_rng(0)).act(np.zeros((20_000, 9)))
+    assert np.bincount(drawn) / 20_000 == pytest.approx([0.5, 0.3, 0.2], abs=0.02)
+    cold = replace(policy, chance=Chance("softmax", 0.01)).player(1000, np.random.default_rng(0))
+    assert not cold.act(np.zeros((1000, 9))).any()
+
+
+def test_epsilon_takes_anything_now_and_then() -> None:
+    policy = table()
+    best = policy.player(1).act(SEEN[:1])[0]
+    drawn = policy.player(9000, np.random.default_rng(0)).act(np.repeat(SEEN[:1], 9000, axis=0))
+    assert np.mean(drawn == best) == pytest.approx(0.5 + 0.5 / 3, abs=0.02)
+
+
+def test_a_policy_that_does_not_fit_says_what_it_was_made_for() -> None:
+    made().fits(find_task("turn"))
+    with pytest.raises(PolicyError, match=r"turn: it sees 9 numbers.*hallway gives 17"):
+        made().fits(find_task("hallway"))
+    with pytest.raises(PolicyError, match="4 actions"):
+        made((4,)).fits(find_task("turn"))
+
+
+def test_a_choice_goes_into_a_file_and_back() -> None:
+    choice = TaskChoice("hallway", ("doors",), measured_to="axle", tells_target=True, scale=0.5)
+    assert TaskChoice.from_dict(choice.as_dict()) == choice
+    task = choice.resolve()
+    assert (task.measured_to, task.observation.target, task.reward.scale) == ("axle", True, 0.5)
+    assert len(task.courses()) == 3
+    for wrong in (None, {}, {"task": "turn", "colour": 1}):
+        with pytest.raises(ValueError, match="choice"):
+            TaskChoice.from_dict(wrong)
+    with pytest.raises(UnknownTask, match="algorithm-1"):
+        TaskChoice("turn", reward="algorithm1").resolve()
+
+
+NEURAL = [row for row in ALGORITHMS.values() if row.neural]
+
+
+@pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
+@pytest.mark.parametrize("algorithm", NEURAL, ids=lambda row: row.name)
+def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
+    choice = fitted(TaskChoice("wheelchairs"), algorithm)
+    task = choice.resolve()
+    preset = replace(find_preset("kit", algorithm, "wheelchairs"), worlds=225 if algorithm.several else 2)
+    if algorithm.name == "trpo":
+        preset = replace(preset, worlds=64)
+    learner = make_learner(algorithm, preset, choice, task, seed=1)
+    seen = np.random.default_rng(0).random((200, 38), dtype=np.float32)
+    player, memory, starts = learner.policy().player(200), None, np.ones(200, dtype=bool)
+    for _ in range(3):
+        wanted, memory = learner._model.predict(seen, memory, starts, deterministic=True)  # type: ignore[attr-defined]  # the peer it must equal
+        assert np.mean(player.act(seen) == wanted) > 0.99  # equal scores may be rounded either way
+        starts[:] = False

@@ -1,0 +1,145 @@
+"""Every algorithm of the table learns a task that a few lines of arithmetic could solve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.util import find_spec
+
+import pytest
+
+from kit.learning.environment.actions import THREE
+from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.observations import NINE
+from kit.learning.environment.rewards import PROGRESS
+from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.tasks import TASKS, Start, find_task
+from kit.learning.policies.evaluation import Examiner
+from kit.learning.policies.policies import Table
+from kit.learning.training.algorithms import ALGORITHMS, Algorithm, UnknownAlgorithm, find_algorithm
+from kit.learning.training.presets import (
+    PRESETS,
+    Falling,
+    Preset,
+    Replay,
+    Rollouts,
+    Search,
+    Tabular,
+    find_preset,
+)
+from kit.learning.training.stopping_rules import TrainUntil
+from kit.learning.training.training import make_learner
+
+STRAIGHT_ON = replace(
+    find_task("hallway").on("straight"),
+    name="straight-on",
+    start=Start(shifted=False),
+    actions=THREE,
+    observation=NINE,
+    reward=PROGRESS,
+    max_steps=60,
+)
+"""Ahead is right at every step, and pays at once."""
+
+_RATE = Falling(3e-3, 3e-3)
+_UNTIL = TrainUntil(every=1000)
+_REPLAY = Replay(learning_starts=300, train_freq=1, gradient_steps=1, target_update_interval=100, gamma=0.9)
+_PPO = Rollouts(n_steps=32, batch_size=256, n_epochs=6)
+_ANY = Preset(Rollouts(n_steps=32), _UNTIL, 6_000, worlds=16, learning_rate=_RATE)
+QUICK = {
+    "a2c": replace(_ANY, settings=Rollouts(n_steps=8)),
+    "trpo": _ANY,
+    "ppo": replace(_ANY, settings=_PPO),
+    "maskable-ppo": replace(_ANY, settings=_PPO),
+    "recurrent-ppo": replace(_ANY, settings=_PPO, memory=8),
+    "dqn": replace(_ANY, settings=_REPLAY),
+    "qrdqn": replace(_ANY, settings=_REPLAY, layers=(16,)),
+    "boltzmann-dqn": replace(_ANY, settings=replace(_REPLAY, temperature=0.1)),
+    "ars": Preset(
+        Search(n_delta=4, n_top=2, n_eval_episodes=4),
+        *(_UNTIL, 60_000, 4),
+        learning_rate=Falling(0.05, 0.05),
+    ),
+    "q-learning": Preset(Tabular(gamma=0.9), _UNTIL, 20_000, worlds=8),
+    "sarsa": Preset(Tabular(gamma=0.9), _UNTIL, 20_000, worlds=8),
+}
+needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
+
+
+class Onlooker:
+    """Counts."""
+
+    def __init__(self) -> None:
+        self.stops = 0
+        self.episodes: list[Episode] = []
+
+    def between(self) -> None:
+        self.stops += 1
+
+    def saw(self, episode: Episode) -> None:
+        self.episodes.append(episode)
+
+
+ROWS = [
+    pytest.param(row, id=row.name, marks=needs_learner if row.neural else ()) for row in ALGORITHMS.values()
+]
+
+
+@pytest.mark.parametrize("algorithm", ROWS)
+def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
+    preset = QUICK[algorithm.name]
+    choice = TaskChoice("hallway", ("straight",))
+    learner, onlooker = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3), Onlooker()
+    examiner = Examiner(STRAIGHT_ON)
+    before = examiner.test(learner.policy(), 20, 1).mean
+    learner.learn(preset.steps, onlooker)
+    assert examiner.test(learner.policy(), 20, 1).mean == 1.0 > before or before == 1.0
+    assert learner.steps >= preset.steps
+    assert onlooker.stops > 2
+    assert {episode.case for episode in onlooker.episodes} == {"straight"}
+
+
+@pytest.mark.parametrize("algorithm", ROWS)
+def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
+    preset = replace(QUICK[algorithm.name], steps=600)
+    choice = TaskChoice("hallway", ("straight",))
+    first = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3)
+    first.learn(600, Onlooker())
+    parts = first.save()
+    second = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=4)
+    second.load(parts)
+    assert second.steps == first.steps
+    one, other = (learner.policy() for learner in (first, second))
+    if not isinstance(one.brain, Table):
+        assert not isinstance(other.brain, Table)
+        assert [layer.weights.tolist() for layer in one.brain.layers] == [
+            layer.weights.tolist() for layer in other.brain.layers
+        ]
+    second.learn(first.steps + 600, Onlooker())
+    assert second.steps >= first.steps + 600
+    parts["learner.json"] = parts["learner.json"].replace(algorithm.name.encode(), b"another")
+    with pytest.raises(ValueError, match=algorithm.name):
+        second.load(parts)
+
+
+@pytest.mark.parametrize("algorithm", ROWS)
+def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
+    preset = replace(QUICK[algorithm.name], steps=600)
+    learner = make_learner(algorithm, preset, TaskChoice("hallway"), STRAIGHT_ON, seed=3)
+    examiner = Examiner(STRAIGHT_ON)
+    known, before = learner.remember(), examiner.test(learner.policy(), 10, 1)
+    learner.learn(1200, Onlooker())
+    learner.recall(known)
+    assert examiner.test(learner.policy(), 10, 1) == before
+
+
+@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("algorithm", ALGORITHMS.values(), ids=ALGORITHMS)
+def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: str) -> None:
+    for task in TASKS:
+        preset = find_preset(name, algorithm, task.name)  # type: ignore[arg-type]  # PRESETS are its names
+        assert preset.steps >= preset.strategy.every > 0
+
+
+def test_an_unknown_algorithm_is_told_from_a_known_one() -> None:
+    with pytest.raises(UnknownAlgorithm, match=r'did you mean "?ppo'):
+        find_algorithm("pppo")

@@ -1,0 +1,87 @@
+"""Dots to characters and back: nothing is lost but what gives way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kit.render.encode import ENCODERS, Ascii, Braille, HalfBlock
+from kit.render.roles import Role
+
+grids = st.integers(0, 2**32 - 1).map(
+    lambda seed: np.random.default_rng(seed).choice(
+        np.arange(len(Role), dtype=np.uint8),
+        size=(24, 20),
+        p=[0.6] + [0.4 / (len(Role) - 1)] * (len(Role) - 1),
+    )
+)
+# A braille pattern's dots 1 to 8, as (column, row).
+BRAILLE_DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
+
+
+@given(grids)
+def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None:
+    frame = Braille().encode(grid)
+    assert frame.shape == (6, 10)
+    for row in range(6):
+        for column in range(10):
+            cell = grid[row * 4 : row * 4 + 4, column * 2 : column * 2 + 2]
+            top = cell.max()
+            least = max(1, min(int(top), Role.WALL))
+            expected = {number for number, (x, y) in enumerate(BRAILLE_DOTS) if cell[y, x] >= least}
+            glyph = chr(frame.glyphs[row, column])
+            pattern = 0 if glyph == " " else ord(glyph) - 0x2800
+            assert {number for number in range(8) if pattern >> number & 1} == expected
+            assert frame.inks[row, column] == top
+
+
+@given(grids)
+def test_half_blocks_show_both_halves_unless_they_are_thin(grid: np.ndarray) -> None:
+    frame = HalfBlock().encode(grid)
+    for (row, column), glyph in np.ndenumerate(frame.glyphs):
+        upper, lower = grid[2 * row, column], grid[2 * row + 1, column]
+        ink, paper = frame.inks[row, column], frame.papers[row, column]
+        shown = {" ": (0, 0), "▀": (ink, paper), "▄": (paper, ink), "█": (ink, ink)}
+        if chr(glyph) in shown:
+            assert (upper, lower) == shown[chr(glyph)]
+        else:
+            assert chr(glyph) in "·▒"
+            assert ink == max(upper, lower)
+
+
+@given(grids)
+def test_ascii_names_what_is_there(grid: np.ndarray) -> None:
+    frame = Ascii().encode(grid)
+    assert np.array_equal(frame.inks, grid)
+    assert {chr(glyph) for glyph in frame.glyphs[grid == Role.WALL]} <= {"#"}
+    assert {chr(glyph) for glyph in frame.glyphs[grid == Role.HIT]} <= {"."}
+    assert all(glyph < 128 for glyph in frame.glyphs.ravel())
+
+
+@pytest.mark.parametrize("name", ENCODERS)
+@pytest.mark.parametrize("other", [Role.WALL, Role.EMPTY])
+def test_without_colours_a_hit_still_looks_like_no_wall(name: str, other: Role) -> None:
+    encoder = ENCODERS[name](True)
+    shape = encoder.down, encoder.across
+    touched = np.full(shape, other, dtype=np.uint8)
+    touched[0, 0] = Role.HIT
+    hit = encoder.encode(touched)
+    wall = encoder.encode(np.full(shape, Role.WALL, dtype=np.uint8))
+    assert hit.glyphs[0, 0] != wall.glyphs[0, 0]
+    assert not hit.papers.any()
+
+
+@pytest.mark.parametrize("name", ENCODERS)
+def test_every_symbol_is_one_character_wide_and_says_which_way(name: str) -> None:
+    symbols = ENCODERS[name](False).symbols
+    for arrows in (*symbols.robots, symbols.field, symbols.strong):
+        assert len(arrows) in (4, 8)
+        assert len(set(arrows)) == len(arrows)
+    assert len({symbols.target, symbols.contact, symbols.faint}) == 3
+
+
+def test_ascii_gives_every_role_a_shape_of_its_own() -> None:
+    assert set(Ascii.shapes) == set(Role) - {Role.EMPTY}
+    assert len(set(Ascii.shapes.values())) == len(Ascii.shapes)

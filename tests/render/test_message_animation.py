@@ -1,0 +1,119 @@
+"""Dots: one pace for every flow, never too many, and gone when nothing is said."""
+
+from __future__ import annotations
+
+from kit.render.graph import Cell, Link, Plan
+from kit.render.graph_data import Conversation
+from kit.render.graph_layout import arrange
+from kit.render.message_animation import FRAMES, MOST, Travel
+from kit.ros.graph.topic_stats import Flow, Said
+from tests.render.conversations import MAZE, WORLD, item, talk
+
+SCAN = Flow(WORLD, "/static_laser")
+
+
+def said(**counts: int) -> dict[Flow, Said]:
+    flows = {
+        "scan": SCAN,
+        "odom": Flow(WORLD, "/odom"),
+        "asked": Flow("/random_walk", "/move_model", is_service=True),
+        "answered": Flow(WORLD, "/move_model", is_service=True, answer_to="/random_walk"),
+        "gone": Flow("/gone", "/cmd_vel"),
+    }
+    return {flows[name]: Said(count, None) for name, count in counts.items()}
+
+
+def started(shown: Conversation = MAZE) -> tuple[Travel, Plan]:
+    travel = Travel()
+    travel.hear({})
+    return travel, Plan(shown, arrange(shown), 80)
+
+
+def way(travel: Travel, plan: Plan) -> list[frozenset[Cell]]:
+    """Where the dots are, frame by frame, until all have arrived."""
+    frames = []
+    while travel.busy:
+        travel.frame(plan.talk)
+        frames.append(travel.cells(plan))
+    return [cells for cells in frames if cells]
+
+
+def test_a_message_goes_from_the_node_to_the_topic_and_on_to_who_listens() -> None:
+    travel, plan = started()
+    travel.hear(said(scan=1))
+    frames = way(travel, plan)
+    assert len(frames) == 2 * FRAMES
+    first, then = (plan.path(link) for link in plan.ways if link.item == "/static_laser")
+    assert all(cells <= set(first) for cells in frames[:FRAMES])
+    assert all(cells <= set(then) for cells in frames[FRAMES:])
+    columns = [cell.column for cells in frames for cell in cells]
+    assert columns == sorted(columns)
+    assert not travel.busy
+
+
+def test_to_nobody_it_ends_at_the_topic() -> None:
+    travel, plan = started()
+    travel.hear(said(odom=1))
+    assert len(way(travel, plan)) == FRAMES
+
+
+def test_what_was_said_before_is_over() -> None:
+    travel = Travel()
+    travel.hear(said(scan=1000))
+    assert not travel.busy
+    travel.hear(said(scan=1000))
+    assert not travel.busy
+
+
+def test_a_thousand_messages_look_like_ten() -> None:
+    travel, plan = started()
+    most = 0
+    for count in range(60):
+        travel.hear(said(scan=1000 * count))
+        travel.frame(plan.talk)
+        most = max(most, len(travel.cells(plan)))
+    assert most == 2  # one before the topic, one behind it
+    assert len(way(travel, plan)) <= 3 * FRAMES
+
+
+def test_an_answer_goes_back_to_who_has_asked() -> None:
+    travel, plan = started()
+    travel.hear(said(answered=1))
+    frames = way(travel, plan)
+    columns = [cell.column for cells in frames for cell in cells]
+    assert len(frames) == 2 * FRAMES
+    assert columns == sorted(columns, reverse=True)
+
+
+def test_nothing_arrives_over_a_broken_line() -> None:
+    shown = talk(item("/scan", "/robot", "/good /bad", ("/robot", "/bad")))
+    travel, plan = started(shown)
+    travel.hear({Flow("/robot", "/scan"): Said(1, None)})
+    seen = frozenset().union(*way(travel, plan))
+    good, bad = (set(plan.path(Link(node, "/scan", sends=False))) for node in ("/good", "/bad"))
+    assert seen & good
+    assert not seen & (bad - good)
+
+
+def test_what_is_not_drawn_does_not_move() -> None:
+    travel, plan = started()
+    travel.hear(said(gone=1))
+    assert way(travel, plan) == []
+
+
+def test_a_dot_whose_line_goes_away_goes_too() -> None:
+    travel, plan = started()
+    travel.hear(said(scan=1))
+    travel.frame(plan.talk)
+    assert travel.cells(plan)
+    rest = Conversation(MAZE.nodes, MAZE.items[:1])
+    assert not travel.cells(Plan(rest, arrange(rest), 80))
+
+
+def test_there_are_never_more_than_can_be_followed() -> None:
+    shown = talk(*(item(f"/topic{number}", "/talker", "") for number in range(40)))
+    travel, plan = started(shown)
+    travel.hear({Flow("/talker", f"/topic{number}"): Said(1, None) for number in range(40)})
+    frames = way(travel, plan)
+    assert max(map(len, frames)) == MOST
+    assert frozenset(cell.row for cells in frames for cell in cells) == set(range(40))

@@ -1,0 +1,298 @@
+"""Scenes to characters: golden pictures, and what must hold of every picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kit.geometry import Pose
+from kit.render import painter as painter_module
+from kit.render.camera import Camera
+from kit.render.encode import ENCODERS, Ascii, Braille, Encoder, HalfBlock
+from kit.render.frame import BLANK, Frame
+from kit.render.painter import Painter
+from kit.render.roles import Role
+from kit.render.scene import Body, Bounds, Disc, Mark, Path, Scene
+from tests.render.scenes import box_walls, maze, robot, scan
+
+every_encoder = pytest.mark.parametrize("encoder", [Braille(), HalfBlock(), Ascii()], ids=list(ENCODERS))
+
+
+def room() -> Scene:
+    """2.4 x 1.2 m, with everything in it that can be drawn of one robot."""
+    walls = box_walls(
+        ((0, 0, 2.4, 0.1), (0, 1.1, 2.4, 1.2), (0, 0.1, 0.1, 1.1), (2.3, 0.1, 2.4, 1.1), (1.2, 0.1, 1.3, 0.6))
+    )
+    pose = Pose(0.6, 0.6, 0.6)
+    return Scene(
+        walls,
+        (robot(pose),),
+        scan(walls, pose),
+        targets=(Disc(1.9, 0.8, 0.2),),
+        trails=(np.array([(0.2 + 0.1 * i, 0.6) for i in range(4)]),),
+        contacts=np.array([(1.2, 0.3)]),
+        marks=(Mark(0.2, 0.25, "S"),),
+    )
+
+
+GOLDEN = {
+    "braille": """
+ ⢰⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⣶⡆
+ ⢸⣿⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⢉⡩⠭⣉⠉⠉⠉⣿⡇
+ ⢸⣿                  ⢠⠃ ◎ ⢣  ⣿⡇
+ ⢸⣿      ⡠⠔⠁    ⣀⡀   ⠈⢆⡀ ⣀⠎  ⣿⡇
+ ⢸⣿ ⠁⠁⠈⠈◥       ⣿⡇     ⠈⠉    ⣿⡇
+ ⢸⣿             ×⡇           ⣿⡇
+ ⢸⣿⣀S⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣿⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣿⡇
+ ⠸⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠿⠇
+""",
+    "block": """
+ █▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀█
+ █▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▀▒▀▀▀▀▀▀▀▀▒█
+ █▒                   █ ◎ █  ▒█
+ █▒      ▄▄▀    ▄▄    █▄▄▄█  ▒█
+ █▒ ····◥       ▒█           ██
+ █▒             ×█           ██
+ █▒▒S▒▒▒▒▒▒▒▒▒▒▒▒█▄▄▄▄▄▄▄▄▄▄▄██
+ █▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄█
+""",
+    "ascii": """
+ ##############################
+ #.................#.#ooooo##.#
+ #.                   o * o  .#
+ #.      /      ##    ooooo  .#
+ #. ,,,,>       .#           ##
+ #.             X#           ##
+ #..S............##############
+ ##############################
+""",
+}
+
+
+@pytest.mark.parametrize("name", ENCODERS)
+def test_a_room_looks_like_this(name: str) -> None:
+    frame = draw(room(), ENCODERS[name](False), columns=32, rows=8)
+    assert frame.rows() == GOLDEN[name].strip("\n").split("\n")
+
+
+@every_encoder
+def test_a_large_robot_has_its_shape_and_its_nose(encoder: Encoder) -> None:
+    scene = Scene(bodies=(robot(Pose(0, 0, 0)),))
+    frame = Painter(encoder).paint(scene, Camera(0.0, 0.0, 0.005, 60, 24))
+    rows, columns = np.nonzero(np.isin(frame.inks, (Role.ROBOT,)))
+    # 0.165 m from -0.117 to 0.048, and the nose beyond; 0.17 m across.
+    assert columns.min() == math.floor(30 - 0.117 / 0.005)
+    assert columns.max() > 30 + 0.048 / 0.005
+    assert rows.min() == math.floor(12 - 0.085 / 0.01)
+    assert rows.max() == math.floor(12 + 0.085 / 0.01)
+    # Its nose is on the axis, alone.
+    tip = rows[columns == columns.max()]
+    assert len(set(tip.tolist())) == 1
+    assert tip[0] in (11, 12)
+
+
+@every_encoder
+@pytest.mark.parametrize("eighth", range(8))
+def test_a_small_robot_is_an_arrow_with_a_nose_ahead(encoder: Encoder, eighth: int) -> None:
+    theta = eighth * math.tau / 8
+    frame = Painter(encoder).paint(Scene(bodies=(robot(Pose(0, 0, theta)),)), Camera(0, 0, 0.2, 21, 11))
+    arrows = encoder.symbols.robots[0]
+    expected = arrows[round(theta / math.tau * len(arrows)) % len(arrows)]
+    row, column = np.argwhere(frame.glyphs == ord(expected))[0].tolist()
+    assert (row, column) == (5, 10) or (abs(row - 5) <= 1 and abs(column - 10) <= 1)
+    others = np.argwhere((frame.inks == Role.ROBOT) & (frame.glyphs != ord(expected)))
+    ahead = others - (row, column)
+    assert len(ahead)
+    along = ahead[:, 1] * math.cos(theta) - 2 * ahead[:, 0] * math.sin(theta)
+    aside = ahead[:, 1] * math.sin(theta) + 2 * ahead[:, 0] * math.cos(theta)
+    assert (along > 0).all()
+    assert (np.abs(aside) <= 2.5).all()
+
+
+@every_encoder
+def test_several_robots_differ_by_number_and_not_only_by_colour(encoder: Encoder) -> None:
+    poses = (Pose(-2, 0, 0), Pose(0, 0, 0), Pose(2, 0, 0))
+    scene = Scene(bodies=tuple(robot(pose, f"serp{i}") for i, pose in enumerate(poses)))
+    frame = Painter(encoder).paint(scene, Camera(0, 0, 0.2, 41, 11))
+    text = "\n".join(frame.rows())
+    assert all(text.count(number) == 1 for number in "123")
+    alone = Painter(encoder).paint(replace(scene, bodies=scene.bodies[:1]), Camera(0, 0, 0.2, 41, 11))
+    assert "1" not in "".join(alone.rows())
+
+
+def test_two_robots_have_different_arrows() -> None:
+    scene = Scene(bodies=(robot(Pose(-2, 0, 0)), robot(Pose(2, 0, 0))))
+    text = "".join(Painter(Braille()).paint(scene, Camera(0, 0, 0.2, 41, 11)).rows())
+    assert "►" in text
+    assert "▷" in text
+
+
+@every_encoder
+@pytest.mark.parametrize("toward", [(0.09, 0.0), (-0.09, 0.01), (0.01, 0.09), (0.0, -0.09)])
+def test_a_contact_is_seen_even_where_the_robots_arrow_is(
+    encoder: Encoder, toward: tuple[float, float]
+) -> None:
+    pose = Pose(0.0345, 0.0, 0.0)  # its middle at the origin
+    scene = Scene(bodies=(robot(pose),), contacts=np.array([toward]))
+    frame = Painter(encoder).paint(scene, Camera(0, 0, 0.4, 21, 11))
+    ((row, column),) = np.argwhere(frame.inks == Role.CONTACT).tolist()
+    assert chr(frame.glyphs[row, column]) == encoder.symbols.contact
+    (arrow_row, arrow_column) = 5, 10
+    assert (column - arrow_column) * toward[0] - (row - arrow_row) * toward[1] > 0
+
+
+@every_encoder
+def test_a_wall_is_seen_where_it_is(encoder: Encoder) -> None:
+    camera = Camera(0.0, 0.0, 0.1, 40, 20)
+    generator = np.random.default_rng(5)
+    for x1, y1, x2, y2 in generator.uniform(-3, 3, (60, 4)).tolist():
+        frame = Painter(encoder).paint(Scene(np.array([(x1, y1, x2, y2)])), camera)
+        for share in np.linspace(0, 1, 30):
+            column, row = camera.project(np.array((x1 + share * (x2 - x1), y1 + share * (y2 - y1))))
+            if 1 <= column < 39 and 1 <= row < 19:
+                near = frame.inks[int(row) - 1 : int(row) + 2, int(column) - 1 : int(column) + 2]
+                assert (near == Role.WALL).any()
+        for row, column in np.argwhere(frame.inks).tolist():
+            x, y = (column + 0.5 - 20) * 0.1, (10 - row - 0.5) * 0.2
+            length = math.hypot(x2 - x1, y2 - y1)
+            share = min(max(((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length**2, 0), 1)
+            assert math.hypot(x - x1 - share * (x2 - x1), y - y1 - share * (y2 - y1)) < 0.25
+
+
+@every_encoder
+def test_panning_shifts_the_picture_and_changes_nothing_else(encoder: Encoder) -> None:
+    scene = room()
+    camera = Camera(1.21, 0.62, 0.05, 60, 20)
+    still = Painter(encoder).paint(scene, camera)
+    moved = Painter(encoder).paint(scene, camera.panned(7, -3))
+    assert np.array_equal(still.glyphs[3:, 7:], moved.glyphs[:-3, :-7])
+    assert np.array_equal(still.inks[3:, 7:], moved.inks[:-3, :-7])
+
+
+@every_encoder
+@pytest.mark.parametrize("steps", [-6, -2, 0, 3, 8])
+def test_any_view_has_its_size_and_single_characters(encoder: Encoder, steps: int) -> None:
+    scene = full_scene()
+    for size in ((1, 1), (2, 40), (80, 22), (200, 3)):
+        camera = Camera.fit(scene.bounds, *size).zoomed(steps)
+        frame = Painter(encoder).paint(scene, camera)
+        assert frame.shape == (size[1], size[0])
+        assert all(len(frame.text(row)) == size[0] for row in range(size[1]))
+        assert (frame.inks[frame.glyphs != BLANK] > 0).all()
+        assert frame.inks.max() <= Role.TEXT
+
+
+@every_encoder
+def test_nothing_that_is_out_of_sight_is_drawn(encoder: Encoder) -> None:
+    scene = replace(full_scene(), walls=maze())
+    frame = Painter(encoder).paint(scene, Camera(100.0, 100.0, 0.1, 80, 22))
+    assert not frame.inks.any()
+    assert (frame.glyphs == BLANK).all()
+
+
+@every_encoder
+def test_what_is_nowhere_is_left_out(encoder: Encoder) -> None:
+    nan = math.nan
+    scene = Scene(
+        np.array([(nan, 0, 1, 1)]),
+        (robot(Pose(nan, 0, 0)), robot(Pose(0, 0, nan)), Body("ball", Pose(), discs=(Disc(nan, 0, 1),))),
+        hits=np.array([(nan, 1.0)]),
+        targets=(Disc(nan, 0, 0.3), Disc(0, 0, nan)),
+        contacts=np.array([(nan, nan)]),
+        arrows=np.array([(nan, 0, 1, 1, 1.0)]),
+        marks=(Mark(math.inf, 0, "S"),),
+    )
+    frame = Painter(encoder).paint(scene, Camera(5.0, 5.0, 0.1, 20, 10))
+    assert not frame.inks.any()
+
+
+def test_standing_walls_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = []
+    draw_walls = painter_module._draw_walls
+
+    def counted(*args: Any) -> Any:
+        drawn.append(args)
+        return draw_walls(*args)
+
+    monkeypatch.setattr(painter_module, "_draw_walls", counted)
+    painter, walls = Painter(Braille()), maze()
+    camera = Camera.fit(Bounds(0, 0, 8.25, 5.175), 80, 22)
+    frames = [
+        painter.paint(Scene(walls, (robot(Pose(1, 1, turn)),)), camera) for turn in np.linspace(0, 6, 40)
+    ]
+    assert len(drawn) == 1
+    assert len({frame.glyphs.tobytes() for frame in frames}) > 20
+    painter.paint(Scene(walls), camera.panned(1, 0))
+    assert len(drawn) == 2
+    painter.paint(Scene(walls.copy()), camera.panned(1, 0))
+    assert len(drawn) == 3
+
+
+def test_the_faces_of_a_thin_wall_are_one_wall_at_every_scale_that_is_not_coarse() -> None:
+    walls = box_walls(((0, -1, 0.1, 1),))
+    for cell in np.geomspace(0.004, 0.06, 40).tolist():
+        for x in (0.0, 0.013, 0.027):
+            camera = Camera(x, 0.0, cell, 60, 5)
+            scene = Scene(walls, (robot(Pose(50, 50, 0.3)),))
+            dots = Painter(Ascii())._standing(scene, camera)
+            row = dots[2] > 0
+            if row.any():
+                first, last = np.flatnonzero(row)[[0, -1]]
+                assert row[first:last].all()
+            else:
+                assert cell < 0.02
+
+
+def test_a_gap_a_robot_fits_through_stays_open() -> None:
+    walls = box_walls(((0, 0, 1, 0.1), (1.2, 0, 2.2, 0.1)))
+    scene = Scene(walls, (robot(Pose(0.5, 0.5, 0)),))
+    for columns in (40, 60, 80, 200):
+        frame = Painter(Braille()).paint(scene, Camera(1.1, 0.05, 3 / columns, columns, 5))
+        column = int((1.1 - 1.1 + 1.5) / 3 * columns)
+        assert (frame.inks[:, column] == Role.EMPTY).any()
+
+
+def test_a_field_gives_way_to_what_is_there() -> None:
+    scene = Scene(
+        np.array([(-1, 0.0, 1, 0.0)]),
+        arrows=np.array(
+            [(-0.5, 0.0, 1, 0, 1), (0.5, 0.6, 0, 1, 0.4), (1, 0.6, 0, -1, 1), (0, -0.6, 1, 0, 0)]
+        ),
+    )
+    frame = Painter(Braille()).paint(scene, Camera(0, 0, 0.1, 30, 12))
+    text = "".join(frame.rows())
+    assert not {"→", "⇒"} & set(text)
+    assert "↑" in text
+    assert "⇓" in text  # the stronger, the heavier
+    assert "·" in text
+
+
+def test_paths_are_solid_dashed_or_dotted() -> None:
+    line = np.array([(-1.4, 0.0), (1.4, 0.0)])
+    drawn = []
+    for style in ("solid", "dashed", "dotted"):
+        scene = Scene(paths=(Path(line, style),))
+        drawn.append(int((Painter(Ascii()).paint(scene, Camera(0, 0, 0.1, 30, 3)).inks == Role.PATH).sum()))
+    assert drawn == sorted(drawn, reverse=True)
+    assert len(set(drawn)) == 3
+
+
+def full_scene() -> Scene:
+    scene = room()
+    ball = Body("ball", Pose(0.5, 0.3, 0), discs=(Disc(0.5, 0.3, 0.1),))
+    box = Body("box", Pose(0.9, 0.9, 0), (np.array([(0.8, 0.8), (1.0, 0.8), (1.0, 1.0)]),))
+    return replace(
+        scene,
+        bodies=(*scene.bodies, robot(Pose(1.6, 0.4, -2.0), "two"), ball, box),
+        beams=np.concatenate((np.broadcast_to((0.6, 0.6), scene.hits.shape), scene.hits), axis=1),
+        arrows=np.array([(0.3, 0.9, 1.0, 0.5, 1.0)]),
+        paths=(Path(np.array([(0.2, 0.2), (2.0, 1.0)]), "dotted"),),
+    )
+
+
+def draw(scene: Scene, encoder: Encoder, columns: int, rows: int) -> Frame:
+    return Painter(encoder).paint(scene, Camera.fit(scene.bounds, columns, rows))

@@ -1,0 +1,91 @@
+"""Names: what is allowed, where it goes wrong, what a relative one means."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.ros.exceptions import InvalidNamespaceException, InvalidNodeNameException, NameValidationException
+from kit.ros.graph.graph import Graph
+from kit.ros.graph.naming import (
+    expand_topic_name,
+    topic_or_service_is_hidden,
+    validate_full_topic_name,
+    validate_namespace,
+    validate_node_name,
+    validate_topic_name,
+)
+
+
+@pytest.mark.parametrize("name", ["a", "A_1", "_x", "x" * 255])
+def test_good_node_names(name: str) -> None:
+    assert validate_node_name(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "where"), [("", 0), ("1a", 0), ("a b", 1), ("a/b", 1), ("ab-c", 2), ("x" * 256, 255), ("ä", 0)]
+)
+def test_bad_node_names_say_where(name: str, where: int) -> None:
+    with pytest.raises(InvalidNodeNameException) as problem:
+        validate_node_name(name)
+    assert problem.value.invalid_index == where
+    assert str(problem.value).splitlines()[-1].index("^") == where + 3
+
+
+@pytest.mark.parametrize("name", ["/", "/a", "/a/b_1"])
+def test_good_namespaces(name: str) -> None:
+    assert validate_namespace(name)
+
+
+@pytest.mark.parametrize("name", ["", "a", "/a/", "//", "/a//b", "/1", "/a b"])
+def test_bad_namespaces(name: str) -> None:
+    with pytest.raises(InvalidNamespaceException):
+        validate_namespace(name)
+
+
+@pytest.mark.parametrize("name", ["a", "/a", "a/b", "~", "~/a", "{node}/a", "/{ns}/a", "a_1"])
+def test_good_topic_names(name: str) -> None:
+    assert validate_topic_name(name)
+    assert validate_topic_name(name, is_service=True)
+
+
+@pytest.mark.parametrize("name", ["relative", "/a b", "/a/", "/~"])
+def test_a_full_name_is_absolute_and_plain(name: str) -> None:
+    with pytest.raises(NameValidationException):
+        validate_full_topic_name(name)
+    with pytest.raises(NameValidationException):
+        validate_full_topic_name(name, is_service=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace", "full"),
+    [
+        ("x", "/", "/x"),
+        ("x", "/ns", "/ns/x"),
+        ("/x", "/ns", "/x"),
+        ("~", "/ns", "/ns/me"),
+        ("~/x", "/", "/me/x"),
+        ("{node}/x", "/ns", "/ns/me/x"),
+        ("/{ns}/x", "/a/b", "/a/b/x"),
+    ],
+)
+def test_expansion(name: str, namespace: str, full: str) -> None:
+    assert expand_topic_name(name, "me", namespace) == full
+
+
+def test_hidden_names() -> None:
+    assert topic_or_service_is_hidden("/a/_b")
+    assert not topic_or_service_is_hidden("/a/b_")
+
+
+@pytest.mark.parametrize(
+    ("namespace", "full"), [(None, "/n"), ("", "/n"), ("ns", "/ns/n"), ("/ns", "/ns/n"), ("/", "/n")]
+)
+def test_a_nodes_namespace_needs_no_slash(graph: Graph, namespace: str | None, full: str) -> None:
+    assert graph.create_node("n", namespace).get_fully_qualified_name() == full
+
+
+@pytest.mark.parametrize(("name", "namespace"), [("bad name", None), ("n", "/bad space"), ("n", "ends/")])
+def test_a_node_with_a_bad_name_is_not_made(graph: Graph, name: str, namespace: str | None) -> None:
+    with pytest.raises(NameValidationException):
+        graph.create_node(name, namespace)
+    assert graph.nodes == ()

@@ -1,0 +1,105 @@
+"""Listening in: counts, rates in the graph's time, questions and answers, the newest message."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.msg.std_msgs import String
+from kit.msg.std_srvs import Trigger
+from kit.ros.graph.graph import Graph
+from kit.ros.graph.topic_stats import Flow, Traffic
+
+MS = 1_000_000
+WORDS = Flow("/talker", "/words")
+
+
+def speak(graph: Graph, times: int, period_ms: int) -> None:
+    """So many words by ``/talker``, at this period."""
+    if not any(node.get_name() == "talker" for node in graph.nodes):
+        graph.create_node("talker").create_publisher(String, "words", 10)
+    publisher = next(end for node in graph.nodes for end in node.publishers if end.topic_name == "/words")
+    for number in range(times):
+        graph.advance(graph.now_ns + period_ms * MS)
+        publisher.publish(String(data=str(number)))
+
+
+def test_a_rate_is_that_of_the_graphs_time(graph: Graph) -> None:
+    traffic = Traffic(graph)
+    speak(graph, 1, 50)
+    assert traffic.said()[WORDS].rate is None
+    speak(graph, 20, 50)
+    said = traffic.said()[WORDS]
+    assert said.count == 21
+    assert said.rate == pytest.approx(20.0)
+    speak(graph, 100, 200)
+    assert traffic.said()[WORDS].rate == pytest.approx(5.0)
+
+
+def test_a_rate_ends_when_it_has_been_silent_for_a_while_and_survives_a_pause(graph: Graph) -> None:
+    traffic = Traffic(graph)
+    speak(graph, 10, 100)
+    for _ in range(2):  # as long as time stands still, so does the rate
+        assert traffic.said()[WORDS].rate == pytest.approx(10.0)
+    graph.advance(graph.now_ns + 3100 * MS)
+    assert traffic.said()[WORDS].rate is None
+    assert traffic.said()[WORDS].count == 10
+    speak(graph, 3, 20_000)
+    assert traffic.said()[WORDS].rate is not None
+
+
+def test_a_slow_flow_is_not_taken_for_a_silent_one(graph: Graph) -> None:
+    traffic = Traffic(graph)
+    speak(graph, 3, 5000)
+    graph.advance(graph.now_ns + 9000 * MS)
+    assert traffic.said()[WORDS].rate == pytest.approx(0.2)
+
+
+def test_a_reset_of_the_time_starts_the_rates_anew(graph: Graph) -> None:
+    traffic = Traffic(graph)
+    speak(graph, 10, 100)
+    graph.advance(0)
+    assert traffic.said()[WORDS].rate is None
+    speak(graph, 10, 25)
+    assert traffic.said()[WORDS].rate == pytest.approx(40.0)
+
+
+def test_questions_and_answers_name_who_asked(graph: Graph) -> None:
+    server = graph.create_node("server")
+    server.create_service(Trigger, "/ring", lambda request, response: response)
+    clients = [graph.create_node(name).create_client(Trigger, "/ring") for name in ("anna", "bert")]
+    traffic = Traffic(graph)
+    for client in (clients[1], clients[0], clients[1]):
+        client.call_async(Trigger.Request())
+        graph.run_due()
+    counts = {flow: said.count for flow, said in traffic.said().items()}
+    assert counts == {
+        Flow("/anna", "/ring", is_service=True): 1,
+        Flow("/bert", "/ring", is_service=True): 2,
+        Flow("/server", "/ring", is_service=True, answer_to="/anna"): 1,
+        Flow("/server", "/ring", is_service=True, answer_to="/bert"): 2,
+    }
+
+
+def test_the_newest_message_of_the_chosen_topic_is_a_copy(graph: Graph) -> None:
+    publisher = graph.create_node("talker").create_publisher(String, "words", 10)
+    traffic = Traffic(graph)
+    publisher.publish(String(data="before"))
+    traffic.choose("/words")
+    assert traffic.newest is None
+    message = String(data="after")
+    publisher.publish(message)
+    message.data = "changed by the sender"
+    assert traffic.newest == String(data="after")
+    traffic.choose("/words")
+    assert traffic.newest == String(data="after")
+    traffic.choose("/others")
+    assert traffic.newest is None
+
+
+def test_nothing_is_heard_after_the_stop(graph: Graph) -> None:
+    traffic = Traffic(graph)
+    speak(graph, 2, 100)
+    traffic.stop()
+    assert graph.watchers == ()
+    speak(graph, 2, 100)
+    assert traffic.said()[WORDS].count == 2

@@ -1,0 +1,114 @@
+"""A run in a thread at a pace: when ticks are due, what is asked while it runs, and how it ends."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from kit.ros.graph.graph import Graph
+from kit.run.pacing import CATCH_UP, MAXIMUM, Meter, Schedule
+from kit.run.runner import Runner
+from kit.run.scenario import place_on_map
+from kit.run.world_thread import LiveRun
+from kit.sim.simulation import Simulation
+from kit.world.catalogue import find_map
+
+
+def due_ticks(schedule: Schedule, now: float) -> int:
+    count = 0
+    while schedule.due(now):
+        schedule.ticked()
+        count += 1
+        assert count < 10_000
+    return count
+
+
+@pytest.mark.parametrize(("factor", "ticks"), [(1.0, 10), (10.0, 100), (0.5, 5)])
+def test_so_many_ticks_are_due_as_the_factor_says(factor: float, ticks: int) -> None:
+    schedule = Schedule(0.01, 0.0)
+    schedule.set_factor(factor)
+    schedule.restart(0.0)
+    total = sum(due_ticks(schedule, step * 0.02) for step in range(1, 6))
+    assert total == pytest.approx(ticks, abs=1)
+    assert 0 <= schedule.wait_for_next(0.1) <= 0.01 / factor + 1e-9
+
+
+def test_a_run_that_fell_far_behind_does_not_jump() -> None:
+    schedule = Schedule(0.01, 0.0)
+    assert due_ticks(schedule, 100.0) <= CATCH_UP / 0.01 + 1
+
+
+def test_as_fast_as_it_goes_is_always_due() -> None:
+    schedule = Schedule(0.01, 0.0)
+    schedule.set_factor(MAXIMUM)
+    assert all(schedule.due(0.0) for _ in range(50))
+    assert schedule.wait_for_next(0.0) == 0.0
+
+
+def test_the_meter_says_what_was_reached() -> None:
+    meter = Meter()
+    for step in range(1, 300):
+        meter.add(0.05, step * 0.01)
+    assert meter.factor == pytest.approx(5.0, rel=0.05)
+    meter.restart()
+    assert meter.factor == 0.0
+
+
+def until(condition: Callable[[], object]) -> None:
+    end = time.monotonic() + 20
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+@pytest.fixture
+def runner() -> Runner:
+    graph = Graph()
+    return Runner(Simulation(place_on_map(find_map("gate")).world), graph)
+
+
+def test_it_pauses_steps_and_goes_on(runner: Runner) -> None:
+    with LiveRun(runner, factor=MAXIMUM, on_change=lambda runner: None) as live:
+        until(lambda: runner.simulation.tick > 100)
+        live.set_paused(True)
+        until(lambda: live.pacing.paused)
+        stood = runner.simulation.tick
+        live.step(3)
+        until(lambda: runner.simulation.tick == stood + 3)
+        live.set_paused(False)
+        until(lambda: runner.simulation.tick > stood + 100)
+
+
+def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) -> None:
+    threads: list[str] = []
+    with LiveRun(runner, on_change=lambda runner: None) as live:
+        live.set_paused(True)
+        until(lambda: live.pacing.paused)
+        live.post(lambda runner: threads.append(threading.current_thread().name))
+        until(lambda: threads)
+    assert threads == ["world"]
+
+
+def test_real_time_is_kept(runner: Runner) -> None:
+    with LiveRun(runner, on_change=lambda runner: None):
+        start, tick = time.monotonic(), runner.simulation.tick
+        time.sleep(1.0)
+        passed = time.monotonic() - start
+        simulated = (runner.simulation.tick - tick) * runner.simulation.step_size
+    assert simulated == pytest.approx(passed, abs=CATCH_UP + 0.1)
+
+
+def test_a_job_that_fails_ends_the_run_and_is_told(runner: Runner) -> None:
+    changes: list[int] = []
+    with LiveRun(runner, on_change=lambda runner: changes.append(runner.simulation.tick)) as live:
+
+        def fail(runner: Runner) -> None:
+            raise ValueError("no")
+
+        live.post(fail)
+        until(lambda: live.failure is not None)
+        assert isinstance(live.failure, ValueError)
+    assert changes

@@ -1,0 +1,116 @@
+"""A sitting: what is answered is on the disk, and a new sitting goes on there."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from kit.school.progress import Kind, Progress, ProgressError
+from kit.school.quiz.answers import NOT_SURE, Choice, Outcome
+from kit.school.quiz.items import Topic, bank_of
+from kit.school.quiz.quiz_session import SEED, Sitting, Today, of_lesson, student_seed, the_twelve
+from tests.school.quiz.made import MONDAY, bank, item
+
+BANK = bank_of(
+    [*bank(ros2=5).items, *(item(f"idea-{i}", Topic.RL, lesson="09-rl", idea=i) for i in (1, 2, 3))]
+)
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = MONDAY
+
+    def __call__(self) -> datetime:
+        self.now += timedelta(seconds=1)
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, clock: Clock) -> None:
+    with Progress(tmp_path) as progress, Progress(tmp_path) as another:
+        sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
+        for count in range(1, 4):
+            asked = sitting.item
+            assert asked is not None
+            assert sitting.number == count
+            assert sitting.answer(Choice(asked.right), 4) is Outcome.RIGHT
+            (*_, event) = another.events(Kind.ANSWER)
+            assert len(another.events(Kind.ANSWER)) == count
+            assert event.subject == asked.id
+            assert event.content == {
+                "chosen": asked.right, "not_sure": False, "right": True, "confidence": 4,
+                "occasion": "quiz", "topic": "rl",
+            }  # fmt: skip
+        assert sitting.item is None
+
+
+def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
+    plan = of_lesson(BANK, "01-ros2")
+    order: list[str] = []
+    for sitting_number in range(5):
+        with Progress(tmp_path) as progress:
+            sitting = Sitting(progress, BANK, plan, seed=student_seed(progress), clock=clock)
+            assert (sitting.number, sitting.total) == (sitting_number + 1, 5)
+            assert sitting.item is not None
+            order.append(sitting.item.id)
+            sitting.answer(NOT_SURE)
+    assert sorted(order) == [f"ros2-{i}" for i in range(5)]
+
+
+def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clock) -> None:
+    plan = the_twelve(BANK)
+    with Progress(tmp_path) as progress:
+        first = Sitting(progress, BANK, plan, seed=1, clock=clock)
+        while first.item is not None:
+            first.answer(Choice(0), 1)
+        assert Sitting(progress, BANK, plan, seed=1, clock=clock).item is None
+        again = Sitting(progress, BANK, plan, seed=1, clock=clock, anew=True)
+        count = 0
+        while again.item is not None:
+            again.answer(Choice(1), 1)
+            count += 1
+            if count == 1:  # left and come back to without the word
+                again = Sitting(progress, BANK, plan, seed=1, clock=clock)
+        assert count == 3
+        assert len(plan.rounds(again.answers()).finished) == 2
+
+
+def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -> None:
+    with Progress(tmp_path) as progress:
+        lesson = Sitting(progress, BANK, of_lesson(BANK, "01-ros2"), seed=1, clock=clock)
+        lesson.answer(Choice(0), 2)
+        assert Sitting(progress, BANK, Today(BANK), seed=1, clock=clock).item is None
+        clock.now += timedelta(days=1)
+        today = Sitting(progress, BANK, Today(BANK), seed=1, clock=clock)
+        assert (today.number, today.total) == (1, 4)
+        for number in range(1, 5):
+            assert today.number == number
+            assert today.total == 4
+            today.answer(Choice(0), 3)
+        assert today.item is None
+        (standing,) = today.schedule().standings
+        assert standing.due == (clock.now + timedelta(days=3)).date()
+
+
+def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:
+    progress = Progress(tmp_path)
+    sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
+    asked = sitting.item
+    progress.close()
+    with pytest.raises(ProgressError):
+        sitting.answer(Choice(0), 1)
+    assert sitting.item is asked
+    assert sitting.given == []
+
+
+def test_the_seed_is_drawn_once(tmp_path: Path) -> None:
+    with Progress(tmp_path) as progress:
+        seed = student_seed(progress)
+        assert student_seed(progress) == seed
+        assert len(progress.events(Kind.ABOUT, SEED)) == 1

@@ -1,0 +1,87 @@
+"""Item analysis against numbers worked out by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kit.school.quiz.answers import Outcome
+from kit.school.report.items import analyse, kr20
+from kit.school.report.measures import BLANK, Item, Quiz, Reply
+
+LETTERS = {".": BLANK, "?": Reply(Outcome.NOT_SURE)}
+
+
+def reply(letter: str) -> Reply | None:
+    """A to C by option, capital where right; `.` blank, `?` not sure, `-` not there."""
+    if letter == "-":
+        return None
+    if letter in LETTERS:
+        return LETTERS[letter]
+    right = letter.isupper()
+    return Reply(Outcome.RIGHT if right else Outcome.WRONG, "abc".index(letter.lower()))
+
+
+def quiz(**rows: str) -> Quiz:
+    items = tuple(Item(name, "ros2") for name in rows)
+    return Quiz(items, {name: tuple(map(reply, row)) for name, row in rows.items()})
+
+
+def test_wrong_not_sure_and_blank_are_told_apart() -> None:
+    sheet = quiz(one="AAbc.?-")
+    found = analyse(sheet, sheet.items[0])
+    assert found.n == 6
+    assert found.outcomes == {Outcome.RIGHT: 2, Outcome.WRONG: 2, Outcome.BLANK: 1, Outcome.NOT_SURE: 1}
+    assert found.chosen == {0: 2, 1: 1, 2: 1}
+    assert found.difficulty == pytest.approx(2 / 6)
+    assert found.interval.low < 2 / 6 < found.interval.high
+
+
+def test_item_rest_leaves_the_item_itself_out() -> None:
+    sheet = quiz(one="AAbb", two="AAbb", three="bAAb")
+    first = analyse(sheet, sheet.items[0])
+    rest = np.array([1, 2, 1, 0]) / 2
+    assert first.with_rest == pytest.approx(np.corrcoef([1, 1, 0, 0], rest)[0, 1])
+    assert math.isnan(analyse(quiz(one="AAbb"), Item("one", "ros2")).with_rest)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ({"one": "ABcc", "two": "AAbb"}, "2 different options"),
+        ({"one": "Abbbcc", "two": "AAbbbb"}, "options 2, 3 drew more"),
+        ({"one": "Accccc", "two": "Abbbbb"}, "only 17%"),
+        ({"one": "AAAA", "two": "AAbb"}, "nearly everybody"),
+        ({"one": "AAbb", "two": "bbAA"}, "r = -1.00"),
+    ],
+)
+def test_what_a_teacher_should_look_at(rows: dict[str, str], words: str) -> None:
+    sheet = quiz(**rows)
+    assert any(words in each for each in analyse(sheet, sheet.items[0]).cautions)
+
+
+def test_a_good_item_is_left_in_peace() -> None:
+    sheet = quiz(one="AAAbcb", two="AAAbbb", three="AAbbbb")
+    assert analyse(sheet, sheet.items[0]).cautions == ()
+
+
+def test_kr_20_by_hand() -> None:
+    sheet = quiz(one="AAAb", two="AAbb", three="Abbb")
+    totals = np.array([3, 2, 1, 0])
+    expected = 3 / 2 * (1 - (3 / 16 + 4 / 16 + 3 / 16) / totals.var())
+    assert kr20(sheet) == pytest.approx(expected)
+
+
+def test_kr_20_of_too_little_is_not_told() -> None:
+    assert math.isnan(kr20(quiz(one="AAb")))
+    assert math.isnan(kr20(quiz(one="AA", two="bb")))
+
+
+def test_scores_count_only_who_took_the_quiz() -> None:
+    sheet = quiz(one="A.-", two="Ab-")
+    assert sheet.score[:2].tolist() == [1.0, 0.0]
+    assert math.isnan(sheet.score[2])
+    assert sheet.count(Outcome.BLANK)[:2].tolist() == [0, 1]
+    assert math.isnan(sheet.count(Outcome.RIGHT)[2])

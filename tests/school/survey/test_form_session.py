@@ -1,0 +1,140 @@
+"""Answering a form: what counts, what comes next, what a line means."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from kit.school.progress import Event, Kind
+from kit.school.survey.form_session import Answers, NotAnAnswer, applies, asked, parse, still_open
+from kit.school.survey.questions import Form, Phase, Purpose, Question, Rule, Shape
+from kit.school.survey.reading import read_form
+
+RATED = Question(
+    "rated", "How much?", Purpose.EXPERIENCE, phases=(Phase.BEFORE, Phase.AFTER), low="a", high="b"
+)
+DONE = Question("done", "Did you?", Purpose.DONE, Shape.YES_NO)
+WHY = Question("why", "Why?", Purpose.WORDS, Shape.TEXT, only_if=Rule("done", answer=True))
+MORE = Question("more", "More?", Purpose.WORDS, Shape.TEXT, only_if=Rule("rated", at_least=3))
+CHOSEN = Question("chosen", "Which?", Purpose.BACKGROUND, Shape.CHOICE, options=("left", "right"))
+FORM = Form("A form", (RATED, DONE, WHY, MORE, CHOSEN))
+
+
+def said(question: str, value: Any, phase: str = "after", number: int = 0) -> Event:
+    at = f"2026-01-01T00:00:{number:02}+00:00"
+    return Event(f"{question}{phase}{number}", at, Kind.FORM, question, {"phase": phase, "value": value})
+
+
+def open_after(*events: Event) -> list[str]:
+    return [each.id for each in still_open(FORM, Answers.of(FORM, events), Phase.AFTER)]
+
+
+def test_a_blank_is_an_answer_and_stays_blank() -> None:
+    answers = Answers.of(FORM, [said("rated", None)])
+    assert answers.has("rated", Phase.AFTER)
+    assert answers.value("rated", Phase.AFTER) is None
+    assert not answers.has("rated", Phase.BEFORE)
+    assert open_after(said("rated", None)) == ["done", "chosen"]
+
+
+def test_rules_follow_the_answers() -> None:
+    assert open_after() == ["rated", "done", "chosen"]
+    assert "why" in open_after(said("done", True))
+    assert "why" not in open_after(said("done", False))
+    assert "why" not in open_after(said("done", None))
+    assert "more" in open_after(said("rated", 3))
+    assert "more" not in open_after(said("rated", 2))
+    assert "more" in open_after(said("rated", 5, "before")), (
+        "a rule looks at the other time where this one is open"
+    )
+    assert "more" not in open_after(said("rated", 5, "before"), said("rated", 1))
+
+
+def test_the_last_answer_counts() -> None:
+    answers = Answers.of(FORM, [said("rated", 2, number=1), said("rated", 6, number=2)])
+    assert answers.value("rated", Phase.AFTER) == 6
+
+
+@pytest.mark.parametrize("value", [0, 8, -1, 3.5, "3", True, [3], {"a": 1}, 10**30])
+def test_what_cannot_be_an_answer_is_left_out_and_named(value: Any) -> None:
+    answers = Answers.of(FORM, [said("rated", value)])
+    assert not answers.given
+    assert answers.odd == ("rated",)
+
+
+@pytest.mark.parametrize(
+    ("question", "value"), [("done", 1), ("chosen", "up"), ("why", 5), ("why", False), ("chosen", True)]
+)
+def test_each_shape_has_answers_of_its_own(question: str, value: Any) -> None:
+    assert Answers.of(FORM, [said(question, value)]).odd == (question,)
+
+
+@pytest.mark.parametrize("phase", ["before", "later", None, ["after"], {}])
+def test_a_phase_in_which_it_is_not_asked_does_not_count(phase: Any) -> None:
+    event = Event("u", "2026-01-01T00:00:00+00:00", Kind.FORM, "done", {"phase": phase, "value": True})
+    assert not Answers.of(FORM, [event]).given
+
+
+def test_unknown_questions_and_other_events_are_passed_over() -> None:
+    other = Event("u", "2026-01-01T00:00:00+00:00", Kind.STEP, "rated", {})
+    answers = Answers.of(FORM, [said("of a newer kit", 3), other])
+    assert answers == Answers()
+
+
+@pytest.mark.parametrize(
+    ("question", "line", "value"),
+    [
+        (RATED, "7\n", 7),
+        (RATED, " 1 ", 1),
+        (RATED, "\n", None),
+        (DONE, "Y", True),
+        (DONE, "no", False),
+        (CHOSEN, "2", "right"),
+        (WHY, " because \n", "because"),
+        (WHY, "", None),
+    ],
+)
+def test_a_line_is_understood(question: Question, line: str, value: Any) -> None:
+    assert parse(question, line) == value
+    assert question.accepts(parse(question, line))
+
+
+@pytest.mark.parametrize(
+    ("question", "line"),
+    [
+        (RATED, "8"),
+        (RATED, "0"),
+        (RATED, "x"),
+        (RATED, "3.5"),
+        (RATED, "٣"),
+        (RATED, "9" * 5000),
+        (DONE, "perhaps"),
+        (CHOSEN, "3"),
+        (CHOSEN, "left"),
+        (WHY, "a" * 5000),
+        (WHY, "\x1b[A"),
+        (WHY, "\udcff"),
+    ],
+)
+def test_a_line_that_is_no_answer_says_what_would_be(question: Question, line: str) -> None:
+    with pytest.raises(NotAnAnswer) as caught:
+        parse(question, line)
+    assert str(caught.value)
+
+
+def test_every_question_of_the_kits_form_can_be_reached() -> None:
+    """Whoever says yes to everything, and knows much, is asked everything."""
+    form = read_form()
+    yes = {Shape.SCALE: 7, Shape.YES_NO: True, Shape.TEXT: "words"}
+    events = []
+    for phase in Phase:
+        events += [
+            said(each.id, yes.get(each.shape, each.options[:1] and each.options[0]), phase.value)
+            for each in form.in_phase(phase)
+        ]
+        answers = Answers.of(form, events)
+        assert not answers.odd
+        assert asked(form, answers, phase) == list(form.in_phase(phase))
+        assert not still_open(form, answers, phase)
+        assert all(applies(each, answers, phase) for each in form.in_phase(phase))

@@ -1,0 +1,161 @@
+"""Frame credit against a simulated link: the picture stays young at every speed, and never stalls for good."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import pytest
+
+from kit.tui.frame_throttle import FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameCredit
+
+FRAME = 1000
+"""Bytes of a frame."""
+
+
+@dataclass
+class Link:
+    """A link with a delay each way and an endless buffer in front of a narrow pipe: what SSH looks like."""
+
+    rate: float
+    """Bytes per second."""
+    delay: float
+    """Seconds, one way."""
+    answers: Callable[[float], bool] = lambda now: True
+    free_at: float = 0.0
+    events: list[float] = field(default_factory=list)
+    lags: list[float] = field(default_factory=list)
+
+    def send(self, now: float) -> None:
+        self.free_at = max(self.free_at, now) + FRAME / self.rate
+        shown = self.free_at + self.delay
+        self.lags.append(shown - now)
+        if self.answers(now):
+            heapq.heappush(self.events, shown + self.delay)
+
+
+def play(link: Link, end: float, credit: FrameCredit | None = None, start: float = 0.0) -> list[float]:
+    """Draws whenever allowed; the times of the frames."""
+    credit = credit or FrameCredit()
+    now, drawn = start, []
+    while now < end:
+        while link.events and link.events[0] <= now:
+            credit.answered(heapq.heappop(link.events))
+        if credit.may_draw(now):
+            credit.drawn(now)
+            link.send(now)
+            credit.sent(now)
+            drawn.append(now)
+        now += 0.001
+    return drawn
+
+
+def rate(drawn: list[float], start: float, end: float) -> float:
+    return sum(start <= time < end for time in drawn) / (end - start)
+
+
+def test_a_fast_link_gets_twenty_frames_a_second() -> None:
+    drawn = play(Link(1e7, 0.001), 10)
+    assert rate(drawn, 2, 10) == pytest.approx(FAST, abs=0.5)
+
+
+def test_a_link_of_40_ms_round_trip_gets_twenty_too() -> None:
+    drawn = play(link := Link(125e3, 0.020), 10)
+    assert rate(drawn, 2, 10) == pytest.approx(FAST, abs=0.5)
+    assert max(link.lags) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("bytes_per_second", "delay"), [(30e3, 0.02), (9600, 0.02), (2400, 0.05), (30e3, 0.3)]
+)
+def test_the_picture_is_never_older_than_a_few_frames_take(bytes_per_second: float, delay: float) -> None:
+    drawn = play(link := Link(bytes_per_second, delay), 20)
+    assert max(link.lags) <= MOST_UNDER_WAY * FRAME / bytes_per_second + delay + 1e-6
+    # Nor is the link left idle for long.
+    possible = min(SLOW, bytes_per_second / FRAME)
+    assert rate(drawn, 5, 20) > 0.6 * min(possible, 1 / (2 * delay + FRAME / bytes_per_second))
+
+
+def test_a_slow_link_is_asked_for_ten_frames_a_second_at_most() -> None:
+    drawn = play(Link(1e7, 0.2), 10)
+    assert rate(drawn, 2, 10) <= SLOW + 0.5
+
+
+def test_a_link_that_slows_down_and_recovers() -> None:
+    credit = FrameCredit()
+    link = Link(1e7, 0.005)
+    play(link, 5, credit)
+    assert credit.fps == FAST
+    slow = Link(5e3, 0.02)
+    play(slow, 15, credit, start=5)
+    assert credit.fps == SLOW
+    assert credit.lag is not None
+    assert credit.lag > 0.2
+    play(Link(1e7, 0.005), 25, credit, start=15)
+    assert credit.fps == FAST
+
+
+def test_a_terminal_that_never_answers_gets_ten_frames_a_second_after_the_first_timeout() -> None:
+    drawn = play(Link(1e7, 0.001, answers=lambda now: False), 12)
+    assert drawn[0] == 0.0
+    assert drawn[1] == pytest.approx(TIMEOUT, abs=0.01)
+    assert rate(drawn, 3, 12) == pytest.approx(SLOW, abs=0.5)
+
+
+def test_a_lost_answer_costs_a_pause_and_no_more() -> None:
+    lost = Link(1e7, 0.005, answers=lambda now: not 3.0 < now < 3.2)
+    drawn = play(lost, 30)
+    gaps = [after - before for before, after in itertools.pairwise(drawn)]
+    assert max(gaps) <= TIMEOUT + 0.1
+    assert rate(drawn, 6, 30) > 0.9 * SLOW
+
+
+def test_a_link_that_stood_still_goes_on() -> None:
+    """Nothing arrives for five seconds, then everything does."""
+    credit, link = FrameCredit(), Link(1e7, 0.005)
+    play(link, 3, credit)
+    link.free_at, link.events = 8.0, []
+    times = play(link, 20, credit, start=3)
+    assert rate(times, 12, 20) > 0.9 * SLOW
+
+
+def test_an_answer_nobody_asked_for_changes_nothing() -> None:
+    credit = FrameCredit()
+    credit.answered(1.0)
+    assert credit.lag is None
+    assert credit.allowed == 1
+
+
+def test_the_wait_is_until_the_next_frame_is_due() -> None:
+    credit = FrameCredit()
+    assert credit.wait(5.0) == 0
+    credit.drawn(5.0)
+    credit.sent(5.0)
+    credit.answered(5.001)
+    assert credit.fps == FAST
+    assert credit.wait(5.02) == pytest.approx(0.03, abs=0.03)
+    assert credit.wait(5.2) == 0
+
+
+def test_late_frames_do_not_slow_the_rate() -> None:
+    """A timer that rings a few milliseconds late each time still gets its twenty."""
+    credit, now, frames = FrameCredit(), 0.0, 0
+    while now < 20.0:
+        wait = credit.wait(now)
+        if wait > 0:
+            now += wait + 0.004
+            continue
+        credit.drawn(now)
+        credit.sent(now)
+        credit.answered(now + 0.001)
+        frames += 1
+    assert frames / 20 == pytest.approx(FAST, rel=0.03)
+
+
+def test_the_fastest_rate_can_be_chosen() -> None:
+    drawn = play(Link(1e7, 0.001), 10, FrameCredit(fastest=5))
+    assert rate(drawn, 2, 10) == pytest.approx(5, abs=0.5)
+    assert not math.isnan(rate(drawn, 0, 1))

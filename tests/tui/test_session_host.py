@@ -1,0 +1,94 @@
+"""The world behind the screen: opened, exchanged, closed, without ever making the face wait."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from kit.controllers import find
+from kit.run.scenario import Place, find_place
+from kit.run.view import View
+from kit.tui.session_host import Running
+
+
+class Face:
+    """Notes what it is shown."""
+
+    def __init__(self) -> None:
+        self.views: list[View] = []
+        self.troubles: list[str] = []
+        self.behind = Running(on_view=self.views.append, on_trouble=self.troubles.append)
+
+    def until(self, is_so: Callable[[], object]) -> None:
+        end = time.monotonic() + 20
+        while not is_so():
+            assert time.monotonic() < end, self.troubles
+            time.sleep(0.01)
+
+
+@pytest.fixture
+def face() -> Iterator[Face]:
+    face = Face()
+    yield face
+    face.behind.close()
+
+
+def test_one_world_takes_the_place_of_another(face: Face) -> None:
+    for name in ("simple", "maze"):
+        face.behind.open(lambda name=name: find_place(name), find("forward"))  # type: ignore[misc]  # mypy on lambdas
+        face.until(lambda name=name: face.views and face.views[-1].place == name)  # type: ignore[misc]  # same
+    face.until(lambda: face.views[-1].time_s > 0.2)
+    assert not face.troubles
+
+
+def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
+    face.behind.open(lambda: find_place("simple"), find("forward"))
+    face.until(lambda: face.views)
+    face.behind.open(lambda: find_place("nowhere"), find("forward"))
+    face.until(lambda: face.troubles)
+    assert "nowhere" in face.troubles[0]
+    seen = len(face.views)
+    face.until(lambda: len(face.views) > seen + 5)
+
+
+def test_closing_does_not_wait_for_a_world_that_is_being_opened(face: Face) -> None:
+    begun, opened = threading.Event(), threading.Event()
+
+    def slowly() -> Place:
+        begun.set()
+        opened.wait(20)
+        return find_place("simple")
+
+    face.behind.open(slowly, find("forward"))
+    assert begun.wait(20)
+    start = time.monotonic()
+    face.behind.close()
+    assert time.monotonic() - start < 1.0
+    opened.set()
+    time.sleep(0.5)
+    assert not face.views
+
+
+def test_closing_does_not_wait_for_a_controller_that_does_not_come_back(
+    face: Face, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    file = tmp_path_factory.mktemp("work") / "loops.py"
+    file.write_text(
+        "from rclpy.node import Node\n"
+        "class Loops(Node):\n"
+        "    def __init__(self):\n"
+        "        super().__init__('loops')\n"
+        "        self.create_timer(0.1, self.go)\n"
+        "    def go(self):\n"
+        "        self.get_logger().info('now')\n"
+        "        while True: pass\n"
+    )
+    face.behind.open(lambda: find_place("simple"), find(str(file)))
+    face.until(lambda: face.views and face.views[-1].time_s > 0.05)
+    time.sleep(0.5)
+    start = time.monotonic()
+    face.behind.close()
+    assert time.monotonic() - start < 2.0  # a reply may take three seconds

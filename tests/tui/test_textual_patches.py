@@ -1,0 +1,123 @@
+"""The private names of Textual that the kit leans on to send less: if one of these fails, read the new version
+before touching ``KNOWN_TEXTUAL``."""
+
+from __future__ import annotations
+
+import inspect
+
+import pytest
+from rich.console import Console
+from rich.segment import Segment
+from textual import _compositor, events
+from textual._xterm_parser import XTermParser
+from textual.app import App
+from textual.geometry import Region
+from textual.screen import Screen
+from textual.strip import Strip
+
+from kit.tui import textual_patches
+from kit.tui.textual_patches import (
+    ASK_CURSOR,
+    KNOWN_TEXTUAL,
+    CroppedUpdate,
+    CroppingCompositor,
+    ask_cursor,
+    crop_left,
+)
+from tests.tui.tape import TapeDriver, ViewApp, run_in
+
+
+def test_the_installed_textual_is_the_one_that_was_read() -> None:
+    assert textual_patches.version("textual") == KNOWN_TEXTUAL
+
+
+def test_a_partial_update_holds_chops_spans_and_ends() -> None:
+    parameters = list(inspect.signature(_compositor.ChopsUpdate.__init__).parameters)
+    assert parameters == ["self", "chops", "spans", "chop_ends"]
+    update = _compositor.ChopsUpdate([{0: None}], [(0, 0, 1)], [[1]])
+    assert (update.chops, update.spans, update.chop_ends) == ([{0: None}], [(0, 0, 1)], [[1]])
+
+
+def test_a_screen_draws_with_its_compositor() -> None:
+    screen: Screen[None] = Screen()
+    assert type(screen._compositor) is _compositor.Compositor
+    assert "self._compositor.render_update(" in inspect.getsource(Screen._compositor_refresh)
+
+
+def test_the_compositor_makes_partial_updates_in_one_place() -> None:
+    assert "self.render_partial_update()" in inspect.getsource(_compositor.Compositor.render_update)
+    assert CroppingCompositor().render_partial_update() is None
+
+
+def test_the_app_writes_what_render_segments_says() -> None:
+    assert "renderable.render_segments(console)" in inspect.getsource(App._display)
+
+
+def test_spans_come_as_row_left_and_right() -> None:
+    regions = [Region(3, 1, 2, 1), Region(4, 1, 5, 2), Region(20, 1, 1, 1)]
+    spans = list(_compositor.Compositor._regions_to_spans(regions))
+    assert spans == [(1, 3, 9), (1, 20, 21), (2, 4, 9)]
+
+
+def test_textual_understands_the_terminals_answer() -> None:
+    parser = XTermParser()
+    (answer,) = [event for event in parser.feed("\x1b[12;34R") if isinstance(event, events.CursorPosition)]
+    assert (answer.x, answer.y) == (33, 11)
+
+
+def line(text: str) -> Strip:
+    return Strip([Segment(text)])
+
+
+@pytest.mark.parametrize(
+    ("span", "sent"),
+    [
+        ((0, 0, 10), [(0, "0123456789")]),
+        ((0, 3, 5), [(3, "34")]),
+        ((0, 8, 13), [(8, "89"), (10, "abc")]),
+        ((0, 10, 20), [(10, "abcdefghij")]),
+        ((0, 19, 99), [(19, "j")]),
+    ],
+)
+def test_a_span_is_sent_and_no_more(span: tuple[int, int, int], sent: list[tuple[int, str]]) -> None:
+    """On a line of two widgets, ten characters each."""
+    update = CroppedUpdate([{0: line("0123456789"), 10: line("abcdefghij")}], [span], [[10, 20]])
+    expected = "".join(f"\x1b[1;{x + 1}H{text}" for x, text in sent)
+    assert update.render_segments(Console()) == expected
+
+
+def test_stock_painting_still_sends_what_lies_to_the_left() -> None:
+    """When this fails, Textual has learned to crop and ``crop_left`` may go."""
+    update = _compositor.ChopsUpdate([{0: line("0123456789")}], [(0, 8, 9)], [[10]])
+    assert "012345678" in update.render_segments(Console())
+
+
+def test_another_version_of_textual_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(textual_patches, "version", lambda name: "99.0.0")
+    screen: Screen[None] = Screen()
+    assert not crop_left(screen)
+    assert type(screen._compositor) is _compositor.Compositor
+
+
+def test_a_screen_that_is_already_shown_can_be_made_thrifty() -> None:
+    screen: Screen[None] = Screen()
+    compositor = screen._compositor
+    assert crop_left(screen)
+    assert crop_left(screen)
+    assert screen._compositor is compositor
+    assert isinstance(compositor, CroppingCompositor)
+
+
+def test_the_question_is_put_to_the_terminal_and_to_no_one_else() -> None:
+    app = ViewApp()
+    asked: list[bool] = []
+
+    async def script(pilot: object) -> None:
+        app.terminal.take()
+        asked.append(ask_cursor(app))
+        assert app.terminal.take() == ASK_CURSOR
+
+    run_in(app, script, (40, 10))
+    assert asked == [True]
+    assert not ask_cursor(App())
+    assert isinstance(app._driver, TapeDriver)

@@ -1,0 +1,322 @@
+"""The world view in a terminal in memory: what is seen is what was drawn, and little is sent for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from itertools import islice
+from typing import Any
+
+import pytest
+from textual import events
+from textual.pilot import Pilot
+
+from kit.geometry import Pose
+from kit.render.encode import ENCODERS, Braille
+from kit.render.painter import Painter
+from kit.render.roles import PALETTES, Role
+from kit.render.scene import Scene
+from kit.tui.frame_throttle import TIMEOUT
+from tests.render.scenes import drive, maze, robot
+from tests.tui.tape import Display, ViewApp, painted, run_in
+
+BUDGET = 30_000 / 20
+"""Bytes of a frame: 30 KB/s at twenty frames a second."""
+
+SIZE = (80, 24)
+
+
+def scenes(count: int, skip: int = 0) -> list[Scene]:
+    return list(islice(drive(), skip, skip + count))
+
+
+def in_terminal(
+    app: ViewApp, script: Callable[[Pilot[None], Display], Any], size: tuple[int, int] = SIZE
+) -> None:
+    """Runs the script with a display that is fed by ``see``."""
+
+    async def with_display(pilot: Pilot[None]) -> None:
+        await painted(app)
+        await script(pilot, Display(*size))
+
+    run_in(app, with_display, size)
+
+
+async def see(app: ViewApp, display: Display) -> int:
+    """Brings the display up to date; says how many bytes that took."""
+    await painted(app)
+    text = app.terminal.take()
+    display.feed(text)
+    return len(text.encode())
+
+
+def seen(app: ViewApp) -> list[str]:
+    assert app.view.frame is not None
+    return app.view.frame.rows()
+
+
+@pytest.mark.parametrize("cropped", [True, False])
+@pytest.mark.parametrize("glyphs", ENCODERS)
+def test_the_terminal_shows_every_frame(glyphs: str, cropped: bool) -> None:
+    app = ViewApp(ENCODERS[glyphs](False), cropped=cropped)
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        for scene in scenes(30, skip=100):
+            app.view.show(scene)
+            await see(app, display)
+            assert display.rows == seen(app)
+
+    in_terminal(app, script)
+
+
+def test_meaning_has_its_colour() -> None:
+    app = ViewApp(ENCODERS["ascii"](False))
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        await see(app, display)
+        colors = {role: set() for role in Role}
+        frame = app.view.frame
+        for row in range(24):
+            for column in range(80):
+                colors[Role(frame.inks[row, column])].add(display.color(row, column))
+        assert colors[Role.WALL] == {"default"}
+        assert colors[Role.ROBOT] == {"cyan"}
+        assert colors[Role.HIT] == {"brown"}  # pyte's name of ANSI colour 3
+        assert colors[Role.TARGET] == {"green"}
+
+    in_terminal(app, script)
+
+
+def test_without_colours_none_is_sent() -> None:
+    app = ViewApp(ENCODERS["braille"](True), PALETTES["none"])
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        await painted(app)
+        text = app.terminal.take()
+        assert "\x1b[1m" in text
+        assert not any(f"\x1b[{code}" in text or f";{code}m" in text for code in range(30, 50))
+
+    in_terminal(app, script)
+
+
+def test_in_a_theme_with_a_paper_of_its_own_the_view_is_on_it_too() -> None:
+    app = ViewApp(ENCODERS["ascii"](False), PALETTES["truecolor"])
+    app.theme = "textual-dark"
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        await see(app, display)
+        papers = {display.paper(row, column) for row in range(24) for column in range(80)}
+        assert len(papers) == 1  # by which name depends on how many colours this terminal has
+        assert papers != {"default"}
+        app.theme = "ansi-dark"
+        await pilot.pause()
+        await see(app, display)
+        assert {display.paper(row, column) for row in range(24) for column in range(80)} == {"default"}
+
+    in_terminal(app, script)
+
+
+@pytest.mark.parametrize(("glyphs", "bound"), [("braille", 300), ("block", 260), ("ascii", 220)])
+def test_a_moving_robot_stays_far_within_the_budget(glyphs: str, bound: int) -> None:
+    """Counted per frame, not per second: the machine's speed has no part in it."""
+    app = ViewApp(ENCODERS[glyphs](False))
+    sizes: list[int] = []
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        first, *others = scenes(90, skip=400)
+        app.view.show(first)
+        await see(app, display)
+        for scene in others:
+            app.view.show(scene)
+            sizes.append(await see(app, display))
+
+    in_terminal(app, script)
+    assert sum(sizes) / len(sizes) < min(bound, BUDGET)
+    assert max(sizes) < BUDGET
+
+
+def test_following_a_robot_close_up_stays_within_the_budget() -> None:
+    app = ViewApp()
+    sizes: list[int] = []
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        app.view.show(scenes(1)[0])
+        app.view.follow()
+        app.view.zoom(3)
+        await see(app, display)
+        for scene in scenes(80):
+            app.view.show(scene)
+            sizes.append(await see(app, display))
+            assert display.rows == seen(app)
+
+    in_terminal(app, script)
+    assert sum(sizes) / len(sizes) < BUDGET
+
+
+def test_nothing_is_sent_while_nothing_changes() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None], display: Display) -> None:
+        (scene,) = scenes(1, skip=50)
+        app.view.show(scene)
+        await see(app, display)
+        assert not app.view.show(scene)
+        assert not app.view.show(Scene(**{name: getattr(scene, name) for name in Scene.__slots__}))
+        assert await see(app, display) == 0
+        await pilot.pause(0.3)
+        assert app.terminal.take() == ""
+
+    in_terminal(app, script)
+
+
+def test_a_storm_of_sizes_leaves_a_whole_picture() -> None:
+    app = ViewApp()
+    sizes = [(120, 40), (40, 10), (1, 1), (200, 50), (2, 30), (81, 25), (80, 24), (33, 7)]
+
+    async def script(pilot: Pilot[None]) -> None:
+        for number, scene in enumerate(scenes(16)):
+            app.view.show(scene)
+            await pilot.resize_terminal(*sizes[number % len(sizes)])
+        for size in sizes:
+            app.terminal.take()
+            await pilot.resize_terminal(*size)
+            await painted(app)
+            display = Display(*size)
+            display.feed(app.terminal.take())
+            assert app.view.frame is not None
+            assert app.view.frame.shape == (size[1], size[0])
+            app.view.show(scenes(1, skip=300)[0])
+            await see(app, display)
+            assert display.rows == seen(app)
+
+    run_in(app, script, SIZE)
+
+
+def test_the_whole_world_fits_whatever_the_size_until_one_zooms() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        app.view.show(Scene(maze(), (robot(Pose(1, 1, 0)),)))
+        for size in ((80, 24), (40, 12), (200, 50)):
+            await pilot.resize_terminal(*size)
+            await painted(app)
+            seen_world = app.view.camera.bounds
+            assert seen_world.left <= 0 < 8.25 <= seen_world.right
+            assert seen_world.bottom <= 0 < 5.175 <= seen_world.top
+        app.view.zoom(2)
+        near = app.view.camera
+        await pilot.resize_terminal(80, 24)
+        await painted(app)
+        assert app.view.camera.cell == near.cell
+        assert (app.view.camera.x, app.view.camera.y) == (near.x, near.y)
+        app.view.fit()
+        assert app.view.camera.bounds.right >= 8.25
+
+    run_in(app, script, SIZE)
+
+
+def test_a_followed_robot_stays_in_sight_and_panning_lets_go() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        for scene in scenes(1):
+            app.view.show(scene)
+        app.view.follow(0)
+        app.view.zoom(4)
+        for scene in scenes(200)[::4]:
+            app.view.show(scene)
+            x, y, _ = scene.robots[0].pose
+            left, bottom, right, top = app.view.camera.bounds
+            assert left < x < right
+            assert bottom < y < top
+        assert app.view.followed == 0
+        camera = app.view.camera
+        app.view.pan(3, -2)
+        assert app.view.followed is None
+        assert app.view.camera == camera.panned(3, -2)
+
+    run_in(app, script, SIZE)
+
+
+def test_a_scene_without_walls_does_not_dance() -> None:
+    """What moves in it does not move the camera."""
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        cameras = set()
+        for step in range(10):
+            app.view.show(Scene(bodies=(robot(Pose(0.05 * step, 0, 0.2 * step)),)))
+            cameras.add(app.view.camera)
+        assert len(cameras) == 1
+
+    run_in(app, script, SIZE)
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_offers_wait_for_the_terminals_answer_and_the_newest_wins() -> None:
+    clock = Clock()
+    app = ViewApp(clock=clock)
+    made: list[int] = []
+
+    def offer(number: int, scene: Scene) -> None:
+        def make() -> Scene:
+            made.append(number)
+            return scene
+
+        app.view.offer(make)
+
+    async def script(pilot: Pilot[None]) -> None:
+        app.terminal.answers = False
+        for number, scene in enumerate(scenes(8)):
+            offer(number, scene)
+            await painted(app)
+            clock.now += 0.01
+        assert made == [0]
+        clock.now += 0.5
+        app.terminal.send_message(events.CursorPosition(0, 0))
+        await pilot.pause()
+        assert made == [0, 7]
+
+    run_in(app, script, SIZE)
+
+
+def test_the_last_offer_is_drawn_even_if_no_answer_comes() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        app.terminal.answers = False
+        first, last = scenes(40)[::39]
+        app.view.offer(lambda: first)
+        await painted(app)
+        app.view.offer(lambda: last)
+        await pilot.pause(TIMEOUT + 0.3)
+        assert app.view.frame is not None
+        assert app.view.frame.rows() == Painter(Braille()).paint(last, app.view.camera).rows()
+
+    run_in(app, script, SIZE)
+
+
+def test_an_answering_terminal_gets_a_steady_stream() -> None:
+    app = ViewApp()
+
+    async def script(pilot: Pilot[None]) -> None:
+        shown = []
+        every = drive()
+        start = time.monotonic()
+        for _ in range(40):
+            app.view.offer(lambda: shown.append(scene := next(every)) or scene)
+            await pilot.pause(0.02)
+        assert 8 <= len(shown) <= 20 * (time.monotonic() - start) + 2
+        assert app.view.credit.lag is not None
+
+    run_in(app, script, SIZE)
