@@ -1,0 +1,233 @@
+"""How large and how tangled the code is, with the figures of the first build beside each: ``python tests/benchmarks/house.py``.
+
+Counts modules, lines, import circles, repeated class names and names that the house does not use any more.
+``--tests`` also times the README's test command (minutes). The figures are no quota: they tell whether it got simpler.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import statistics
+import subprocess
+import sys
+import time
+import tomllib
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import networkx
+
+ROOT: Final = Path(__file__).resolve().parents[2]
+
+FIXED_BY_ROS: Final = frozenset({"msg", "names", "shims"})
+"""Folders whose class names ROS, gym or pynput prescribe."""
+
+_OLD_NAMES: Final = """
+    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place Showing _Standing tell
+    accepted called ticked allow Stage StandingModel Site GuestError Embassy Delegation Mirror Census Cage Rung
+    condemn hang_up Pump LonePump PipePump Door Visit Visitor Line Standing Logbook look Looks Examined Examiner
+    Courses Ground TaskChoice Falling Rollouts deal remember recall foresee begin_again lay_out Judged Chance Said
+    Caution Running Following Workbench Look Trouble StillScreen Ride Comfort Follower Course Ways Floor Sacrifice
+    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told Intake obey sayable Wishes Mistake
+    Study Search new_gaze Gaze read_odometry forward Places allows greedily_apart Group leave decide Refused Made
+"""
+"""The left column of the rename table: classes, functions, methods and constants."""
+
+_OLD_MODULES: Final = """
+    seat desk trip turns places showing telling stage site embassy delegation verdicts standing tally courses arena
+    choice enclosure extra works shelf sitting words roll gathering fame guide aside credit painting picture stamps
+    travel shares walk slots dropping existing composing touching agenda instants running traffic stand_ins own
+    edition shield ladder pump door visit visitor strategies look following workbench
+"""
+"""The left column of the rename table: modules."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One line of the report."""
+
+    name: str
+    now: str
+    first_build: str
+
+
+def sources() -> list[Path]:
+    """Every module of the product."""
+    return sorted(path for room in ("kit", "grader") for path in (ROOT / room).rglob("*.py"))
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+class _Imports(ast.NodeVisitor):
+    """Collects (imported name, how): at import time, inside a function, or for type checkers alone."""
+
+    def __init__(self) -> None:
+        self.found: list[tuple[str, str]] = []
+        self._how = "import"
+
+    def visit_If(self, node: ast.If) -> None:
+        if "TYPE_CHECKING" in ast.unparse(node.test):
+            self._within("typing", node.body)
+            self._within(self._how, node.orelse)
+        else:
+            self.generic_visit(node)
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        self._within("function" if self._how == "import" else self._how, node.body)
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> None:
+        self._within("function" if self._how == "import" else self._how, node.body)
+
+    def visit_Import(self, node: ast.Import) -> None:
+        self.found += [(alias.name, self._how) for alias in node.names]
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
+        self.found += [(f"{node.module}.{alias.name}", self._how) for alias in node.names]
+
+    def _within(self, how: str, body: list[ast.stmt]) -> None:
+        before, self._how = self._how, how
+        for statement in body:
+            self.visit(statement)
+        self._how = before
+
+
+def import_edges(trees: dict[str, ast.Module]) -> dict[str, set[tuple[str, str]]]:
+    """For each way of importing, the pairs (module, imported module) inside the product."""
+    edges: dict[str, set[tuple[str, str]]] = defaultdict(set)
+    for module, tree in trees.items():
+        visitor = _Imports()
+        visitor.visit(tree)
+        for name, how in visitor.found:
+            target = name if name in trees else name.rpartition(".")[0]
+            if target in trees and target != module:
+                edges[how].add((module, target))
+    return edges
+
+
+def circles(edges: set[tuple[str, str]]) -> str:
+    """The sizes of the strongly connected groups of more than one module, largest first."""
+    groups = networkx.strongly_connected_components(networkx.DiGraph(sorted(edges)))
+    sizes = sorted((len(group) for group in groups if len(group) > 1), reverse=True)
+    return ", ".join(map(str, sizes)) or "none"
+
+
+def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    return (node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)))
+
+
+def header_lines(tree: ast.Module) -> int:
+    """Lines before the first definition: docstring, imports, blank lines."""
+    for node in tree.body:
+        if isinstance(node, (ast.ImportFrom, ast.Import)) or (
+            isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        ):
+            continue
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            continue
+        return node.lineno - 1
+    return max((node.end_lineno or 0 for node in tree.body), default=0)
+
+
+def repeated_classes(trees: dict[str, ast.Module]) -> list[str]:
+    """Public and private class names that more than one module defines, ROS's own aside."""
+    places: dict[str, set[str]] = defaultdict(set)
+    for module, tree in trees.items():
+        if not FIXED_BY_ROS.intersection(module.split(".")):
+            for node in ast.walk(tree):
+                if isinstance(node, ast.ClassDef):
+                    places[node.name].add(module)
+    return sorted(name for name, modules in places.items() if len(modules) > 1)
+
+
+def old_names(trees: dict[str, ast.Module]) -> list[str]:
+    """Definitions and modules that still carry a name of the rename table's left column."""
+    found: set[str] = set()
+    for module, tree in trees.items():
+        if FIXED_BY_ROS.intersection(module.split(".")):
+            continue
+        if module.rpartition(".")[2] in _OLD_MODULES.split():
+            found.add(module)
+        for node in ast.walk(tree):
+            names: list[str] = []
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+                names = [node.name]
+            elif isinstance(node, ast.Assign):
+                names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                names = [node.target.id]
+            found.update(f"{module}:{name}" for name in names if name in _OLD_NAMES.split())
+    return sorted(found)
+
+
+def figures() -> tuple[list[Figure], list[str]]:
+    """Every figure that reading the code gives, and the names behind those that should be none."""
+    paths = sources()
+    texts = {module_name(path): path.read_text(encoding="utf-8") for path in paths}
+    trees = {module: ast.parse(text) for module, text in texts.items()}
+    lines = {module: len(text.splitlines()) for module, text in texts.items()}
+    edges = import_edges(trees)
+    at_import = edges["import"]
+    at_run_time = at_import | edges["function"]
+    lengths = [
+        (node.end_lineno or node.lineno) - node.lineno + 1
+        for tree in trees.values()
+        for node in functions(tree)
+    ]
+    headers = sum(header_lines(tree) for tree in trees.values())
+    contract = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+    layers = next(each["layers"] for each in contract if each["type"] == "layers")
+    children = [path for path in (ROOT / "kit").iterdir() if not path.name.startswith(("_", "."))]
+    repeated, old = repeated_classes(trees), old_names(trees)
+    rows = [
+        Figure("import circles at import time", circles(at_import), "none"),
+        Figure("import circles at run time", circles(at_run_time), "4, 4, 2"),
+        Figure("import circles with typing", circles(at_run_time | edges["typing"]), "27, 7, 4"),
+        Figure("children of kit/, and grader", str(len(children) + 1), "36"),
+        Figure("layers of the import contract", str(len(layers)), "13"),
+        Figure("modules", str(len(paths)), "716"),
+        Figure("product lines", f"{sum(lines.values()):,}", "78,956"),
+        Figure("class names defined twice, ROS's aside", str(len(repeated)), "115"),
+        Figure("lines of the median module", f"{statistics.median(lines.values()):.0f}", "96"),
+        Figure("lines of the median function", f"{statistics.median(lengths):.0f}", "5"),
+        Figure("share of header lines", f"{headers / sum(lines.values()):.1%}", "13.9%"),
+        Figure("names of the rename table's left column", str(len(old)), "302"),
+    ]
+    notes = [f"defined twice: {name}" for name in repeated] + [f"old name: {name}" for name in old]
+    return rows, notes
+
+
+def test_seconds() -> Figure:
+    """The README's test command without its installation, timed."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    command = re.search(r"(-m pytest -q [^\n`]*)", readme)
+    assert command is not None
+    begun = time.monotonic()
+    subprocess.run(f"{sys.executable} {command[1]}", shell=True, cwd=ROOT, check=True)
+    return Figure("seconds of the test command", f"{time.monotonic() - begun:.0f}", "about 600")
+
+
+def main(arguments: list[str]) -> int:
+    """Prints the report; ``--names`` also lists the names that should be none."""
+    rows, notes = figures()
+    if "--tests" in arguments:
+        rows.append(test_seconds())
+    width = max(len(row.name) for row in rows)
+    print(f"{'':{width}}  {'now':>10}  first build")
+    for row in rows:
+        print(f"{row.name:{width}}  {row.now:>10}  {row.first_build}")
+    if "--names" in arguments:
+        print(*notes, sep="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
