@@ -1,4 +1,4 @@
-"""What the README says of the lessons is so. ``python tests/test_readme.py`` writes its table anew."""
+"""What README.md and lessons/README.md say is so. ``python tests/test_readme.py`` writes the table of lessons anew."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from kit.cli import VERBS
 from kit.school.lessons.reading import lesson_names, lessons_folder, read
 
 README = Path(__file__).parent.parent / "README.md"
+LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
 FIRST, LAST = "<!-- lessons -->\n", "<!-- end of lessons -->\n"
 
 
@@ -23,7 +24,7 @@ def table() -> str:
 
 
 def test_the_table_of_lessons_is_true() -> None:
-    text = README.read_text()
+    text = LESSONS.read_text()
     assert text[text.index(FIRST) + len(FIRST) : text.index(LAST)] == table()
 
 
@@ -33,6 +34,6 @@ def test_every_verb_it_names_exists() -> None:
 
 
 if __name__ == "__main__":
-    text = README.read_text()
+    text = LESSONS.read_text()
     head, tail = text.index(FIRST) + len(FIRST), text.index(LAST)
-    README.write_text(text[:head] + table() + text[tail:])
+    LESSONS.write_text(text[:head] + table() + text[tail:])
