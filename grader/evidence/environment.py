@@ -145,7 +145,7 @@ def visit(wish: Wish, assignment: Assignment, file: Path, level: Level, seed: in
             graph, Path(folder, EXAMINER.name), args=arguments, limits=assignment.limits, level=level
         )
         with guest:
-            runner.guests.append(guest)
+            runner.participants.append(guest)
             examination.hold(guest)
             lines = guest.take_output().lines
     examination.seen.printed = tuple(printable(line.text) for line in lines)[:MOST_PRINTED]
@@ -258,7 +258,7 @@ class _Examination:
     def _answer(self, patience_s: float, what: str) -> Mapping[str, Json]:
         """Ticks until the answer comes."""
         for _ in range(round(patience_s / STEP)):
-            self._runner.converse()
+            self._runner.exchange_until_idle()
             if self._heard:
                 return self._read(self._heard.pop())
             self._runner.tick()

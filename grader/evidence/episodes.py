@@ -23,6 +23,7 @@ from kit.msg.message import Message, type_name
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 from kit.run.headless import Fingerprint
+from kit.run.lockstep import Observer
 from kit.run.metrics import Trip
 from kit.run.recording import Recorder
 from kit.run.runner import Runner
@@ -67,15 +68,15 @@ class JudgedRunner(Runner):
         """Where the robot may be sent."""
         self._home = robot, home
 
-    def tell(self, service: str, *arguments: Any) -> None:
+    def call_service(self, service: str, *arguments: Any) -> None:
         if not self._is_allowed(service, arguments):
             self.refused.append(service)
             raise SimulationError(f"{service} is not allowed while a program is graded")
-        super().tell(service, *arguments)
+        super().call_service(service, *arguments)
 
     def prepare(self, service: str, *arguments: Any) -> None:
         """The same without asking: for the grader itself."""
-        super().tell(service, *arguments)
+        super().call_service(service, *arguments)
 
     @property
     def paused(self) -> bool:
@@ -120,7 +121,7 @@ class Listener:
         }
 
 
-class Bumps:
+class Bumps(Observer):
     """Notes, as one of the runner's observers, when the robot begins to touch something."""
 
     def __init__(self, robot: str | None) -> None:
@@ -133,13 +134,7 @@ class Bumps:
     def ticks(self) -> tuple[int, ...]:
         return tuple(self._ticks)
 
-    def accepted(self, topic: str, message: Message) -> None:
-        """Only what comes of it counts."""
-
-    def called(self, service: str, *arguments: Any) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         touching = self._robot in simulation.model_names and simulation.touches(str(self._robot))
         if touching and not self._touching:
             self._ticks.append(self._count)
@@ -206,7 +201,7 @@ def _drive(
     except GuestError as error:
         return error.failure, ()
     with guest:
-        runner.guests.append(guest)
+        runner.participants.append(guest)
         for tick in range(round(order.trial.time_s / STEP)):
             caller.look(tick * STEP)
             runner.tick()

@@ -215,7 +215,7 @@ def _with_world(run: Run, launch: Launch, questions: Questions) -> dict[str, Any
 def _without(run: Run, launch: Launch, questions: Questions) -> dict[str, Any]:
     launch.start()
     ticker = Worldless(launch.graph)
-    ticker.guests.append(launch)
+    ticker.participants.append(launch)
     listener = Listener(launch.graph)
     ticks = round(run.time_s / ticker.step_size)
     _ticked(ticker, launch, ticks)

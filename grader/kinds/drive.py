@@ -195,9 +195,9 @@ class _Run:
                 first = tick
             playback.exchange()
             self._simulation.step()
-            playback.ticked(self._simulation)
-            self._trip.ticked(self._simulation)
-            self.fingerprint.ticked(self._simulation)
+            playback.on_step(self._simulation)
+            self._trip.on_step(self._simulation)
+            self.fingerprint.on_step(self._simulation)
             self.poses[tick] = self._simulation.poses()
         return [*found, _Attempt(first, self._recording.ticks, self._trip.score)]
 
@@ -212,7 +212,7 @@ class _Run:
         if service != "reset" and not self._is_going_home(service, arguments):
             raise ValueError("only the keys drive here")
         tell(self._simulation, service, *arguments)
-        self._trip.called(service, *arguments)
+        self._trip.on_service(service, *arguments)
 
     def _is_going_home(self, service: str, arguments: tuple[Any, ...]) -> bool:
         home = self._place.start

@@ -37,9 +37,9 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.headless import Fingerprint
+from kit.run.lockstep import Observer
 from kit.run.metrics import Score, Trip
 from kit.run.recording import Recorder, Recording
-from kit.run.runner import Observer
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
@@ -307,7 +307,7 @@ class _Ride:
                 self._decide()
             self._simulation.step()
             for observer in self._observers:
-                observer.ticked(self._simulation)
+                observer.on_step(self._simulation)
             if self._are_there():
                 self.reached_s = self._simulation.time_ns / 1e9
                 break
@@ -326,7 +326,7 @@ class _Ride:
         for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
             fine = math.isfinite(forward) and math.isfinite(turn) and not stands
             command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if fine else Twist()
-            self._recorder.accepted(robot.commands, command)
+            self._recorder.on_message(robot.commands, command)
             self._simulation.accept(robot.commands, command)
 
     def _are_there(self) -> bool:

@@ -77,7 +77,7 @@ class Plain:
 
     def attend(self) -> None:
         """Answers who has come to look in, while time stands still."""
-        self._session.runner.converse()
+        self._session.runner.exchange_until_idle()
 
     def run(self, seconds: float, factor: float = MAXIMUM) -> None:
         """Lets the world run, and says what was said and where that led. ``factor``: simulated seconds per second."""
@@ -160,7 +160,7 @@ class Plain:
         if self._doors is not None:
             self._door = open_door(session.graph, self._doors, place.name, self.lines.wake)
             if self._door is not None:
-                session.runner.guests.append(self._door)
+                session.runner.participants.append(self._door)
         self._recorder: Recorder | None = None
         if self._record is not None:
             case = place.case.name if place.case else None

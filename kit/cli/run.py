@@ -78,7 +78,7 @@ def command(
     from kit.controllers import find
     from kit.ros.graph.graph import Graph
     from kit.run.headless import run_headless
-    from kit.run.lockstep import Companion
+    from kit.run.lockstep import ClosableParticipant
     from kit.run.pacing import MAXIMUM, REAL_TIME
     from kit.run.scenario import find_place
     from kit.run.view import said
@@ -89,7 +89,7 @@ def command(
         desk = open_workspace(workspace, make=False)
     except WorkspaceError as error:
         options.fail(str(error))
-    company: list[Callable[[Graph], Companion]] = []
+    company: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
         from kit.inspection.server import Door
         from kit.inspection.world_sockets import sockets_folder

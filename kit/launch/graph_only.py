@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kit.ros.graph.graph import Graph
-from kit.run.lockstep import Guest, converse
+from kit.run.lockstep import Participant, exchange_until_idle
 
 
 class Worldless:
@@ -12,9 +12,9 @@ class Worldless:
     def __init__(self, graph: Graph, step_size: float = 0.01) -> None:
         self.graph = graph
         self.step_size = step_size
-        self.guests: list[Guest] = []
+        self.participants: list[Participant] = []
 
     def tick(self) -> None:
         """All that is due now; then time goes on by a step."""
-        converse(self.graph, self.guests)
+        exchange_until_idle(self.graph, self.participants)
         self.graph.advance(self.graph.now_ns + round(self.step_size * 1e9))

@@ -11,14 +11,14 @@ from kit.launch.graph_only import Worldless
 from kit.launch.launch_run import Launch
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.run.lockstep import Companion, Guest
+from kit.run.lockstep import ClosableParticipant, Participant
 from kit.run.pacing import MAXIMUM, REAL_TIME, Pace
 
 
 class Ticker(Protocol):
     """A runner, or what stands in for it without a world."""
 
-    guests: list[Guest]
+    participants: list[Participant]
 
     def tick(self) -> None: ...
 
@@ -50,7 +50,7 @@ def run_plainly(
     seed: int = 0,
     limit: Limit | None = None,
     factor: float | None = None,
-    company: Callable[[Graph], Companion | None] = lambda graph: None,
+    company: Callable[[Graph], ClosableParticipant | None] = lambda graph: None,
     log: Callable[[LogRecord], None] = lambda record: None,
 ) -> None:
     """Carries the launch out in this thread: with a limit as fast as it goes, unless ``factor`` says otherwise.
@@ -64,7 +64,7 @@ def run_plainly(
         stack.callback(launch.close)
         launch.begin()
         launch.graph.log.sink = log
-        company_there: list[Guest] = []
+        company_there: list[Participant] = []
         companion = company(launch.graph)
         if companion is not None:
             stack.callback(companion.close)
@@ -72,7 +72,7 @@ def run_plainly(
         if launch.world is None:
             launch.start()
             worldless = Worldless(launch.graph)
-            worldless.guests += [launch, *company_there]
+            worldless.participants += [launch, *company_there]
             pace = Pace(worldless.step_size, factor or REAL_TIME)
             _go_on(launch, worldless, pace, limit, lambda: launch.world is not None or _is_idle(launch))
         if launch.world is not None and not launch.is_over:
@@ -83,7 +83,7 @@ def run_plainly(
             step_size = launch.world.step_size
             pace = Pace(step_size, factor or launch.world.factor)
             session.runner.on_rate = lambda rate: pace.set_factor(rate * step_size)
-            session.runner.guests += company_there
+            session.runner.participants += company_there
             launch.start()
             _go_on(launch, session.runner, pace, limit, lambda: False)
 

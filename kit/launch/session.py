@@ -26,11 +26,11 @@ class LaunchedSession(Session):
             graph=launch.graph,
         )
         self.launch = launch
-        self.runner.guests.append(launch)
+        self.runner.participants.append(launch)
 
     def reset(self, seed: int | None = None) -> None:
         """The world back to its start; the programs go on."""
-        self.runner.tell("reset", seed)
+        self.runner.call_service("reset", seed)
 
     def close(self) -> None:
         self.launch.close()

@@ -45,7 +45,7 @@ class Single:
         worldless = Worldless(Graph())
         with Door(worldless.graph, sockets, self._request.title) as door:
             process = self._started(worldless.graph)
-            worldless.guests += [process, door]
+            worldless.participants += [process, door]
             pace = Pace(worldless.step_size)
             try:
                 while (ended := self._look(process, say)) is None:

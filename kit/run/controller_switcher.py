@@ -138,7 +138,7 @@ class Seat:
         self._leave()
         coming.guest.join()
         self._guest = coming.guest
-        self._runner.guests.append(coming.guest)
+        self._runner.participants.append(coming.guest)
 
     def _give_up_coming(self) -> None:
         if self._coming is not None:
@@ -148,7 +148,7 @@ class Seat:
     def _leave(self) -> None:
         if self._guest is not None:
             self._hear(self._guest)
-            self._runner.guests.remove(self._guest)
+            self._runner.participants.remove(self._guest)
             self._guest.close()
             self._guest = None
             self._on_empty()

@@ -16,7 +16,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.run.lockstep import Companion
+from kit.run.lockstep import ClosableParticipant, Observer
 from kit.run.metrics import Score
 from kit.run.pacing import MAXIMUM, Pace
 from kit.run.recording import Recorder, save
@@ -29,19 +29,13 @@ CHECK_EVERY = 100
 """Ticks between two looks at what was asked for besides the ticks themselves."""
 
 
-class Fingerprint:
+class Fingerprint(Observer):
     """A digest of where every body was at every tick: equal for equal runs, and for no others."""
 
     def __init__(self) -> None:
         self._digest = hashlib.sha256()
 
-    def accepted(self, topic: str, message: Any) -> None:
-        """What was said shows in what moved."""
-
-    def called(self, service: str, *arguments: Any) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         for pose in simulation.poses():
             self._digest.update(struct.pack("<3d", *pose))
 
@@ -129,7 +123,7 @@ def run_headless(
     factor: float = MAXIMUM,
     until_reached: bool = False,
     record: Path | None = None,
-    company: Sequence[Callable[[Graph], Companion]] = (),
+    company: Sequence[Callable[[Graph], ClosableParticipant]] = (),
     on_progress: Callable[[int], None] | None = None,
     on_message: Callable[[LogRecord], object] = lambda record: None,
 ) -> Summary:
@@ -148,7 +142,7 @@ def run_headless(
         for invite in company:
             companion = invite(session.graph)
             stack.callback(companion.close)
-            runner.guests.append(companion)
+            runner.participants.append(companion)
         runner.observers.append(fingerprint)
         recorder = (
             Recorder(place.name, place.case.name if place.case else None, runner.simulation)

@@ -1,32 +1,48 @@
-"""How the nodes of a graph and those of other processes take turns at one instant."""
+"""The contracts of what takes part in a lock-step run: participants exchange messages, observers watch the steps."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from kit.ros.graph.graph import Graph
 
+if TYPE_CHECKING:  # a launch without a world must not load the physics
+    from kit.sim.simulation import Simulation
+
 MAX_ROUNDS: Final = 100
-"""Rounds of talk between nodes and guests within one tick; what is left goes on in the next."""
+"""Rounds of exchange between nodes and participants within one tick; what is left is delivered in the next."""
 
 
-class Guest(Protocol):
-    """Nodes that live in another process and take part in each tick."""
+class Participant(Protocol):
+    """Nodes of another process, or anything else that exchanges messages with the graph in each tick."""
 
     def exchange(self) -> bool:
-        """Hands over what is due and takes what comes back; false when nothing was due."""
+        """Sends what is due and receives what came back; false when nothing was due."""
 
 
-class Companion(Guest, Protocol):
-    """A guest that stays from a run's first tick to its last: a door, a bag."""
+class ClosableParticipant(Participant, Protocol):
+    """A participant that is opened for a run and closed at its end: a server for other terminals, a bag."""
 
     def close(self) -> None: ...
 
 
-def converse(graph: Graph, guests: Iterable[Guest]) -> None:
-    """Lets nodes and guests talk until all is said, so that a key reaches the wheels within the tick."""
+class Observer:
+    """Hooks that a runner calls; every one does nothing unless it is overridden."""
+
+    def on_message(self, topic: str, message: Any) -> None:
+        """A message is about to reach the devices that subscribe to ``topic``."""
+
+    def on_service(self, service: str, *arguments: Any) -> None:
+        """A service has changed the world, see ``kit.sim.services.SERVICES``."""
+
+    def on_step(self, simulation: Simulation) -> None:
+        """The simulation has made a step."""
+
+
+def exchange_until_idle(graph: Graph, participants: Iterable[Participant]) -> None:
+    """Runs callbacks and exchanges messages until nothing is due, so that a key reaches the wheels within the tick."""
     for _ in range(MAX_ROUNDS):
         graph.run_due()
-        if not sum(guest.exchange() for guest in guests):  # every one of them, so no any()
+        if not sum(each.exchange() for each in participants):  # every one of them, so no any()
             return

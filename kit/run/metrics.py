@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kit.geometry import Pose
+from kit.run.lockstep import Observer
 from kit.world.catalogue import Case
 from kit.world.records import Circle, Model, Polygon
 
@@ -30,7 +31,7 @@ class Score:
     """When the hull first came within the target's radius."""
 
 
-class Trip:
+class Trip(Observer):
     """Watches the runner's ticks for one robot and one case."""
 
     def __init__(self, robot: Model | None, case: Case | None) -> None:
@@ -57,14 +58,11 @@ class Trip:
             target = self._simulation.hull_distance(self._robot, self._case.target)
         return Score(self._time_s, self._distance, self._bumps, target, self._reached)
 
-    def accepted(self, topic: str, message: Any) -> None:
-        """Commands do not count; only what comes of them."""
-
-    def called(self, service: str, *arguments: Any) -> None:
+    def on_service(self, service: str, *arguments: Any) -> None:
         """A robot that is put somewhere has not driven there."""
         self._at = None
 
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         if simulation.tick <= self._last_tick:  # it was reset
             self._start()
         self._last_tick = simulation.tick

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
+from kit.run.lockstep import Observer
 from kit.sim.services import SERVICES, tell
 from kit.sim.simulation import Simulation, SimulationError
 from kit.workspace import write_atomically
@@ -80,7 +81,7 @@ class Recording:
         return self.poses[np.concatenate(rows).astype(np.int64)] if rows else np.empty((0, 3))
 
 
-class Recorder:
+class Recorder(Observer):
     """Watches a runner (as one of its ``observers``) from its first tick on."""
 
     def __init__(self, place: str, case: str | None, simulation: Simulation) -> None:
@@ -94,13 +95,13 @@ class Recorder:
         self._counts = array("q")
         self._models: list[tuple[int, tuple[str, ...]]] = []
 
-    def accepted(self, topic: str, message: Message) -> None:
+    def on_message(self, topic: str, message: Message) -> None:
         self._note(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
 
-    def called(self, service: str, *arguments: Any) -> None:
+    def on_service(self, service: str, *arguments: Any) -> None:
         self._note(service, *arguments)
 
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         names = simulation.model_names
         if not self._models or self._models[-1][1] != names:
             self._models.append((len(self._counts), names))
@@ -204,12 +205,12 @@ def rerun(recording: Recording, world: World) -> Recording:
     for _ in range(recording.ticks):
         playback.exchange()
         simulation.step()
-        playback.ticked(simulation)
-        recorder.ticked(simulation)
+        playback.on_step(simulation)
+        recorder.on_step(simulation)
     return recorder.recording()
 
 
-class Playback:
+class Playback(Observer):
     """Tells a world again what it was told: a guest of a runner, in place of a controller, and its observer."""
 
     def __init__(
@@ -241,13 +242,7 @@ class Playback:
                 ) from None
         return False
 
-    def accepted(self, topic: str, message: Message) -> None:
-        """Nobody else speaks."""
-
-    def called(self, service: str, *arguments: Any) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         self._tick += 1
         if self._tick == self._ticks:
             self._on_end()

@@ -102,8 +102,8 @@ class Session:
     def play_back(self, recording: Recording) -> None:
         """Has the world told again what it was told then; at the recording's end it stands still."""
         runner = self.runner
-        playback = Playback(recording, runner.simulation.accept, runner.tell, on_end=runner.pause)
-        runner.guests.append(playback)
+        playback = Playback(recording, runner.simulation.accept, runner.call_service, on_end=runner.pause)
+        runner.participants.append(playback)
         runner.observers.append(playback)
 
     def wait_until_driven(self) -> None:
@@ -148,7 +148,7 @@ class Session:
 
     def reset(self, seed: int | None = None) -> None:
         """The world back to its start; the controller starts anew too."""
-        self.runner.tell("reset", seed)
+        self.runner.call_service("reset", seed)
         self.seat.restart()
 
     def hang_up(self) -> None:

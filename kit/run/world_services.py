@@ -17,10 +17,10 @@ class Run(Protocol):
     simulation: Simulation
     paused: bool
 
-    def tell(self, service: str, *arguments: Any) -> None:
+    def call_service(self, service: str, *arguments: Any) -> None:
         """One of ``kit.sim.services.SERVICES``. Raises SimulationError."""
 
-    def allow(self, ticks: int) -> Awaitable[None]:
+    def step_paused(self, ticks: int) -> Awaitable[None]:
         """So many ticks in spite of the pause."""
 
     def set_rate(self, rate: float) -> bool:
@@ -51,7 +51,7 @@ class WorldServices:
 
     def _try(self, response: Outcome, service: str, *arguments: Any) -> None:
         try:
-            self._run.tell(service, *arguments)
+            self._run.call_service(service, *arguments)
         except SimulationError as error:
             response.success, response.message = False, str(error)
         else:
@@ -116,7 +116,7 @@ class WorldServices:
         self, request: robot_kit_msgs.Step.Request, response: robot_kit_msgs.Step.Response
     ) -> robot_kit_msgs.Step.Response:
         if self._run.paused:
-            await self._run.allow(request.ticks)
+            await self._run.step_paused(request.ticks)
             response.success = True
         else:
             response.message = "The world is running: call /pause before /step."

@@ -111,9 +111,9 @@ class LiveRun:
     def _step_paused(self, steps: int) -> None:
         runner = self._runner
         if steps:
-            runner.allow(steps)
+            runner.step_paused(steps)
         runner.tick()  # while paused: services are answered, and allowed steps done
-        while runner.steps_left and not self._stopping:
+        while runner.paused_steps_left and not self._stopping:
             runner.tick()
 
     def _advance(self, clock: Schedule) -> None:

@@ -16,6 +16,7 @@ from kit.fields.controller_setup import Course, middle_of
 from kit.geometry import Pose
 from kit.render.scene import Body
 from kit.render.world_text import nearest_wall
+from kit.run.lockstep import Observer
 from kit.run.scenario import Place
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
@@ -169,7 +170,7 @@ def _trap(course: Course, middle: tuple[float, float]) -> str:
     )
 
 
-class _Log:
+class _Log(Observer):
     """Watches a run, as one of the runner's observers, until it is over."""
 
     def __init__(self, place: Place) -> None:
@@ -190,13 +191,7 @@ class _Log:
         """Of the robots, when last seen."""
         return self._recent[-1]
 
-    def accepted(self, topic: str, message: Any) -> None:
-        """Only what comes of it counts."""
-
-    def called(self, service: str, *arguments: Any) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         if self.end is not None:
             return
         if any(simulation.touches(name) for name in self._names):

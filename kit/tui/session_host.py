@@ -188,7 +188,7 @@ class Running:
 
             self._door = open_door(session.graph, self._doors, name, wake)
             if self._door is not None:
-                runner.guests.append(self._door)
+                runner.participants.append(self._door)
         live.__enter__()
         if runner.paused:  # nobody ticks, and yet it is to be seen
             live.post(_nothing)

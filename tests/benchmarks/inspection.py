@@ -35,7 +35,7 @@ def measure(has_door: bool, visitors: Sequence[Sequence[str]]) -> float:
         processes = []
         if has_door:
             door = Door(session.graph, sockets_folder(Path(folder)), "maze")
-            runner.guests.append(door)
+            runner.participants.append(door)
             for words in visitors:
                 command = [sys.executable, "-m", "kit", "ros", *words]
                 environment = {**os.environ, "KIT_WORKSPACE": folder}

@@ -66,7 +66,7 @@ class Stage:
         self.talker = Talker(self.graph)
         self.live = LiveRun(self.session.runner, factor=SPEED, on_change=lambda runner: None)
         self.door = Door(self.graph, sockets_folder(workspace), "simple", wake=self._wake)
-        self.session.runner.guests.append(self.door)
+        self.session.runner.participants.append(self.door)
 
     def _wake(self) -> None:
         if self.session.runner.paused:

@@ -152,7 +152,7 @@ def wander(runner: Runner, ticks: int) -> Recording:
     node.create_subscription(LaserScan, "/static_laser", on_scan, 10)
     for tick in range(ticks):
         if tick == ticks // 2:
-            runner.tell("move_model", "serp", (0.0, 0.0, 0.0))
+            runner.call_service("move_model", "serp", (0.0, 0.0, 0.0))
         runner.tick()
     return recorder.recording()
 
@@ -176,7 +176,7 @@ def test_a_recording_runs_again_to_the_bit(maze: World, tmp_path: Any) -> None:
 def test_a_reset_is_atomic(maze: World) -> None:
     runner = build(maze, 5)
     fresh = wander(build(maze, 5), 300)
-    runner.tell("move_model", "serp", (1.0, -1.0, 0.0))
+    runner.call_service("move_model", "serp", (1.0, -1.0, 0.0))
     for _ in range(100):
         runner.tick()
     assert call(runner, Reset, "/reset", Reset.Request()).success
@@ -184,7 +184,7 @@ def test_a_reset_is_atomic(maze: World) -> None:
 
 
 def wander_after_reset(runner: Runner, ticks: int) -> Recording:
-    runner.tell("reset", None)
+    runner.call_service("reset", None)
     return wander(runner, ticks)
 
 

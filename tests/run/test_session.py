@@ -260,7 +260,7 @@ def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
     with Session(place_on_map(find_map("simple"))) as session:
         run(session, 0.05)
         for x in (0.01, 0.5, -0.5):
-            session.runner.tell("move_model", "serp", (x, 0.0, 0.0))
+            session.runner.call_service("move_model", "serp", (x, 0.0, 0.0))
             run(session, 0.02)
         assert session.trip.score.distance_m == pytest.approx(0.0, abs=1e-9)
 

@@ -6,7 +6,7 @@ import json
 import math
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.render.scene import Disc, FloatArray
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+from kit.run.lockstep import Observer
 from kit.run.metrics import Trip
 from kit.run.runner import Runner
 from kit.sim.simulation import Simulation
@@ -76,7 +77,7 @@ def _readings(message: Message) -> FloatArray | None:
     return None
 
 
-class Eye:
+class Eye(Observer):
     """Remembers where the robot went, and how far joints were pulled apart."""
 
     def __init__(self, model: Model | None, world: World) -> None:
@@ -85,13 +86,7 @@ class Eye:
         self.trail: list[tuple[float, float]] = []
         self.gap, self.widest = 0.0, ""
 
-    def accepted(self, topic: str, message: Any) -> None:
-        """Only what moves counts."""
-
-    def called(self, service: str, *arguments: Any) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         if simulation.tick % LOOK_EVERY:
             return
         if self._model is not None:
@@ -159,7 +154,7 @@ def _drive(runner: Runner, trip: Trip, order: Order, model: Model | None, drives
                 )
             except GuestError as error:
                 return f"Our driver does not start: {error}"
-            runner.guests.append(stack.enter_context(guest))
+            runner.participants.append(stack.enter_context(guest))
         for _ in range(round(order.time_s / STEP)):
             runner.tick()
             if guest is not None and guest.failure is not None:

@@ -15,6 +15,7 @@ from kit.host.failure import Failure
 from kit.host.sandbox.confinement import DESK_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import allows
+from kit.run.lockstep import Observer
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Place
 from kit.run.session import Session
@@ -78,7 +79,7 @@ class Finish:
         }
 
 
-class Judge:
+class Judge(Observer):
     """Watches a runner's ticks: when all who drive have reached the target, and how often they touched something."""
 
     def __init__(self, place: Place) -> None:
@@ -100,10 +101,7 @@ class Judge:
         seconds = self._seconds if self._reached is None else self._reached
         return Finish(self._reached is not None and not self._foul, seconds, self._bumps, foul=self._foul)
 
-    def accepted(self, topic: str, message: Any) -> None:
-        """Only what comes of it counts."""
-
-    def called(self, service: str, *arguments: Any) -> None:
+    def on_service(self, service: str, *arguments: Any) -> None:
         """Whoever changes the world does not race in it."""
         if service in ALLOWED[1:] or self._reached is not None:
             return
@@ -111,7 +109,7 @@ class Judge:
         if service != ALLOWED[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
             self._foul = f"the world was changed during the race ({service})"
 
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         if simulation.tick <= self._last_tick:  # it was reset: a new drive
             self._begin()
         self._last_tick = simulation.tick
@@ -140,7 +138,7 @@ def reference(level: Level) -> tuple[Finish, Recording]:
     place = level.find()
     if len(place.partners) > 1:
         return race(level, find(PAIR_DRIVER))
-    return _run(level, place, lambda session: session.runner.guests.append(Guide(session)))
+    return _run(level, place, lambda session: session.runner.participants.append(Guide(session)))
 
 
 def race(

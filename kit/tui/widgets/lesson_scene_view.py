@@ -8,6 +8,7 @@ from textual.message import Message
 
 from kit.controllers import find
 from kit.render.scene import Scene as Picture
+from kit.run.lockstep import Observer
 from kit.run.view import View
 from kit.school.lessons.records import Scene
 from kit.tui.session_host import Running
@@ -150,19 +151,13 @@ class SceneView(WorldView):
             self.draw()
 
 
-class _Rest:
+class _Rest(Observer):
     """Watches a runner, and has it stand still from a tick on."""
 
     def __init__(self, runner: Runner, ticks: int) -> None:
         self._runner = runner
         self._ticks = ticks
 
-    def accepted(self, topic: str, message: object) -> None:
-        """What is said does not count."""
-
-    def called(self, service: str, *arguments: object) -> None:
-        """Likewise."""
-
-    def ticked(self, simulation: Simulation) -> None:
+    def on_step(self, simulation: Simulation) -> None:
         if simulation.tick >= self._ticks:
             self._runner.pause()

@@ -107,7 +107,7 @@ def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progre
 
         def put(session: Session) -> None:
             assert session.place.case is not None
-            session.runner.tell("move_model", session.place.robot, (*session.place.case.target, 0.0))
+            session.runner.call_service("move_model", session.place.robot, (*session.place.case.target, 0.0))
 
         screen.behind.wish(put)
         await seen(pilot, "The target is reached, and the drive is kept.")
