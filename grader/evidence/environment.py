@@ -181,7 +181,7 @@ class _Examination:
         node = runner.graph.create_node("grader")
         self._ask = node.create_publisher(String, ASK, 10)
         node.create_subscription(String, ANSWER, self._heard_answer, 10)
-        runner.graph.watch(self._overhear)
+        runner.graph.add_message_listener(self._overhear)
 
     def hold(self, guest: Guest) -> None:
         """Everything that is tried, in order."""

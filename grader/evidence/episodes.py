@@ -105,7 +105,7 @@ class Listener:
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[tuple[str, str], int] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
-        self.stop = graph.watch(self._hear)
+        self.stop = graph.add_message_listener(self._hear)
 
     def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
         if node.handle.full_name == WORLD_NODE:

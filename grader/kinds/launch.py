@@ -147,7 +147,7 @@ def _wires(seen: Launched) -> list[str]:
     return [
         f"{end.node} {verb} {topic.name}"
         for topic in seen.graph.topics
-        if not topic.is_plumbing
+        if not topic.is_infrastructure
         for verb, ends in (("publishes", topic.publishers), ("subscribes", topic.subscriptions))
         for end in ends
     ]

@@ -15,7 +15,7 @@ from kit.host.proxy_nodes import Census, Mirror
 from kit.host.waiter import Exchange, PipePump
 from kit.host.wire import Json
 from kit.msg.message import Message
-from kit.ros.graph.graph import Graph, Pump
+from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.node import Node
 from kit.ros.node.service import Call
 
@@ -34,16 +34,16 @@ class Embassy:
     """The child's graph, and what goes to and fro between it and the kit's."""
 
     def __init__(
-        self, conversation: Conversation, now_ns: int, pump: Callable[[Exchange], Pump] = PipePump
+        self, conversation: Conversation, now_ns: int, pump: Callable[[Exchange], Waiter] = PipePump
     ) -> None:
-        self.graph = Graph(now_ns, pump=pump(self))
+        self.graph = Graph(now_ns, waiter=pump(self))
         self._conversation = conversation
         self._codec = Codec(in_child=True)
         self._mirror = Mirror(self.graph, self)
         self._census = Census(self.graph, self._mirror)
         self._events: list[Json] = []
         self.has_had_nodes = False
-        self.graph.watch(self._overhear)
+        self.graph.add_message_listener(self._overhear)
 
     # Out
 
@@ -115,20 +115,20 @@ class Embassy:
         number, content = fields
         subscription: Any = self._census.ends.get(number)
         if subscription is not None:  # it may have been destroyed since
-            subscription.arrive(self._codec.unpack(subscription.msg_type, content))
+            subscription.enqueue(self._codec.unpack(subscription.msg_type, content))
 
     def _hear_request(self, _: str, fields: list[Json]) -> None:
         identity, number, content = fields
         service: Any = self._census.ends.get(identity)
         if service is not None:
             asker: Any = _Asker(self, identity)
-            service.arrive(Call(asker, number, self._codec.unpack(service.srv_type.Request, content)))
+            service.enqueue(Call(asker, number, self._codec.unpack(service.srv_type.Request, content)))
 
     def _hear_response(self, _: str, fields: list[Json]) -> None:
         identity, number, content = fields
         client: Any = self._census.ends.get(identity)
         if client is not None:
-            client.arrive(number, self._codec.unpack(client.srv_type.Response, content))
+            client.enqueue(number, self._codec.unpack(client.srv_type.Response, content))
 
     def answer(self, service: int, number: int, response: Message) -> None:
         """One of the program's services has answered one of the kit's clients."""
@@ -142,7 +142,7 @@ class _Asker:
         self._embassy = embassy
         self._service = service
 
-    def arrive(self, number: int, response: Message) -> None:
+    def enqueue(self, number: int, response: Message) -> None:
         self._embassy.answer(self._service, number, response)
 
 

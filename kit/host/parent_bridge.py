@@ -85,7 +85,7 @@ class Delegation:
         # Among themselves the other side's nodes have heard it already.
         self._speaking = True
         try:
-            publisher.hand_over(message)
+            publisher.publish_without_copy(message)
         finally:
             self._speaking = False
 
@@ -101,8 +101,8 @@ class Delegation:
         if asked is None or asked.service != identity:
             raise ProtocolError("a response to a request that was not made")
         response = self._codec.unpack(service.srv_type.Response, content)
-        self._graph.tell_watchers(service.handle.node, service.service_name, response)
-        asked.call.client.arrive(asked.call.number, response)
+        self._graph.notify_message_listeners(service.handle.node, service.service_name, response)
+        asked.call.client.enqueue(asked.call.number, response)
         self._graph.notify()
 
     # What the other side is told

@@ -94,7 +94,7 @@ class RemoteSubscription(Subscription[Any]):
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
         super().__init__(node, cls, topic, _never_called, MutuallyExclusiveCallbackGroup(), qos, quiet)
 
-    def arrive(self, msg: Message) -> None:
+    def enqueue(self, msg: Message) -> None:
         self._listener.on_message(self._identity, msg)
 
     def discard_queue(self) -> None:
@@ -102,7 +102,7 @@ class RemoteSubscription(Subscription[Any]):
 
 
 class RemoteService(Service[Any, Any]):
-    """Hands on each request at once; whoever answers calls ``call.client.arrive``."""
+    """Hands on each request at once; whoever answers calls ``call.client.enqueue``."""
 
     def __init__(
         self,
@@ -116,7 +116,7 @@ class RemoteService(Service[Any, Any]):
         self._identity, self._listener = identity, listener
         super().__init__(node, cls, name, _never_called, MutuallyExclusiveCallbackGroup(), qos)
 
-    def arrive(self, call: Call) -> None:
+    def enqueue(self, call: Call) -> None:
         self._listener.on_request(self._identity, call)
 
     def discard_queue(self) -> None:
@@ -142,14 +142,14 @@ class RemoteClient(Client[Any, Any]):
         """Passes a request on to whoever serves. Nobody: it stays without an answer, as in ROS 2."""
         graph = self._graph
         with graph.lock:
-            if graph.watchers:
-                graph.tell_watchers(self._handle.node, self.service_name, request)
-            server = graph.directory.server(self.service_name, self.srv_type)
+            if graph.message_listeners:
+                graph.notify_message_listeners(self._handle.node, self.service_name, request)
+            server = graph.directory.find_server(self.service_name, self.srv_type)
             if server is not None:
-                server.arrive(Call(self, number, request))
+                server.enqueue(Call(self, number, request))
                 graph.notify()
 
-    def arrive(self, number: int, response: Any) -> None:
+    def enqueue(self, number: int, response: Any) -> None:
         self._listener.on_response(self._identity, number, response)
 
     def discard_queue(self) -> None:

@@ -39,7 +39,7 @@ class LonePump:
 
 
 class PipePump:
-    """The ``Pump`` of a graph whose time and messages come through the pipe."""
+    """The ``Waiter`` of a graph whose time and messages come through the pipe."""
 
     def __init__(self, exchange: Exchange) -> None:
         self._exchange = exchange
@@ -54,7 +54,7 @@ class PipePump:
         with graph.lock:
             if not self._everybody_waits(graph):
                 return
-            wakes = [look.until_ns for look in graph.looks.values() if look.until_ns is not None]
+            wakes = [look.until_ns for look in graph.waiting_threads.values() if look.until_ns is not None]
             if self._away or self._given_up:
                 wakes.append(graph.now_ns)  # they may have something to say at any time: ask at every tick
         self._exchange.turn(min(wakes, default=None))
@@ -63,13 +63,13 @@ class PipePump:
         """Waits for the other threads, within reason; false if there is something to do for this one meanwhile."""
         me, began = threading.get_ident(), time.monotonic()
         while True:
-            looks = graph.looks
-            if looks[me].change != graph.changes:
+            looks = graph.waiting_threads
+            if looks[me].seen_changes != graph.change_count:
                 return False
             self._regulars |= looks.keys() - self._fickle
             self._away -= looks.keys()
-            waking = any(look.change != graph.changes for look in looks.values())
-            busy = graph.busy - sum(look.pooled for look in looks.values())
+            waking = any(look.seen_changes != graph.change_count for look in looks.values())
+            busy = graph.running_pool_callbacks - sum(look.is_pooled for look in looks.values())
             self._given_up = min(self._given_up, busy)
             strangers = {thread.ident for thread in threading.enumerate() if thread.ident is not None}
             strangers -= looks.keys() | self._away
@@ -82,4 +82,4 @@ class PipePump:
                 self._regulars -= strangers
                 self._given_up = busy
                 return True
-            graph.somebody_waits.wait(STRANGER_S / 5)
+            graph.wait_started.wait(STRANGER_S / 5)

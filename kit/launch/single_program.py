@@ -30,7 +30,7 @@ class Single:
         process, graph = self._started(visit.graph), visit.graph
         try:
             while (ended := self._look(process, say)) is None:
-                seen = graph.changes
+                seen = graph.change_count
                 while process.exchange():
                     self._print(process, say)
                 if process.poll() is None:
@@ -79,7 +79,7 @@ class Single:
 
 
 def _has_changed(graph: Graph, since: int) -> bool:
-    return graph.changes != since
+    return graph.change_count != since
 
 
 def _nothing(_: object) -> None:

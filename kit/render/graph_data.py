@@ -47,7 +47,7 @@ def conversation(state: GraphState, *, everything: bool = False, narrowed: str =
     """What there is to see of a graph. ``everything``: also what ROS needs for itself (parameter services,
     ``/rosout``, ``/tf``) and services that nobody asks. ``narrowed``: only what has this text in its name, and
     whatever is joined to that."""
-    items = [_topic_item(topic) for topic in state.topics if everything or not topic.is_plumbing]
+    items = [_topic_item(topic) for topic in state.topics if everything or not topic.is_infrastructure]
     items += [_service_item(service) for service in state.services if everything or _is_used(service)]
     hidden = len(state.topics) + len(state.services) - len(items)
     wanted = narrowed.casefold()
@@ -58,7 +58,7 @@ def conversation(state: GraphState, *, everything: bool = False, narrowed: str =
 
 
 def _is_used(service: ServiceState) -> bool:
-    return bool(service.clients) and not service.is_plumbing
+    return bool(service.clients) and not service.is_infrastructure
 
 
 def _names(item: Item) -> Iterator[str]:

@@ -12,7 +12,7 @@ from typing import Final
 
 from kit.render.graph import Cell, Link, Plan
 from kit.render.graph_data import Conversation, Item
-from kit.ros.graph.topic_stats import Flow, Said
+from kit.ros.graph.topic_stats import FlowStats, MessageFlow
 
 FRAMES: Final = 6
 """In which a dot goes from a node to a topic, and in which from there to the next node."""
@@ -23,7 +23,7 @@ MOST: Final = 16
 
 @dataclass(frozen=True, slots=True)
 class _Journey:
-    flow: Flow
+    flow: MessageFlow
     legs: tuple[tuple[Link, ...], tuple[Link, ...]]
     """First one line, or none where the sender's is not drawn, then all that lead on."""
     backwards: bool
@@ -39,15 +39,15 @@ class Travel:
     """Which dots are where. Call ``frame`` at a steady rate while it is ``busy`` or there is news."""
 
     def __init__(self) -> None:
-        self._counts: dict[Flow, int] | None = None
-        self._waiting: dict[Flow, None] = {}
+        self._counts: dict[MessageFlow, int] | None = None
+        self._waiting: dict[MessageFlow, None] = {}
         self._journeys: list[_Journey] = []
 
     @property
     def busy(self) -> bool:
         return bool(self._journeys or self._waiting)
 
-    def hear(self, said: Mapping[Flow, Said]) -> None:
+    def hear(self, said: Mapping[MessageFlow, FlowStats]) -> None:
         """Takes note of what was said; what was said before the first time is over."""
         counts = {flow: heard.count for flow, heard in said.items()}
         if self._counts is not None:
@@ -81,12 +81,12 @@ class Travel:
         )
 
 
-def _journey(flow: Flow, item: Item) -> _Journey | None:
+def _journey(flow: MessageFlow, item: Item) -> _Journey | None:
     """The way of what a node has said; None if it does not say it here any more."""
-    if flow.answer_to is not None:
-        if flow.node not in item.receivers or flow.answer_to not in item.senders:
+    if flow.response_to is not None:
+        if flow.node not in item.receivers or flow.response_to not in item.senders:
             return None
-        first, then = Link(flow.node, item.label, sends=False), Link(flow.answer_to, item.label, sends=True)
+        first, then = Link(flow.node, item.label, sends=False), Link(flow.response_to, item.label, sends=True)
         return _Journey(flow, ((first,), (then,)), backwards=True)
     if flow.node not in item.senders:
         return None

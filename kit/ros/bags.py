@@ -78,7 +78,7 @@ class _Tap(Subscription[Any]):
         super().__init__(node.handle, cls, topic, hear, group, qos, quiet)
         node.handle.subscriptions.append(self)
 
-    def arrive(self, msg: Any) -> None:
+    def enqueue(self, msg: Any) -> None:
         self._hear(msg)
 
 

@@ -192,7 +192,7 @@ class Buffer:
         if self._node is None:
             return
         graph = self._node.handle.graph
-        work = graph.performing.work
+        work = graph.thread_state.work
         if work is not None and work[0].exclusive:
             return
         until = graph.now_ns + timeout.nanoseconds

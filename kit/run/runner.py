@@ -70,7 +70,7 @@ class Runner:
         for observer in self.observers:
             observer.on_service(service, *arguments)
         if service == "reset":
-            self.graph.discard()
+            self.graph.discard_messages()
         self._connect_devices()
 
     def pause(self) -> None:
@@ -111,7 +111,7 @@ class Runner:
     def _connect(self, endpoint: Endpoint) -> None:
         if endpoint.direction == "publish":
             publisher = self._node.create_publisher(endpoint.type, endpoint.topic, 10)
-            self._publishers[endpoint.topic] = publisher.hand_over
+            self._publishers[endpoint.topic] = publisher.publish_without_copy
             self._endpoints[endpoint] = partial(self._node.destroy_publisher, publisher)
         else:
             accept = partial(self.accept, endpoint.topic)

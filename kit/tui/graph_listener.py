@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kit.msg.message import Message
 from kit.ros.graph.snapshot import GraphState, snapshot
-from kit.ros.graph.topic_stats import Flow, Said, Traffic
+from kit.ros.graph.topic_stats import FlowStats, MessageFlow, TopicStats
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -19,7 +19,7 @@ class Heard:
     """A graph at one instant. Safe to hand over."""
 
     state: GraphState
-    said: Mapping[Flow, Said]
+    said: Mapping[MessageFlow, FlowStats]
     chosen: str | None
     """The topic or service whose newest message this is."""
     newest: Message | None
@@ -34,24 +34,24 @@ class Listening:
 
     def __init__(self, deliver: Callable[[Heard], None]) -> None:
         self._deliver = deliver
-        self._traffic: Traffic | None = None
+        self._topic_stats: TopicStats | None = None
         self._state: GraphState | None = None
         self.chosen: str | None = None
         """Set from any thread; heeded the next time."""
 
     def __call__(self, session: Session) -> None:
         graph = session.graph
-        if self._traffic is None or self._traffic.graph is not graph:
+        if self._topic_stats is None or self._topic_stats.graph is not graph:
             self.stop()
-            self._traffic = Traffic(graph)
-        self._traffic.choose(self.chosen)
+            self._topic_stats = TopicStats(graph)
+        self._topic_stats.select(self.chosen)
         if self._state is None or self._state.version != graph.directory.version:
             self._state = snapshot(graph)
-        said, newest = self._traffic.said(), self._traffic.newest
+        said, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
         self._deliver(Heard(self._state, said, self.chosen, newest, session.runner.paused))
 
     def stop(self) -> None:
         """In the world's thread too."""
-        if self._traffic is not None:
-            self._traffic.stop()
-        self._traffic = self._state = None
+        if self._topic_stats is not None:
+            self._topic_stats.stop()
+        self._topic_stats = self._state = None

@@ -107,7 +107,7 @@ def test_an_honest_answer_by_hand_is_taken(student: Student) -> None:
     def watch(now: int, node: Node, topic: str, message: Any) -> None:
         said.append(f"{node.get_name()} {topic} {message.linear.x}")
 
-    graph.watch(watch)
+    graph.add_message_listener(watch)
     frame = reply(NODE, OUT, SERVICE, ["message", 2, [[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]]])
     with Guest.start(graph, student(FORGER.format(frame=json.dumps(frame))), limits=QUICK) as guest:
         assert guest.failure is None

@@ -483,7 +483,7 @@ def test_quality_of_service_that_does_not_fit_is_told(bench: Bench, student: Stu
 
 def test_watchers_see_what_nobody_subscribes(bench: Bench, student: Student) -> None:
     seen: list[tuple[str, str]] = []
-    bench.graph.watch(lambda now, node, topic, message: seen.append((node.get_name(), topic)))
+    bench.graph.add_message_listener(lambda now, node, topic, message: seen.append((node.get_name(), topic)))
     bench.start(student(ECHO))
     bench.say("/questions", String(data="x"))
     assert seen.count(("echo", "/answers")) == 1
@@ -495,7 +495,7 @@ def test_a_reset_forgets_what_is_on_its_way(bench: Bench, student: Student) -> N
     publisher = bench.node.create_publisher(String, "/questions", 10)
     bench.settle()
     publisher.publish(String(data="lost"))
-    bench.graph.discard()
+    bench.graph.discard_messages()
     bench.settle()
     assert answers == []
     bench.say("/questions", String(data="kept"))

@@ -12,7 +12,7 @@ Thread 0x00007f9c (most recent call first):
 
 Current thread 0x00007f9d (most recent call first):
   File "/home/ada/robots/drive.py", line 12 in on_scan
-  File "/kit/ros/agenda.py", line 5 in perform
+  File "/kit/ros/ready_queue.py", line 5 in perform
 """
 
 

@@ -6,21 +6,21 @@ from kit.render.graph import Cell, Link, Plan
 from kit.render.graph_data import Conversation
 from kit.render.graph_layout import arrange
 from kit.render.message_animation import FRAMES, MOST, Travel
-from kit.ros.graph.topic_stats import Flow, Said
+from kit.ros.graph.topic_stats import FlowStats, MessageFlow
 from tests.render.conversations import MAZE, WORLD, item, talk
 
-SCAN = Flow(WORLD, "/static_laser")
+SCAN = MessageFlow(WORLD, "/static_laser")
 
 
-def said(**counts: int) -> dict[Flow, Said]:
+def said(**counts: int) -> dict[MessageFlow, FlowStats]:
     flows = {
         "scan": SCAN,
-        "odom": Flow(WORLD, "/odom"),
-        "asked": Flow("/random_walk", "/move_model", is_service=True),
-        "answered": Flow(WORLD, "/move_model", is_service=True, answer_to="/random_walk"),
-        "gone": Flow("/gone", "/cmd_vel"),
+        "odom": MessageFlow(WORLD, "/odom"),
+        "asked": MessageFlow("/random_walk", "/move_model", is_service=True),
+        "answered": MessageFlow(WORLD, "/move_model", is_service=True, response_to="/random_walk"),
+        "gone": MessageFlow("/gone", "/cmd_vel"),
     }
-    return {flows[name]: Said(count, None) for name, count in counts.items()}
+    return {flows[name]: FlowStats(count, None) for name, count in counts.items()}
 
 
 def started(shown: Conversation = MAZE) -> tuple[Travel, Plan]:
@@ -88,7 +88,7 @@ def test_an_answer_goes_back_to_who_has_asked() -> None:
 def test_nothing_arrives_over_a_broken_line() -> None:
     shown = talk(item("/scan", "/robot", "/good /bad", ("/robot", "/bad")))
     travel, plan = started(shown)
-    travel.hear({Flow("/robot", "/scan"): Said(1, None)})
+    travel.hear({MessageFlow("/robot", "/scan"): FlowStats(1, None)})
     seen = frozenset().union(*way(travel, plan))
     good, bad = (set(plan.path(Link(node, "/scan", sends=False))) for node in ("/good", "/bad"))
     assert seen & good
@@ -113,7 +113,7 @@ def test_a_dot_whose_line_goes_away_goes_too() -> None:
 def test_there_are_never_more_than_can_be_followed() -> None:
     shown = talk(*(item(f"/topic{number}", "/talker", "") for number in range(40)))
     travel, plan = started(shown)
-    travel.hear({Flow("/talker", f"/topic{number}"): Said(1, None) for number in range(40)})
+    travel.hear({MessageFlow("/talker", f"/topic{number}"): FlowStats(1, None) for number in range(40)})
     frames = way(travel, plan)
     assert max(map(len, frames)) == MOST
     assert frozenset(cell.row for cells in frames for cell in cells) == set(range(40))

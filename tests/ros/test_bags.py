@@ -41,7 +41,7 @@ def record(
             scan = LaserScan(range_max=10.0, ranges=[0.1 * i, float("nan")])
             scan.header.stamp.nanosec, scan.header.frame_id = graph.now_ns, "laser"
             scans.publish(scan)
-            commands.hand_over(Twist(linear=Vector3(x=0.5 * i)))
+            commands.publish_without_copy(Twist(linear=Vector3(x=0.5 * i)))
             bumps.publish(Collisions(collisions=[Collision(entity_a="serp", magnitude_forces=[1.5])]))
             if i == ticks // 2:
                 late = node.create_publisher(String, "late", 10)

@@ -13,7 +13,7 @@ from kit.ros.execution.client_library import (
     get_logger_level,
     set_logger_level,
 )
-from kit.ros.execution.context import hosting
+from kit.ros.execution.context import default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord, get_logging_severity_from_string
 from kit.ros.node.node import Node
@@ -124,7 +124,7 @@ def test_rosout_can_be_left_out(graph: Graph) -> None:
 
 
 def test_loggers_without_a_node(graph: Graph, lines: list[LogRecord]) -> None:
-    with hosting(graph.context):
+    with default_context(graph.context):
         get_logger("tools").info("x")
         assert get_logger_level("tools") is LoggingSeverity.UNSET
         set_logger_level("tools", LoggingSeverity.WARN)

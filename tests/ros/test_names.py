@@ -83,7 +83,7 @@ class Talker(Node):
         self.publisher_ = self.create_publisher(String, "chatter", 10)
         self.subscription = self.create_subscription(String, "chatter", self.listener_callback, 10)
         self.timer = self.create_timer(0.001, self.timer_callback)
-        self.graph, self.agenda, self.i = "mine", "mine too", 0
+        self.graph, self.ready_queue, self.i = "mine", "mine too", 0
 
     def timer_callback(self):
         msg = String()

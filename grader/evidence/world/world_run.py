@@ -44,7 +44,7 @@ class Ear:
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[str, int] = {}
         self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
-        self.stop = graph.watch(self._hear)
+        self.stop = graph.add_message_listener(self._hear)
 
     def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
         if node.handle.full_name != WORLD_NODE:

@@ -175,7 +175,7 @@ def _install(context: Context, number: signal.Signals) -> None:
     before = signal.getsignal(number)
 
     def handle(received: int, frame: FrameType | None) -> None:
-        context.end_from_outside()
+        context.shutdown_from_outside()
         if callable(before):
             before(received, frame)
 

@@ -83,7 +83,7 @@ class Context:
         """Ends if it has not ended."""
         self._end()
 
-    def end_from_outside(self) -> None:
+    def shutdown_from_outside(self) -> None:
         """Ends on behalf of a signal or of whoever runs the program, whose own shutdown may still follow."""
         self._end(from_outside=True)
 
@@ -169,7 +169,7 @@ def set_default_graph(graph: Graph | None) -> None:
 
 
 @contextmanager
-def hosting(context: Context) -> Iterator[None]:
+def default_context(context: Context) -> Iterator[None]:
     """Makes ``context`` the default one in this block and thread: for nodes whose constructor takes none."""
     token = _HOSTED.set(context)
     try:

@@ -17,7 +17,7 @@ from kit.ros.exceptions import (
 )
 from kit.ros.execution.context import Context, get_default_context
 from kit.ros.execution.task import Future, Task
-from kit.ros.graph.ready_queue import Agenda, Work
+from kit.ros.graph.ready_queue import ReadyQueue, TakenWork
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Executor:
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = context or get_default_context()
         self._graph = self._context.graph
-        self.agenda = Agenda(self._graph, exclusive=self.exclusive)
+        self.ready_queue = ReadyQueue(self._graph, exclusive=self.exclusive)
         """What is to be done for its nodes."""
         self._nodes: list[Node] = []
         self._is_shutdown = False
@@ -103,7 +103,7 @@ class Executor:
     def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Task[Any]:
         """Has a function or coroutine run by this executor; the task is its future result."""
         task: Task[Any] = Task(callback, args, kwargs, executor=self)
-        self.agenda.post(task)
+        self.ready_queue.put(task)
         return task
 
     def create_future(self) -> Future[Any]:
@@ -143,7 +143,7 @@ class Executor:
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Runs callbacks until the future is done or the time is over."""
-        future.wake(self.wake)
+        future.call_when_done(self.wake)
         with _Spinning(self):
             deadline = self._deadline(timeout_sec)
             while self._context.ok() and not future.done() and not self._is_shutdown:
@@ -152,7 +152,7 @@ class Executor:
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Runs at most one callback, unless the future is done first."""
-        future.wake(self.wake)
+        future.call_when_done(self.wake)
         with _Spinning(self):
             self._turn(self._deadline(timeout_sec), future.done)
 
@@ -166,13 +166,13 @@ class Executor:
 
         Also ends, with true, when ``enough()``, or when woken: the caller looks again.
         """
-        graph, agenda, context = self._graph, self.agenda, self._context
+        graph, ready_queue, context = self._graph, self.ready_queue, self._context
         while True:
-            work = self._pick()
+            work = self._take_next()
             if work is not None:
-                self._do(work)
+                self._dispatch(work)
                 return True
-            next_due = agenda.next_due_ns
+            next_due = ready_queue.next_due_ns
             until = (
                 deadline if next_due is None else next_due if deadline is None else min(deadline, next_due)
             )
@@ -180,7 +180,7 @@ class Executor:
             def changed(expected: int | None = next_due) -> bool:
                 return (
                     self._has_work()
-                    or agenda.next_due_ns != expected
+                    or ready_queue.next_due_ns != expected
                     or enough()
                     or self._awake
                     or self._is_shutdown
@@ -197,13 +197,13 @@ class Executor:
                 return False
 
     def _has_work(self) -> bool:
-        return self.agenda.is_due
+        return self.ready_queue.has_due_work
 
-    def _pick(self) -> Work | None:
-        return self.agenda.pick()
+    def _take_next(self) -> TakenWork | None:
+        return self.ready_queue.take_next()
 
-    def _do(self, work: Work) -> None:
-        self.agenda.perform(work)
+    def _dispatch(self, work: TakenWork) -> None:
+        self.ready_queue.execute(work)
 
 
 class _Spinning:
@@ -218,8 +218,8 @@ class _Spinning:
             if executor._spinner is None:
                 executor._spinner = threading.get_ident()
                 return
-        work = executor._graph.performing.work
-        if work is not None and work[0] is executor.agenda:
+        work = executor._graph.thread_state.work
+        if work is not None and work[0] is executor.ready_queue:
             raise WouldDeadlock(
                 "Executor is already spinning: this is one of its callbacks. A callback must not spin its own "
                 "executor; return, and go on in a later callback: add_done_callback, await, or a timer."
@@ -268,26 +268,26 @@ class MultiThreadedExecutor(Executor):
     def _has_work(self) -> bool:
         return bool(self._problems) or super()._has_work()
 
-    def _pick(self) -> Work | None:
+    def _take_next(self) -> TakenWork | None:
         if self._problems:
             raise self._problems.pop(0)
-        return super()._pick()
+        return super()._take_next()
 
-    def _do(self, work: Work) -> None:
+    def _dispatch(self, work: TakenWork) -> None:
         with self._graph.lock:
-            self._graph.busy += 1
-        job = self._pool.submit(self._perform, work)
+            self._graph.running_pool_callbacks += 1
+        job = self._pool.submit(self._execute, work)
         self._jobs.add(job)
         job.add_done_callback(self._done)
 
-    def _perform(self, work: Work) -> None:
-        self._graph.performing.pooled = True
-        self.agenda.perform(work)
+    def _execute(self, work: TakenWork) -> None:
+        self._graph.thread_state.is_pooled = True
+        self.ready_queue.execute(work)
 
     def _done(self, job: Job[None]) -> None:
         self._jobs.discard(job)
         with self._graph.lock:
-            self._graph.busy -= 1
+            self._graph.running_pool_callbacks -= 1
         if not job.cancelled():
             problem = job.exception()
             if problem is not None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from kit.ros.graph.ready_queue import NOTHING, Agenda, Item
+from kit.ros.graph.ready_queue import NO_WORK, ReadyItem, ReadyQueue
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
@@ -81,7 +81,7 @@ class Future(Generic[T]):
             self._callbacks = [other for other in self._callbacks if other != callback]
         return found
 
-    def wake(self, waker: Callable[[], None]) -> None:
+    def call_when_done(self, waker: Callable[[], None]) -> None:
         """Has ``waker()`` called as soon as it is done, in whatever thread that happens."""
         with self._lock:
             if not self.done():
@@ -89,15 +89,15 @@ class Future(Generic[T]):
                 return
         waker()
 
-    def belong_to(self, handle: NodeHandle) -> None:
+    def set_owner(self, handle: NodeHandle) -> None:
         """Has the done callbacks run where the node's callbacks run."""
         self._handle = handle
 
     @property
-    def _agenda(self) -> Agenda | None:
+    def _ready_queue(self) -> ReadyQueue | None:
         if self._handle is not None:
-            return self._handle.agenda
-        return self._executor.agenda if self._executor is not None else None
+            return self._handle.ready_queue
+        return self._executor.ready_queue if self._executor is not None else None
 
     def _finish(self) -> None:
         with self._lock:
@@ -110,17 +110,17 @@ class Future(Generic[T]):
             waker()
 
     def _call(self, callback: Callable[[Future[T]], Any]) -> None:
-        agenda = self._agenda
-        if agenda is None:
+        ready_queue = self._ready_queue
+        if ready_queue is None:
             callback(self)
             return
         task: Task[Any] = Task(callback, (self,))
         task._handle, task._executor = self._handle, self._executor
-        agenda.post(task)
+        ready_queue.put(task)
 
 
 class Task(Future[T]):
-    """A function or coroutine on an agenda; its future result. ``executor.create_task`` makes one."""
+    """A function or coroutine on an ready_queue; its future result. ``executor.create_task`` makes one."""
 
     callback_group: CallbackGroup | None = None
 
@@ -136,19 +136,19 @@ class Task(Future[T]):
         self._args = args or ()
         self._kwargs = kwargs or {}
         self._coroutine: Any = handler if type(handler) is CoroutineType else None
-        self._source: Item | None = None
-        self._home: Agenda | None = None
+        self._source: ReadyItem | None = None
+        self._home: ReadyQueue | None = None
 
     @property
     def handle(self) -> NodeHandle | None:
         return self._handle
 
-    def continue_for(self, source: Item, agenda: Agenda) -> None:
+    def continue_for(self, source: ReadyItem, ready_queue: ReadyQueue) -> None:
         """Makes this task the rest of ``source``'s turn: that turn ends when the task is done."""
-        self._source, self._handle, self._home = source, source.handle, agenda
+        self._source, self._handle, self._home = source, source.handle, ready_queue
 
     def take(self) -> Any:
-        return NOTHING if self.done() else None
+        return NO_WORK if self.done() else None
 
     def run(self, taken: Any) -> Any:
         self()
@@ -161,21 +161,21 @@ class Task(Future[T]):
             if self._coroutine is None:
                 result = self._handler(*self._args, **self._kwargs)
                 if type(result) is not CoroutineType:
-                    self._conclude()
+                    self._finish_source_turn()
                     self.set_result(result)
                     return
                 self._coroutine = result
             awaited = self._coroutine.send(None)
         except StopIteration as end:
-            self._conclude()
+            self._finish_source_turn()
             self.set_result(end.value)
         except BaseException as problem:
-            self._conclude()
+            self._finish_source_turn()
             self.set_exception(problem)
             raise
         else:
             if isinstance(awaited, Future):
-                awaited.wake(self._resume)
+                awaited.call_when_done(self._resume)
             else:
                 self._resume()
 
@@ -183,16 +183,16 @@ class Task(Future[T]):
         """Stops the task where it waits; a coroutine is closed."""
         if self._coroutine is not None and not self.done():
             self._coroutine.close()
-            self._conclude()
+            self._finish_source_turn()
         super().cancel()
 
     def _resume(self) -> None:
-        agenda = self._agenda or self._home
-        if agenda is not None:
-            agenda.post(self)
+        ready_queue = self._ready_queue or self._home
+        if ready_queue is not None:
+            ready_queue.put(self)
 
-    def _conclude(self) -> None:
+    def _finish_source_turn(self) -> None:
         """Ends the turn whose rest this task was."""
         source, self._source = self._source, None
         if source is not None and self._home is not None:
-            self._home.end(source)
+            self._home.finish(source)

@@ -42,7 +42,7 @@ class Topic:
         for publisher in self.publishers:
             self._route(publisher)
             if subscription in publisher.routes:
-                publisher.tell_latecomer(subscription)
+                publisher.send_history_to(subscription)
             _report_mismatch(publisher, subscription)
 
     def remove(self, end: Publisher[Any] | Subscription[Any]) -> None:
@@ -65,7 +65,7 @@ def _mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> QoS
     return first_incompatibility(publisher.qos_profile, subscription.qos_profile)
 
 
-def mismatch_in_words(publisher: Publisher[Any], subscription: Subscription[Any]) -> str | None:
+def describe_mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> str | None:
     """Why the two do not talk, with the policy's name first: "RELIABILITY: /a offers ..., /b asks for ..."; None
     if they do."""
     mismatch = _mismatch(publisher, subscription)
@@ -94,12 +94,12 @@ def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any])
         f" (the publisher of {publisher.handle.full_name} offers {offered}, "
         f"the subscription of {subscription.handle.full_name} asks for {asked})"
     )
-    publisher.incompatibilities.report(
+    publisher.incompatibility_reporter.report(
         mismatch,
         f"New subscription discovered on topic '{topic}', requesting incompatible QoS. "
         f"No messages will be sent to it. Last incompatible policy: {mismatch.name}{why}",
     )
-    subscription.incompatibilities.report(
+    subscription.incompatibility_reporter.report(
         mismatch,
         f"New publisher discovered on topic '{topic}', offering incompatible QoS. "
         f"No messages will be received from it. Last incompatible policy: {mismatch.name}{why}",
@@ -137,19 +137,19 @@ class Directory:
         self.nodes = tuple(other for other in self.nodes if other is not handle)
         self.version += 1
 
-    def node(self, name: str, namespace: str) -> NodeHandle | None:
+    def find_node(self, name: str, namespace: str) -> NodeHandle | None:
         """The first node of this name."""
         for handle in self.nodes:
             if handle.name == name and handle.namespace == namespace:
                 return handle
         return None
 
-    def topic(self, name: str) -> Topic:
+    def get_or_create_topic(self, name: str) -> Topic:
         """The topic of this absolute name, made if need be, for an endpoint to be added to it."""
         self.version += 1
         return self.topics.setdefault(name, Topic(name))
 
-    def remove_end(self, end: Publisher[Any] | Subscription[Any]) -> None:
+    def remove_endpoint(self, end: Publisher[Any] | Subscription[Any]) -> None:
         self.version += 1
         topic = self.topics[end.topic_name]
         topic.remove(end)
@@ -163,7 +163,7 @@ class Directory:
 
     def remove_service(self, service: Service[Any, Any]) -> None:
         self.version += 1
-        _take_out(self.services, service.service_name, service)
+        _remove_from(self.services, service.service_name, service)
 
     def add_client(self, client: Client[Any, Any]) -> None:
         self.version += 1
@@ -171,9 +171,9 @@ class Directory:
 
     def remove_client(self, client: Client[Any, Any]) -> None:
         self.version += 1
-        _take_out(self.clients, client.service_name, client)
+        _remove_from(self.clients, client.service_name, client)
 
-    def server(self, name: str, srv_type: type[Any]) -> Service[Any, Any] | None:
+    def find_server(self, name: str, srv_type: type[Any]) -> Service[Any, Any] | None:
         """The service that answers: the first of this name and type."""
         for service in self.services.get(name, ()):
             if service.srv_type is srv_type:
@@ -200,7 +200,7 @@ class Directory:
         yield from found.subscriptions if found is not None else ()
 
 
-def _take_out(register: dict[str, list[Any]], name: str, end: object) -> None:
+def _remove_from(register: dict[str, list[Any]], name: str, end: object) -> None:
     rest = [other for other in register[name] if other is not end]
     if rest:
         register[name] = rest

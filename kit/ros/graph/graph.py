@@ -8,11 +8,11 @@ command that causes a motion does so within one tick. Time stands still meanwhil
 something later would wait for ever; it gets an explanation (``WouldDeadlock``) instead.
 
 *Free-running*: executors spin in threads of their own. Every wait in the library is ``Graph.wait``. How it waits
-is the ``Pump``'s business: without one, on a condition variable, for the system's clock or for somebody else's
+is the ``Waiter``'s business: without one, on a condition variable, for the system's clock or for somebody else's
 ``advance``; with one, whichever thread waits first pumps, and the others wait for it.
 
 Messages are copied, as a network would: a publisher may change its message after ``publish``, and no subscription
-sees what another does with its copy. ``Publisher.hand_over`` saves one of the copies.
+sees what another does with its copy. ``Publisher.publish_without_copy`` saves one of the copies.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from kit.ros.exceptions import NodeFailure, WouldDeadlock
 from kit.ros.graph.directory import Directory
-from kit.ros.graph.ready_queue import Agenda, Item, Work
+from kit.ros.graph.ready_queue import ReadyItem, ReadyQueue, TakenWork
 from kit.ros.log import Log, LogSink, log_to_stderr
 
 if TYPE_CHECKING:
@@ -33,19 +33,19 @@ if TYPE_CHECKING:
     from kit.ros.execution.context import Context
     from kit.ros.node.node import Node
 
-MOST_ROUNDS = 100
+MAX_ROUNDS = 100
 """In one ``run_due``: how often a message may lead to the next one before the rest waits for the next tick."""
 
-MOST_CALLBACKS = 10_000
+MAX_CALLBACKS = 10_000
 """In one ``run_due``, likewise."""
 
 
-MOST_POLLS = 100
+MAX_POLLS = 100
 """How often a program may look, without waiting, whether there is something to do, before it waits all the same:
 ``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from ever going on."""
 
 
-class Pump(Protocol):
+class Waiter(Protocol):
     """How a program waits when its time and messages come from somewhere else."""
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
@@ -56,7 +56,7 @@ class Pump(Protocol):
         """
 
 
-Watcher = Callable[[int, "Node", str, "Message"], None]
+MessageListener = Callable[[int, "Node", str, "Message"], None]
 """``(time_ns, node, topic, message)``: called for every message published, every request and every response.
 
 The name of a request's or response's service takes the place of the topic. The message is the sender's own:
@@ -64,58 +64,58 @@ copy it to keep it. Called with the graph's lock held: be quick.
 """
 
 
-class Look(NamedTuple):
-    """What a waiting thread saw when it looked last. A pump waits until nobody has anything left to see."""
+class WaitingThread(NamedTuple):
+    """The state of a thread that waits in ``Graph.wait``. A waiter waits while no thread has missed a change."""
 
     until_ns: int | None
-    """When it goes on by itself."""
-    change: int
-    """``Graph.changes`` at that time."""
-    pooled: bool
-    """Whether it is a thread of a MultiThreadedExecutor, and so one of ``Graph.busy``."""
+    """When its time-out ends [ns]; None: never."""
+    seen_changes: int
+    """``Graph.change_count`` when it began to wait."""
+    is_pooled: bool
+    """True for a thread of a MultiThreadedExecutor: ``Graph.running_pool_callbacks`` counts it."""
 
 
-class _Performing(threading.local):
-    """What the current thread is doing at the moment."""
+class _ThreadState(threading.local):
+    """What the current thread is executing."""
 
-    work: tuple[Agenda, Item] | None = None
-    pooled = False
+    work: tuple[ReadyQueue, ReadyItem] | None = None
+    is_pooled = False
 
 
 class Graph:
     """All nodes of a run. ``start_ns``: simulated time from there on; None: the system's time."""
 
     def __init__(
-        self, start_ns: int | None = 0, *, pump: Pump | None = None, log_sink: LogSink = log_to_stderr
+        self, start_ns: int | None = 0, *, waiter: Waiter | None = None, log_sink: LogSink = log_to_stderr
     ) -> None:
         self.lock = threading.RLock()
-        self.pump = pump
+        self.waiter = waiter
         self.on_failure: Callable[[NodeFailure], None] | None = None
         """Told of failing callbacks in lock-step; without it, ``run_due`` raises."""
         self.directory = Directory(self)
         """Who publishes, subscribes, serves and asks what."""
-        self.watchers: tuple[Watcher, ...] = ()
-        self.performing = _Performing()
+        self.message_listeners: tuple[MessageListener, ...] = ()
+        self.thread_state = _ThreadState()
         self.log = Log(lambda: self.now_ns, log_sink)
-        self.agenda = Agenda(self)
+        self.ready_queue = ReadyQueue(self)
         """The lock-step nodes'."""
         self._simulated_ns = start_ns
         self._system_offset_ns = time.time_ns() - time.monotonic_ns()
-        self.changes = 0
+        self.change_count = 0
         """Counts what may have given a waiting thread something to do."""
-        self.looks: dict[int, Look] = {}
+        self.waiting_threads: dict[int, WaitingThread] = {}
         """The waiting threads."""
-        self.busy = 0
+        self.running_pool_callbacks = 0
         """Callbacks in threads of their own."""
-        self.somebody_waits = threading.Condition(self.lock)
-        """Notified when another thread waits: for a pump."""
+        self.wait_started = threading.Condition(self.lock)
+        """Notified when another thread waits: for a waiter."""
         self._changed = threading.Condition(self.lock)
-        self._pumping = False
-        self._jumps = 0
-        self._driver: int | None = None
-        self._count = 0
+        self._is_waiter_running = False
+        self._time_jump_count = 0
+        self._driver_thread: int | None = None
+        self._last_number = 0
         self._polls = (0, 0)
-        self._known_loops: set[tuple[str, ...]] = set()
+        self._reported_loops: set[tuple[str, ...]] = set()
 
     # Time
 
@@ -137,7 +137,7 @@ class Graph:
         with self.lock:
             self._simulated_ns = time_ns
             if time_ns < before:
-                self._jumps += 1
+                self._time_jump_count += 1
                 for handle in self.directory.nodes:
                     handle.rewind()
             self.notify()
@@ -150,29 +150,29 @@ class Graph:
         Raises NodeFailure if a callback fails and ``on_failure`` is not set; what is left waits for the next
         call. So does the rest of a conversation that never comes to an end, after a warning.
         """
-        agenda = self.agenda
-        self._driver = threading.get_ident()
-        if not agenda.is_due:
+        ready_queue = self.ready_queue
+        self._driver_thread = threading.get_ident()
+        if not ready_queue.has_due_work:
             return 0
         done = 0
-        for _ in range(MOST_ROUNDS):
+        for _ in range(MAX_ROUNDS):
             with self.lock:
-                waiting = agenda.line_up_timers()
+                waiting = ready_queue.enqueue_due_timers()
             if not waiting:
                 return done
-            for _ in range(min(waiting, MOST_CALLBACKS - done)):
-                work = agenda.pick()
+            for _ in range(min(waiting, MAX_CALLBACKS - done)):
+                work = ready_queue.take_next()
                 if work is None:
                     break
                 done += 1
-                self._perform(work)
-        if agenda.is_due:
+                self._execute(work)
+        if ready_queue.has_due_work:
             self._warn_of_loop()
         return done
 
-    def _perform(self, work: Work) -> None:
+    def _execute(self, work: TakenWork) -> None:
         try:
-            self.agenda.perform(work)
+            self.ready_queue.execute(work)
         except Exception as cause:
             handle = work.item.handle
             failure = NodeFailure(handle.node if handle is not None else None, cause)
@@ -182,16 +182,16 @@ class Graph:
 
     def _warn_of_loop(self) -> None:
         with self.lock:
-            loop = tuple(sorted({str(item) for item in self.agenda.ready}))
-        if loop not in self._known_loops:
-            self._known_loops.add(loop)
+            loop = tuple(sorted({str(item) for item in self.ready_queue.items}))
+        if loop not in self._reported_loops:
+            self._reported_loops.add(loop)
             self.log.warning(
                 "graph",
                 f"{', '.join(loop)}: answered without end within one tick; the rest waits for the next. "
                 "Does a node react to its own messages?",
             )
 
-    def discard(self) -> None:
+    def discard_messages(self) -> None:
         """Forgets every message, request and response that is on its way. Timers stay as they are."""
         with self.lock:
             for handle in self.directory.nodes:
@@ -208,61 +208,61 @@ class Graph:
         cannot move on while the calling thread waits.
         """
         with self.lock:
-            jumps = self._jumps
+            jumps = self._time_jump_count
             while not ready():
-                if until_ns is not None and (self.now_ns >= until_ns or jumps != self._jumps):
-                    if self._polls_in_vain():
+                if until_ns is not None and (self.now_ns >= until_ns or jumps != self._time_jump_count):
+                    if self._is_polling_too_often():
                         self._wait_once(until_ns)
                     return False
-                self._refuse_to_hang(what)
+                self._raise_if_deadlock(what)
                 self._wait_once(until_ns)
             return True
 
     def notify(self) -> None:
         """Has everybody who waits look again."""
         with self.lock:
-            self.changes += 1
-            if self.looks:
+            self.change_count += 1
+            if self.waiting_threads:
                 self._changed.notify_all()
 
     def _wait_once(self, until_ns: int | None) -> None:
         me = threading.get_ident()
-        self.looks[me] = Look(until_ns, self.changes, self.performing.pooled)
+        self.waiting_threads[me] = WaitingThread(until_ns, self.change_count, self.thread_state.is_pooled)
         try:
-            if self.pump is None or self._pumping:
-                self.somebody_waits.notify_all()
+            if self.waiter is None or self._is_waiter_running:
+                self.wait_started.notify_all()
                 timeout = None if until_ns is None or self.is_simulated else (until_ns - self.now_ns) / 1e9
                 self._changed.wait(timeout)
                 return
-            self._pumping = True
+            self._is_waiter_running = True
             self.lock.release()
             try:
-                self.pump.wait(self, until_ns)
+                self.waiter.wait(self, until_ns)
             finally:
                 self.lock.acquire()
-                self._pumping = False
+                self._is_waiter_running = False
                 self._changed.notify_all()
         finally:
-            del self.looks[me]
+            del self.waiting_threads[me]
 
-    def _polls_in_vain(self) -> bool:
+    def _is_polling_too_often(self) -> bool:
         """Whether a pumped program has looked so often at this instant that only a later one can bring anything."""
         now = self.now_ns
         instant, count = self._polls
         self._polls = (now, count + 1 if instant == now else 1)
-        if self.pump is None or count < MOST_POLLS:
+        if self.waiter is None or count < MAX_POLLS:
             return False
         self._polls = (now, 0)
         return True
 
-    def _refuse_to_hang(self, what: str) -> None:
-        work = self.performing.work
-        if work is not None and work[0] is self.agenda:
+    def _raise_if_deadlock(self, what: str) -> None:
+        work = self.thread_state.work
+        if work is not None and work[0] is self.ready_queue:
             raise WouldDeadlock(
                 f"{what} would wait for ever: the nodes run in lock-step here, and time stands still until this "
                 "callback returns. Return, and go on in a later callback: add_done_callback, await, or a timer."
             )
-        if self.pump is None and self.is_simulated and self._driver == threading.get_ident():
+        if self.waiter is None and self.is_simulated and self._driver_thread == threading.get_ident():
             raise WouldDeadlock(
                 f"{what} would wait for ever: this very thread is the one that advances the time"
             )
@@ -294,24 +294,26 @@ class Graph:
         found = self.directory.topics.get(topic)
         return len(found.subscriptions) if found is not None else 0
 
-    def watch(self, watcher: Watcher) -> Callable[[], None]:
-        """Shows ``watcher`` everything that is said, until the returned function is called."""
+    def add_message_listener(self, listener: MessageListener) -> Callable[[], None]:
+        """Shows ``listener`` everything that is said, until the returned function is called."""
         with self.lock:
-            self.watchers = (*self.watchers, watcher)
+            self.message_listeners = (*self.message_listeners, listener)
 
         def stop() -> None:
             with self.lock:
-                self.watchers = tuple(other for other in self.watchers if other is not watcher)
+                self.message_listeners = tuple(
+                    other for other in self.message_listeners if other is not listener
+                )
 
         return stop
 
-    def tell_watchers(self, node: Node, topic: str, message: Any) -> None:
+    def notify_message_listeners(self, node: Node, topic: str, message: Any) -> None:
         """Shows the watchers what ``node`` says. With the lock held."""
-        for watcher in self.watchers:
-            watcher(self.now_ns, node, topic, message)
+        for listener in self.message_listeners:
+            listener(self.now_ns, node, topic, message)
 
     def next_number(self) -> int:
         """Consecutive numbers for whatever needs an order of creation."""
         with self.lock:
-            self._count += 1
-            return self._count
+            self._last_number += 1
+            return self._last_number

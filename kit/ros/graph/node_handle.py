@@ -9,7 +9,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.graph.naming import full_name
-from kit.ros.graph.ready_queue import Agenda
+from kit.ros.graph.ready_queue import ReadyQueue
 
 if TYPE_CHECKING:
     from kit.ros.execution.arguments import RosArguments
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class NodeHandle:
-    """A node's place in its graph: its names, what it has made, and whose agenda it is on."""
+    """A node's place in its graph: its names, what it has made, and whose ready_queue it is on."""
 
     parameters: ParameterStore
     logger: RcutilsLogger
@@ -43,7 +43,7 @@ class NodeHandle:
         self.arguments = arguments
         self.name = name
         self.namespace = namespace
-        self.agenda: Agenda = self.graph.agenda
+        self.ready_queue: ReadyQueue = self.graph.ready_queue
         """Where its callbacks wait: its executor's, or lock-step's."""
         self.destroyed = False
         self.publishers: list[Publisher[Any]] = []
@@ -68,12 +68,12 @@ class NodeHandle:
         return self._executor() if self._executor is not None else None
 
     def set_executor(self, executor: Executor | None) -> None:
-        """Moves the node, with everything that waits for it, to another executor's agenda, or to lock-step's."""
-        agenda = self.graph.agenda if executor is None else executor.agenda
+        """Moves the node, with everything that waits for it, to another executor's ready_queue, or to lock-step's."""
+        ready_queue = self.graph.ready_queue if executor is None else executor.ready_queue
         with self.graph.lock:
-            before, self.agenda = self.agenda, agenda
+            before, self.ready_queue = self.ready_queue, ready_queue
             self._executor = None if executor is None else weakref.ref(executor)
-            agenda.adopt(self, before)
+            ready_queue.take_over_node(self, before)
 
     @property
     def is_spun(self) -> bool:
@@ -81,7 +81,7 @@ class NodeHandle:
         executor = self.executor
         return executor is not None and executor.is_spinning
 
-    def everything(self) -> list[Destroyable]:
+    def all_entities(self) -> list[Destroyable]:
         """All that the node has made, in no particular order."""
         return [
             *self.publishers,
@@ -93,7 +93,7 @@ class NodeHandle:
             *self.rates,
         ]
 
-    def forget(self, made: Destroyable) -> None:
+    def remove_entity(self, made: Destroyable) -> None:
         """Takes something out of the node's lists."""
         lists: tuple[list[Any], ...] = (
             self.publishers,

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from kit.ros.graph.node_handle import NodeHandle
     from kit.ros.node.timer import Timer
 
-NOTHING: Final = object()
+NO_WORK: Final = object()
 """What ``take`` returns when the work is gone: cancelled, destroyed, or already done."""
 
 
-class Item(Protocol):
+class ReadyItem(Protocol):
     """Something whose turn can come: a subscription, timer, service, client, guard condition or task."""
 
     @property
@@ -34,34 +34,34 @@ class Item(Protocol):
         """What it must not overlap with."""
 
     def take(self) -> Any:
-        """The work itself, taken out of its queue; or NOTHING. Called with the graph's lock held."""
+        """The work itself, taken out of its queue; or NO_WORK. Called with the graph's lock held."""
 
     def run(self, taken: Any) -> Any:
-        """Does the work. A coroutine that it returns is carried on by the agenda."""
+        """Does the work. A coroutine that it returns is carried on by the ready_queue."""
 
 
-class Work(NamedTuple):
+class TakenWork(NamedTuple):
     """One turn of an item."""
 
-    item: Item
+    item: ReadyItem
     taken: Any
 
 
-class Agenda:
+class ReadyQueue:
     """The line of ready items and the timers of the nodes that belong to one executor."""
 
     def __init__(self, graph: Graph, *, exclusive: bool = True) -> None:
         self.graph = graph
         self.exclusive = exclusive
         """Whether one callback at a time is done here: what waits for another one would wait for ever."""
-        self.ready: deque[Item] = deque()
+        self.items: deque[ReadyItem] = deque()
         self._timers: list[tuple[int, int, Timer]] = []
 
-    def post(self, item: Item) -> None:
+    def put(self, item: ReadyItem) -> None:
         """Puts an item at the end of the line. Any thread."""
         graph = self.graph
         with graph.lock:
-            self.ready.append(item)
+            self.items.append(item)
             graph.notify()
 
     def add_timer(self, timer: Timer) -> None:
@@ -72,9 +72,9 @@ class Agenda:
             graph.notify()
 
     @property
-    def is_due(self) -> bool:
+    def has_due_work(self) -> bool:
         """Whether anything may be ready now."""
-        return bool(self.ready) or bool(self._timers and self._timers[0][0] <= self.graph.now_ns)
+        return bool(self.items) or bool(self._timers and self._timers[0][0] <= self.graph.now_ns)
 
     @property
     def next_due_ns(self) -> int | None:
@@ -85,7 +85,7 @@ class Agenda:
                 heappop(timers)
             return timers[0][0] if timers else None
 
-    def line_up_timers(self) -> int:
+    def enqueue_due_timers(self) -> int:
         """Moves the timers that are due into the line, and says how long the line is now."""
         timers = self._timers
         if timers:
@@ -93,76 +93,76 @@ class Agenda:
             while timers and timers[0][0] <= now:
                 due, _, timer = heappop(timers)
                 if due == timer.due_ns:
-                    self.ready.append(timer)
-        return len(self.ready)
+                    self.items.append(timer)
+        return len(self.items)
 
-    def pick(self) -> Work | None:
+    def take_next(self) -> TakenWork | None:
         """The first work in line that may begin now; it must then be performed. None if there is none."""
         with self.graph.lock:
-            self.line_up_timers()
-            ready = self.ready
-            while ready:
-                item = ready.popleft()
+            self.enqueue_due_timers()
+            items = self.items
+            while items:
+                item = items.popleft()
                 group = item.callback_group
                 if group is not None and not group.beginning_execution(item):
-                    group.parked.append(item)
+                    group.waiting_items.append(item)
                     continue
                 taken = item.take()
-                if taken is not NOTHING:
-                    return Work(item, taken)
+                if taken is not NO_WORK:
+                    return TakenWork(item, taken)
                 if group is not None:
-                    self._free(group, item)
+                    self._release_group(group, item)
         return None
 
-    def perform(self, work: Work) -> None:
+    def execute(self, work: TakenWork) -> None:
         """Does the work in the calling thread. What its callback raises comes out of here."""
         item, taken = work
-        performing = self.graph.performing
-        outer = performing.work
-        performing.work = (self, item)
+        thread_state = self.graph.thread_state
+        outer = thread_state.work
+        thread_state.work = (self, item)
         try:
             result = item.run(taken)
         except BaseException:
-            self.end(item)
+            self.finish(item)
             raise
         finally:
-            performing.work = outer
+            thread_state.work = outer
         if type(result) is CoroutineType:
             from kit.ros.execution.task import Task
 
             task: Task[Any] = Task(result)
             task.continue_for(item, self)
-            self.perform(Work(task, None))
+            self.execute(TakenWork(task, None))
         else:
-            self.end(item)
+            self.finish(item)
 
-    def end(self, item: Item) -> None:
+    def finish(self, item: ReadyItem) -> None:
         """The item's turn is over: whoever waited for its callback group is first in line now."""
         group = item.callback_group
         if group is not None:
             with self.graph.lock:
-                self._free(group, item)
+                self._release_group(group, item)
 
-    def _free(self, group: CallbackGroup, item: Item) -> None:
+    def _release_group(self, group: CallbackGroup, item: ReadyItem) -> None:
         group.ending_execution(item)
-        if group.parked:
-            while group.parked:
-                waiting = group.parked.pop()
-                home = self if waiting.handle is None else waiting.handle.agenda
-                home.ready.appendleft(waiting)
+        if group.waiting_items:
+            while group.waiting_items:
+                waiting = group.waiting_items.pop()
+                home = self if waiting.handle is None else waiting.handle.ready_queue
+                home.items.appendleft(waiting)
             self.graph.notify()
 
-    def adopt(self, handle: NodeHandle, other: Agenda) -> None:
-        """Takes over everything that is to be done for a node from another agenda, in its order."""
+    def take_over_node(self, handle: NodeHandle, other: ReadyQueue) -> None:
+        """Takes over everything that is to be done for a node from another ready_queue, in its order."""
         if other is self:
             return
         with self.graph.lock:
-            mine = [item for item in other.ready if item.handle is handle]
+            mine = [item for item in other.items if item.handle is handle]
             if mine:
-                self.ready.extend(mine)
-                kept = [item for item in other.ready if item.handle is not handle]
-                other.ready.clear()
-                other.ready.extend(kept)
+                self.items.extend(mine)
+                kept = [item for item in other.items if item.handle is not handle]
+                other.items.clear()
+                other.items.extend(kept)
             timers = [entry for entry in other._timers if entry[2].handle is handle]
             if timers:
                 other._timers = [entry for entry in other._timers if entry[2].handle is not handle]

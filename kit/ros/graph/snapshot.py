@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.msg.message import type_name
-from kit.ros.graph.directory import mismatch_in_words
+from kit.ros.graph.directory import describe_mismatch
 
 if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from kit.ros.node.qos import QoSProfile
     from kit.ros.node.subscription import Subscription
 
-PLUMBING_TOPICS: Final = frozenset({"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"})
-PLUMBING_SERVICES: Final = frozenset(
+INFRASTRUCTURE_TOPICS: Final = frozenset({"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"})
+INFRASTRUCTURE_SERVICES: Final = frozenset(
     {
         "describe_parameters",
         "get_parameters",
@@ -30,7 +30,7 @@ PLUMBING_SERVICES: Final = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class EndpointState:
     """A publisher or a subscription: whose, and on what terms."""
 
     node: str
@@ -40,27 +40,27 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
-class Mismatch:
+class EndpointMismatch:
     """A publisher and a subscription of one topic that do not talk."""
 
     publisher: str
     subscription: str
     """The full names of their nodes."""
-    why: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
 class TopicState:
     name: str
     types: tuple[str, ...]
-    publishers: tuple[End, ...]
-    subscriptions: tuple[End, ...]
-    mismatches: tuple[Mismatch, ...]
+    publishers: tuple[EndpointState, ...]
+    subscriptions: tuple[EndpointState, ...]
+    mismatches: tuple[EndpointMismatch, ...]
 
     @property
-    def is_plumbing(self) -> bool:
+    def is_infrastructure(self) -> bool:
         """Whether ROS needs it rather than the program."""
-        return self.name in PLUMBING_TOPICS
+        return self.name in INFRASTRUCTURE_TOPICS
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +72,9 @@ class ServiceState:
     """The full names of the nodes."""
 
     @property
-    def is_plumbing(self) -> bool:
+    def is_infrastructure(self) -> bool:
         owner, _, last = self.name.rpartition("/")
-        return last in PLUMBING_SERVICES and owner in self.servers
+        return last in INFRASTRUCTURE_SERVICES and owner in self.servers
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,19 +112,21 @@ def snapshot(graph: Graph) -> GraphState:
         )
 
 
-def _ends(ends: Iterable[Publisher[Any] | Subscription[Any]]) -> tuple[End, ...]:
-    return tuple(End(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends)
+def _ends(ends: Iterable[Publisher[Any] | Subscription[Any]]) -> tuple[EndpointState, ...]:
+    return tuple(
+        EndpointState(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends
+    )
 
 
 def _mismatches(
     publishers: Iterable[Publisher[Any]], subscriptions: Iterable[Subscription[Any]]
-) -> Iterable[Mismatch]:
+) -> Iterable[EndpointMismatch]:
     subscriptions = tuple(subscriptions)
     for publisher in publishers:
         for subscription in subscriptions:
-            why = mismatch_in_words(publisher, subscription)
+            why = describe_mismatch(publisher, subscription)
             if why is not None:
-                yield Mismatch(publisher.handle.full_name, subscription.handle.full_name, why)
+                yield EndpointMismatch(publisher.handle.full_name, subscription.handle.full_name, why)
 
 
 def _service(graph: Graph, name: str) -> ServiceState:

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
     from kit.ros.node.node import Node
 
-WINDOW: Final = 50
+RATE_WINDOW: Final = 50
 """Messages over which a rate is taken."""
 
-SILENT: Final = 3.0
+SILENT_AFTER: Final = 3.0
 """A flow is silent after this many of its own periods, or after so many seconds if that is longer."""
 
 
-class Flow(NamedTuple):
+class MessageFlow(NamedTuple):
     """What one node says under one name."""
 
     node: str
@@ -30,12 +30,12 @@ class Flow(NamedTuple):
     name: str
     """Of the topic or service."""
     is_service: bool = False
-    answer_to: str | None = None
+    response_to: str | None = None
     """For a service's answers: the node that had asked."""
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class FlowStats:
     """How much was said so far."""
 
     count: int
@@ -44,9 +44,9 @@ class Said:
 
 
 @dataclass(slots=True)
-class _Tally:
+class _FlowCounter:
     count: int = 0
-    times: deque[int] = field(default_factory=lambda: deque(maxlen=WINDOW))
+    times: deque[int] = field(default_factory=lambda: deque(maxlen=RATE_WINDOW))
     """When the last messages were sent [ns]."""
 
     def add(self, time_ns: int) -> None:
@@ -61,57 +61,62 @@ class _Tally:
         if len(times) < 2 or times[-1] == times[0]:
             return None
         period = (times[-1] - times[0]) / (len(times) - 1)
-        if not 0 <= now_ns - times[-1] <= max(SILENT * period, SILENT * 1e9):
+        if not 0 <= now_ns - times[-1] <= max(SILENT_AFTER * period, SILENT_AFTER * 1e9):
             return None
         return 1e9 / period
 
 
-class Traffic:
+class TopicStats:
     """Listens in a graph until ``stop()``. Safe to be asked from any thread."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
-        self._tallies: dict[Flow, _Tally] = {}
-        self._asked: dict[str, deque[str]] = {}
-        self._chosen: str | None = None
-        self._newest: Message | None = None
-        self.stop = graph.watch(self._hear)
+        self._counters: dict[MessageFlow, _FlowCounter] = {}
+        self._requesters: dict[str, deque[str]] = {}
+        self._selected: str | None = None
+        self._latest_message: Message | None = None
+        self.stop = graph.add_message_listener(self._count_message)
 
-    def choose(self, name: str | None) -> None:
+    def select(self, name: str | None) -> None:
         """The topic or service whose newest message is kept from now on."""
         with self.graph.lock:
-            if name != self._chosen:
-                self._chosen, self._newest = name, None
+            if name != self._selected:
+                self._selected, self._latest_message = name, None
 
     @property
-    def newest(self) -> Message | None:
+    def latest_message(self) -> Message | None:
         """The last message on the chosen topic since it was chosen, the last request or answer of a service: a copy,
         which is not to be changed."""
-        return self._newest
+        return self._latest_message
 
-    def said(self) -> Mapping[Flow, Said]:
+    def flow_stats(self) -> Mapping[MessageFlow, FlowStats]:
         """All that was said since the beginning."""
         with self.graph.lock:
             now = self.graph.now_ns
             return MappingProxyType(
-                {flow: Said(tally.count, tally.rate(now)) for flow, tally in self._tallies.items()}
+                {
+                    flow: FlowStats(counter.count, counter.rate(now))
+                    for flow, counter in self._counters.items()
+                }
             )
 
-    def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+    def _count_message(self, time_ns: int, node: Node, name: str, message: Message) -> None:
         """With the graph's lock held, for every message there is: quick."""
         flow = self._flow(node.handle.full_name, name, type_name(type(message)))
-        tally = self._tallies.get(flow)
-        if tally is None:
-            tally = self._tallies[flow] = _Tally()
-        tally.add(time_ns)
-        if name == self._chosen:
-            self._newest = message.__deepcopy__(None)
+        counter = self._counters.get(flow)
+        if counter is None:
+            counter = self._counters[flow] = _FlowCounter()
+        counter.add(time_ns)
+        if name == self._selected:
+            self._latest_message = message.__deepcopy__(None)
 
-    def _flow(self, speaker: str, name: str, kind: str) -> Flow:
+    def _flow(self, sender: str, name: str, kind: str) -> MessageFlow:
         if kind.endswith("_Request"):
-            self._asked.setdefault(name, deque(maxlen=WINDOW)).append(speaker)
-            return Flow(speaker, name, is_service=True)
+            self._requesters.setdefault(name, deque(maxlen=RATE_WINDOW)).append(sender)
+            return MessageFlow(sender, name, is_service=True)
         if kind.endswith("_Response"):
-            waiting = self._asked.get(name)
-            return Flow(speaker, name, is_service=True, answer_to=waiting.popleft() if waiting else None)
-        return Flow(speaker, name)
+            waiting = self._requesters.get(name)
+            return MessageFlow(
+                sender, name, is_service=True, response_to=waiting.popleft() if waiting else None
+            )
+        return MessageFlow(sender, name)

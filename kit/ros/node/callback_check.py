@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 
-def arguments_taken(callback: Any, allowed: Sequence[int], what: str) -> int:
+def accepted_argument_count(callback: Any, allowed: Sequence[int], what: str) -> int:
     """With how many arguments to call it: the first number of ``allowed`` that it accepts.
 
     Raises TypeError if it cannot be called, or with none of these numbers.

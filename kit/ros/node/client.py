@@ -9,7 +9,7 @@ from kit.msg.message import Service as Definition
 from kit.ros.exceptions import ExternalShutdownException, WouldDeadlock
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.task import Future
-from kit.ros.graph.ready_queue import NOTHING
+from kit.ros.graph.ready_queue import NO_WORK
 from kit.ros.node.endpoint import Entity
 from kit.ros.node.service import Call
 from kit.ros.node.time import S_TO_NS
@@ -70,7 +70,7 @@ class Client(Entity, Generic[Request, Response]):
         self._check(request)
         self._refuse_in_callback()
         future = self.call_async(request)
-        future.wake(self._graph.notify)
+        future.call_when_done(self._graph.notify)
         context, now = self._handle.context, self._graph.now_ns
         until = None if timeout_sec is None or timeout_sec < 0 else now + int(timeout_sec * S_TO_NS)
 
@@ -95,19 +95,19 @@ class Client(Entity, Generic[Request, Response]):
 
     def call_async(self, request: Request) -> Future[Response]:
         """Asks; the future's result is the response, once this node's callbacks run again."""
-        self._must_exist()
+        self._check_not_destroyed()
         self._check(request)
         future: Future[Response] = Future()
-        future.belong_to(self._handle)
+        future.set_owner(self._handle)
         graph = self._graph
         with graph.lock:
             self._asked += 1
             self._pending[self._asked] = future
-            if graph.watchers:
-                graph.tell_watchers(self._handle.node, self.service_name, request)
-            server = graph.directory.server(self.service_name, self.srv_type)
+            if graph.message_listeners:
+                graph.notify_message_listeners(self._handle.node, self.service_name, request)
+            server = graph.directory.find_server(self.service_name, self.srv_type)
             if server is not None:
-                server.arrive(Call(self, self._asked, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
+                server.enqueue(Call(self, self._asked, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
                 graph.notify()
         if server is None:
             warning = f"nobody serves '{self.service_name}': this call will never be answered; wait_for_service() first"
@@ -121,7 +121,7 @@ class Client(Entity, Generic[Request, Response]):
 
     def service_is_ready(self) -> bool:
         """Whether somebody serves it."""
-        return self._graph.directory.server(self.service_name, self.srv_type) is not None
+        return self._graph.directory.find_server(self.service_name, self.srv_type) is not None
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Waits until somebody serves it, and says whether somebody does."""
@@ -138,14 +138,14 @@ class Client(Entity, Generic[Request, Response]):
         )
         return self.service_is_ready()
 
-    def arrive(self, number: int, response: Any) -> None:
+    def enqueue(self, number: int, response: Any) -> None:
         """Queues a response. With the graph's lock held."""
         if not self._destroyed:
             self._queue.append((number, response))
-            self._handle.agenda.ready.append(self)
+            self._handle.ready_queue.items.append(self)
 
     def take(self) -> Any:
-        return self._queue.popleft() if self._queue else NOTHING
+        return self._queue.popleft() if self._queue else NO_WORK
 
     def run(self, taken: tuple[int, Any]) -> Any:
         number, response = taken
@@ -156,7 +156,7 @@ class Client(Entity, Generic[Request, Response]):
     def discard_queue(self) -> None:
         self._queue.clear()
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._queue.clear()
         self._pending.clear()
         self._graph.directory.remove_client(self)
@@ -170,13 +170,13 @@ class Client(Entity, Generic[Request, Response]):
 
     def _refuse_in_callback(self) -> None:
         """The response is a callback too: it must not have to wait for the one that waits for it."""
-        work = self._graph.performing.work
-        if work is None or work[0] is not self._handle.agenda:
+        work = self._graph.thread_state.work
+        if work is None or work[0] is not self._handle.ready_queue:
             return
-        agenda, item = work
+        ready_queue, item = work
         group = self.callback_group
         blocked = isinstance(group, MutuallyExclusiveCallbackGroup) and group.active is item
-        if agenda.exclusive or blocked:
+        if ready_queue.exclusive or blocked:
             raise WouldDeadlock(
                 f"call() on '{self.service_name}' inside a callback would wait for ever: the response is handled by "
                 "the same executor, which waits for this callback to return. Use call_async() and either "

@@ -44,14 +44,14 @@ class Destroyable(ABC):
         if not self._destroyed:
             self._destroyed = True
             with self._handle.graph.lock:
-                self._leave()
-                self._handle.forget(self)
+                self._unregister()
+                self._handle.remove_entity(self)
 
     @abstractmethod
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         """Undoes what making it did outside its node."""
 
-    def _must_exist(self) -> None:
+    def _check_not_destroyed(self) -> None:
         if self._destroyed:
             raise InvalidHandle(f"cannot use {self}: it has been destroyed")
 
@@ -67,17 +67,17 @@ class Entity(Destroyable):
 
     @abstractmethod
     def take(self) -> Any:
-        """See ``agenda.Item``."""
+        """See ``ReadyItem``."""
 
     @abstractmethod
     def run(self, taken: Any) -> Any:
-        """See ``agenda.Item``."""
+        """See ``ReadyItem``."""
 
     def discard_queue(self) -> None:
         """Forgets the work that waits in it. With the graph's lock held."""
 
 
-class Incompatibilities:
+class IncompatibilityReporter:
     """What an end of a topic does about partners whose quality of service does not fit."""
 
     def __init__(
@@ -93,7 +93,7 @@ class Incompatibilities:
         callbacks = self._callbacks
         if callbacks is not None and callbacks.incompatible_qos is not None:
             task: Task[Any] = Task(callbacks.incompatible_qos, (QoSIncompatibility(policy, self._count),))
-            task.belong_to(self._handle)
-            self._handle.agenda.post(task)
+            task.set_owner(self._handle)
+            self._handle.ready_queue.put(task)
         elif callbacks is None or callbacks.use_default_callbacks:
             self._handle.logger.warning(warning)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 NamesAndTypes = list[tuple[str, list[str]]]
 
 
-class NodeGraph:
+class NodeGraphMethods:
     """A part of Node. Names are absolute; lists are sorted by name."""
 
     if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class NodeGraph:
 
 
 def _existing(asking: NodeHandle, name: str, namespace: str) -> NodeHandle:
-    found = asking.graph.directory.node(name, namespace)
+    found = asking.graph.directory.find_node(name, namespace)
     if found is None:
         raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")
     return found

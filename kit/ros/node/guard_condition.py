@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.graph.ready_queue import NOTHING
-from kit.ros.node.callback_check import arguments_taken
+from kit.ros.graph.ready_queue import NO_WORK
+from kit.ros.node.callback_check import accepted_argument_count
 from kit.ros.node.endpoint import Entity
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ class GuardCondition(Entity):
     def __init__(
         self, handle: NodeHandle, callback: Callable[[], Any], callback_group: CallbackGroup
     ) -> None:
-        arguments_taken(callback, (0,), "a guard condition")
+        accepted_argument_count(callback, (0,), "a guard condition")
         self._handle = handle
         self.callback = callback
         self.callback_group = callback_group
@@ -33,15 +33,15 @@ class GuardCondition(Entity):
 
     def trigger(self) -> None:
         """Any thread; triggering twice before the callback came calls it once."""
-        self._must_exist()
+        self._check_not_destroyed()
         with self._handle.graph.lock:
             if not self._triggered:
                 self._triggered = True
-                self._handle.agenda.post(self)
+                self._handle.ready_queue.put(self)
 
     def take(self) -> Any:
         triggered, self._triggered = self._triggered, False
-        return None if triggered else NOTHING
+        return None if triggered else NO_WORK
 
     def run(self, taken: None) -> Any:
         return self.callback()
@@ -49,5 +49,5 @@ class GuardCondition(Entity):
     def discard_queue(self) -> None:
         self._triggered = False
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._triggered = False

@@ -20,9 +20,9 @@ from kit.ros.log import LogRecord, RcutilsLogger
 from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
 from kit.ros.node.endpoint import Destroyable, Entity
-from kit.ros.node.graph_methods import NodeGraph
+from kit.ros.node.graph_methods import NodeGraphMethods
 from kit.ros.node.guard_condition import GuardCondition
-from kit.ros.node.parameter_methods import NodeParameters
+from kit.ros.node.parameter_methods import NodeParameterMethods
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import (
     QoSProfile,
@@ -47,7 +47,7 @@ M = TypeVar("M", bound=Message)
 E = TypeVar("E", bound=Entity)
 
 
-class Node(NodeGraph, NodeParameters):
+class Node(NodeGraphMethods, NodeParameterMethods):
     """A program's presence in the graph: it publishes, subscribes, serves, asks, keeps time and parameters.
 
     Its callbacks run in lock-step with the graph, or wherever an executor spins it.
@@ -85,7 +85,7 @@ class Node(NodeGraph, NodeParameters):
         handle.graph.directory.add_node(handle)
         if enable_rosout:
             rosout = self.create_publisher(LogMessage, "/rosout", qos_profile_rosout_default)
-            handle.logger.publish = lambda record: rosout.hand_over(_as_message(record))
+            handle.logger.publish = lambda record: rosout.publish_without_copy(_as_message(record))
         events = self.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
         handle.parameters.publish_event = lambda event: _publish_event(handle, events, event)
         self.declare_parameter("use_sim_time", handle.graph.is_simulated)
@@ -328,7 +328,7 @@ class Node(NodeGraph, NodeParameters):
             return
         if handle.executor is not None:
             handle.executor.remove_node(self)
-        for made in handle.everything():
+        for made in handle.all_entities():
             made.destroy()
         with handle.graph.lock:
             handle.destroyed = True
@@ -385,4 +385,4 @@ def _as_message(record: LogRecord) -> LogMessage:
 def _publish_event(handle: NodeHandle, publisher: Publisher[ParameterEvent], event: ParameterEvent) -> None:
     event.stamp = Time(nanoseconds=handle.graph.now_ns).to_msg()
     event.node = handle.full_name
-    publisher.hand_over(event)
+    publisher.publish_without_copy(event)

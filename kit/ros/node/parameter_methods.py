@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kit.ros.graph.node_handle import NodeHandle
 
 
-class NodeParameters:
+class NodeParameterMethods:
     """A part of Node."""
 
     if TYPE_CHECKING:

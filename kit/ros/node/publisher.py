@@ -6,7 +6,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
 
 from kit.msg.message import Message, check_message
-from kit.ros.node.endpoint import Destroyable, Incompatibilities
+from kit.ros.node.endpoint import Destroyable, IncompatibilityReporter
 from kit.ros.node.event_handler import PublisherEventCallbacks
 from kit.ros.node.time import Duration
 
@@ -40,13 +40,13 @@ class Publisher(Destroyable, Generic[M]):
         self.routes: tuple[Subscription[M], ...] = ()
         """The subscriptions that what is published reaches."""
         self.number = self._graph.next_number()
-        self.incompatibilities = Incompatibilities(handle, event_callbacks)
+        self.incompatibility_reporter = IncompatibilityReporter(handle, event_callbacks)
         # What a transient-local publisher keeps for subscriptions that come later.
-        self._kept: deque[M] | None = None
+        self._history: deque[M] | None = None
         if qos_profile.is_transient_local:
-            self._kept = deque(maxlen=qos_profile.queue_length)
+            self._history = deque(maxlen=qos_profile.queue_length)
         with self._graph.lock:
-            self._graph.directory.topic(topic).add_publisher(self)
+            self._graph.directory.get_or_create_topic(topic).add_publisher(self)
 
     def __repr__(self) -> str:
         return f"publisher of {self.topic_name}"
@@ -58,56 +58,56 @@ class Publisher(Destroyable, Generic[M]):
     def publish(self, msg: M) -> None:
         """Sends the message. It may be changed and published again afterwards."""
         self._check(msg)
-        if self.routes or self._graph.watchers or self._kept is not None:
+        if self.routes or self._graph.message_listeners or self._history is not None:
             self._send(msg, first=0)
 
-    def hand_over(self, msg: M) -> None:
+    def publish_without_copy(self, msg: M) -> None:
         """Sends a message that the caller will not touch again: saves copying it."""
         self._check(msg)
-        if self.routes or self._graph.watchers or self._kept is not None:
+        if self.routes or self._graph.message_listeners or self._history is not None:
             self._send(msg, first=1)
 
     def _send(self, msg: M, first: int) -> None:
         """Delivers copies; with ``first`` 1, the first subscription gets the message itself."""
         graph = self._graph
         with graph.lock:
-            if graph.watchers:
-                graph.tell_watchers(self._handle.node, self.topic_name, msg)
+            if graph.message_listeners:
+                graph.notify_message_listeners(self._handle.node, self.topic_name, msg)
             try:
-                if self._kept is not None:
-                    self._kept.append(msg.__deepcopy__(None))
+                if self._history is not None:
+                    self._history.append(msg.__deepcopy__(None))
                 for subscription in self.routes[first:]:
-                    subscription.arrive(msg.__deepcopy__(None))
+                    subscription.enqueue(msg.__deepcopy__(None))
             except AttributeError:
                 self._explain(msg)
             # Last: from here on the message is somebody else's.
             if first and self.routes:
-                self.routes[0].arrive(msg)
+                self.routes[0].enqueue(msg)
             graph.notify()
 
     def get_subscription_count(self) -> int:
         """How many subscriptions it reaches."""
-        self._must_exist()
+        self._check_not_destroyed()
         return len(self.routes)
 
     def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
         """True: whatever was published has arrived in the subscriptions' queues by now."""
-        self._must_exist()
+        self._check_not_destroyed()
         return True
 
     def assert_liveliness(self) -> None:
         """Says that the publisher is alive; nobody doubts it here."""
-        self._must_exist()
+        self._check_not_destroyed()
 
-    def tell_latecomer(self, subscription: Subscription[M]) -> None:
+    def send_history_to(self, subscription: Subscription[M]) -> None:
         """Sends what was kept to a transient-local subscription that was not there yet."""
-        if self._kept is not None and subscription.qos_profile.is_transient_local:
-            for msg in self._kept:
-                subscription.arrive(msg.__deepcopy__(None))
+        if self._history is not None and subscription.qos_profile.is_transient_local:
+            for msg in self._history:
+                subscription.enqueue(msg.__deepcopy__(None))
 
     def _check(self, msg: M) -> None:
         if self._destroyed:
-            self._must_exist()
+            self._check_not_destroyed()
         if not isinstance(msg, self.msg_type):
             hint = f"; write {self.msg_type.__name__}()" if isinstance(msg, type) else ""
             raise TypeError(
@@ -119,5 +119,5 @@ class Publisher(Destroyable, Generic[M]):
         check_message(msg)
         raise
 
-    def _leave(self) -> None:
-        self._graph.directory.remove_end(self)
+    def _unregister(self) -> None:
+        self._graph.directory.remove_endpoint(self)

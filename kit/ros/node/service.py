@@ -8,8 +8,8 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from kit.msg.message import Service as Definition
-from kit.ros.graph.ready_queue import NOTHING
-from kit.ros.node.callback_check import arguments_taken
+from kit.ros.graph.ready_queue import NO_WORK
+from kit.ros.node.callback_check import accepted_argument_count
 from kit.ros.node.endpoint import Entity
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Service(Entity, Generic[Request, Response]):
         self.service_name = srv_name
         """Absolute, after remapping."""
         self.callback = callback
-        arguments_taken(callback, (2,), f"the service {srv_name}")
+        accepted_argument_count(callback, (2,), f"the service {srv_name}")
         self.callback_group = callback_group
         self.qos_profile = qos_profile
         self.number = self._graph.next_number()
@@ -68,13 +68,13 @@ class Service(Entity, Generic[Request, Response]):
     def srv_name(self) -> str:
         return self.service_name
 
-    def arrive(self, call: Call) -> None:
+    def enqueue(self, call: Call) -> None:
         """Queues a request. With the graph's lock held."""
         self._queue.append(call)
-        self._handle.agenda.ready.append(self)
+        self._handle.ready_queue.items.append(self)
 
     def take(self) -> Any:
-        return self._queue.popleft() if self._queue else NOTHING
+        return self._queue.popleft() if self._queue else NO_WORK
 
     def run(self, taken: Call) -> Any:
         answer = self.callback(taken.request, self.srv_type.Response())
@@ -95,14 +95,14 @@ class Service(Entity, Generic[Request, Response]):
             )
         graph = self._graph
         with graph.lock:
-            if graph.watchers:
-                graph.tell_watchers(self._handle.node, self.service_name, response)
-            call.client.arrive(call.number, response.__deepcopy__(None))
+            if graph.message_listeners:
+                graph.notify_message_listeners(self._handle.node, self.service_name, response)
+            call.client.enqueue(call.number, response.__deepcopy__(None))
             graph.notify()
 
     def discard_queue(self) -> None:
         self._queue.clear()
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._queue.clear()
         self._graph.directory.remove_service(self)

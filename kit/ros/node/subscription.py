@@ -8,9 +8,9 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from kit.msg.message import Message
-from kit.ros.graph.ready_queue import NOTHING
-from kit.ros.node.callback_check import arguments_taken
-from kit.ros.node.endpoint import Entity, Incompatibilities
+from kit.ros.graph.ready_queue import NO_WORK
+from kit.ros.node.callback_check import accepted_argument_count
+from kit.ros.node.endpoint import Entity, IncompatibilityReporter
 from kit.ros.node.event_handler import SubscriptionEventCallbacks
 
 if TYPE_CHECKING:
@@ -60,11 +60,11 @@ class Subscription(Entity, Generic[M]):
         self.qos_profile = qos_profile
         self.raw = False
         self.number = self._graph.next_number()
-        self._with_info = arguments_taken(callback, (1, 2), f"the subscription of {topic}") == 2
-        self.incompatibilities = Incompatibilities(handle, event_callbacks)
+        self._with_info = accepted_argument_count(callback, (1, 2), f"the subscription of {topic}") == 2
+        self.incompatibility_reporter = IncompatibilityReporter(handle, event_callbacks)
         self._queue: deque[M] = deque(maxlen=qos_profile.queue_length)
         with self._graph.lock:
-            self._graph.directory.topic(topic).add_subscription(self)
+            self._graph.directory.get_or_create_topic(topic).add_subscription(self)
 
     def __repr__(self) -> str:
         return f"subscription of {self.topic_name}"
@@ -78,17 +78,17 @@ class Subscription(Entity, Generic[M]):
 
     def get_publisher_count(self) -> int:
         """How many publishers reach it."""
-        self._must_exist()
+        self._check_not_destroyed()
         return sum(
             self in publisher.routes for publisher in self._graph.directory.publishers(self.topic_name)
         )
 
-    def arrive(self, msg: M) -> None:
+    def enqueue(self, msg: M) -> None:
         """Queues a message that is now this subscription's own. With the graph's lock held."""
         queue = self._queue
         if len(queue) != queue.maxlen:
             # One place in the line per queued message: a message that pushes out another takes over its place.
-            self._handle.agenda.ready.append(self)
+            self._handle.ready_queue.items.append(self)
         queue.append(msg)
 
     @property
@@ -104,7 +104,7 @@ class Subscription(Entity, Generic[M]):
             return waiting
 
     def take(self) -> Any:
-        return self._queue.popleft() if self._queue else NOTHING
+        return self._queue.popleft() if self._queue else NO_WORK
 
     def run(self, taken: M) -> Any:
         if self._with_info:
@@ -121,6 +121,6 @@ class Subscription(Entity, Generic[M]):
     def discard_queue(self) -> None:
         self._queue.clear()
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._queue.clear()
-        self._graph.directory.remove_end(self)
+        self._graph.directory.remove_endpoint(self)

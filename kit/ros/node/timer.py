@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
-from kit.ros.graph.ready_queue import NOTHING
-from kit.ros.node.callback_check import arguments_taken
+from kit.ros.graph.ready_queue import NO_WORK
+from kit.ros.node.callback_check import accepted_argument_count
 from kit.ros.node.endpoint import Destroyable, Entity
 from kit.ros.node.time import Time
 
@@ -77,14 +77,14 @@ class Timer(Entity):
         self._handle = handle
         self._graph = handle.graph
         self.callback = callback
-        self._with_info = callback is not None and arguments_taken(callback, (0, 1), "a timer") == 1
+        self._with_info = callback is not None and accepted_argument_count(callback, (0, 1), "a timer") == 1
         self.callback_group = callback_group
         self._clock = clock
         self.number = self._graph.next_number()
         self._schedule = Schedule(timer_period_ns, self._graph.now_ns)
         self._cancelled = not autostart
         if autostart:
-            handle.agenda.add_timer(self)
+            handle.ready_queue.add_timer(self)
 
     def __repr__(self) -> str:
         return f"timer of {self._schedule.period_ns / 1e9:g} s in {self._handle.full_name}"
@@ -102,7 +102,7 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        self._must_exist()
+        self._check_not_destroyed()
         return self._schedule.period_ns
 
     @timer_period_ns.setter
@@ -112,48 +112,48 @@ class Timer(Entity):
 
     def is_ready(self) -> bool:
         """Whether its turn has come."""
-        self._must_exist()
+        self._check_not_destroyed()
         return not self._cancelled and self._schedule.due_ns <= self._graph.now_ns
 
     def is_canceled(self) -> bool:
-        self._must_exist()
+        self._check_not_destroyed()
         return self._cancelled
 
     def cancel(self) -> None:
         """No more turns, until ``reset``."""
-        self._must_exist()
+        self._check_not_destroyed()
         self._cancelled = True
 
     def reset(self) -> None:
         """Begins a new period now, also if it was cancelled."""
-        self._must_exist()
+        self._check_not_destroyed()
         with self._graph.lock:
             self._cancelled = False
             self._schedule.start(self._graph.now_ns)
-            self._handle.agenda.add_timer(self)
+            self._handle.ready_queue.add_timer(self)
 
     def time_since_last_call(self) -> int:
         """Nanoseconds."""
-        self._must_exist()
+        self._check_not_destroyed()
         return self._graph.now_ns - self._schedule.last_ns
 
     def time_until_next_call(self) -> int | None:
         """Nanoseconds, negative if it is late; None if it is cancelled."""
-        self._must_exist()
+        self._check_not_destroyed()
         return None if self._cancelled else self._schedule.due_ns - self._graph.now_ns
 
     def rewind(self) -> None:
         """Time has jumped back. With the graph's lock held."""
         if self._schedule.rewind(self._graph.now_ns) and not self._cancelled:
-            self._handle.agenda.add_timer(self)
+            self._handle.ready_queue.add_timer(self)
 
     def take(self) -> Any:
         now = self._graph.now_ns
         due = self.due_ns
         if due < 0 or now < due:
-            return NOTHING
+            return NO_WORK
         self._schedule.call(now)
-        self._handle.agenda.add_timer(self)
+        self._handle.ready_queue.add_timer(self)
         return (due, now)
 
     def run(self, taken: tuple[int, int]) -> Any:
@@ -164,7 +164,7 @@ class Timer(Entity):
         due, now = (Time(nanoseconds=moment, clock_type=self._clock.clock_type) for moment in taken)
         return self.callback(TimerInfo(due, now))
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._cancelled = True
 
 
@@ -217,12 +217,12 @@ class Rate(Destroyable):
         self._schedule.rewind(self._graph.now_ns)
 
     def _refuse_in_callback(self) -> None:
-        work = self._graph.performing.work
-        if work is not None and work[0] is self._handle.agenda and work[0].exclusive:
+        work = self._graph.thread_state.work
+        if work is not None and work[0] is self._handle.ready_queue and work[0].exclusive:
             raise WouldDeadlock(
                 "rate.sleep() inside a callback would wait for ever: the executor that has to end the sleep waits "
                 "for this callback to return. Do a little in each turn of a timer instead."
             )
 
-    def _leave(self) -> None:
+    def _unregister(self) -> None:
         self._graph.notify()

@@ -9,8 +9,8 @@ from kit.msg.message import Message
 from kit.render.graph import Spot, rate_text
 from kit.render.graph_data import Conversation
 from kit.render.message_preview import message_rows
-from kit.ros.graph.snapshot import End, GraphState, ServiceState, TopicState
-from kit.ros.graph.topic_stats import Flow, Said
+from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
+from kit.ros.graph.topic_stats import FlowStats, MessageFlow
 from kit.tui.graph_listener import Heard
 from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
 
@@ -31,11 +31,11 @@ def heading(title: str, talk: Conversation, heard: Heard, narrowed: str, width: 
     return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
 
 
-def rates(said: Mapping[Flow, Said]) -> dict[str, float]:
+def rates(said: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
     """Messages per second by topic and, for services, requests: by the picture's labels."""
     found: dict[str, float] = {}
     for flow, heard in said.items():
-        if heard.rate is not None and flow.answer_to is None:
+        if heard.rate is not None and flow.response_to is None:
             label = f"{flow.name}()" if flow.is_service else flow.name
             found[label] = found.get(label, 0.0) + heard.rate
     return found
@@ -68,16 +68,18 @@ def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
     )
 
 
-def _of_topic(topic: TopicState, said: Mapping[Flow, Said], width: int, full: bool) -> Iterator[Row]:
+def _of_topic(
+    topic: TopicState, said: Mapping[MessageFlow, FlowStats], width: int, full: bool
+) -> Iterator[Row]:
     yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
     for mismatch in topic.mismatches:
-        for line in textwrap.wrap(f"nothing arrives: {mismatch.why}", width):
+        for line in textwrap.wrap(f"nothing arrives: {mismatch.reason}", width):
             yield row((line, "bad"))
     if not full:
         yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
         return
     for end in topic.publishers:
-        heard = said.get(Flow(end.node, topic.name))
+        heard = said.get(MessageFlow(end.node, topic.name))
         rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
         yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
     for end in topic.subscriptions:
@@ -91,8 +93,8 @@ def _of_service(service: ServiceState) -> Iterator[Row]:
 
 
 def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
-    topics = [topic for topic in state.topics if full or not topic.is_plumbing]
-    services = [service for service in state.services if full or not service.is_plumbing]
+    topics = [topic for topic in state.topics if full or not topic.is_infrastructure]
+    services = [service for service in state.services if full or not service.is_infrastructure]
     lists = (
         ("publishes", [topic.name for topic in topics if _is_among(node, topic.publishers)]),
         ("subscribes", [topic.name for topic in topics if _is_among(node, topic.subscriptions)]),
@@ -116,11 +118,11 @@ def _newest(message: Message | None, width: int, full: bool) -> Iterator[Row]:
         yield from (row(text) for text in message_rows(message, width, compact=not full))
 
 
-def _is_among(node: str, ends: Sequence[End]) -> bool:
+def _is_among(node: str, ends: Sequence[EndpointState]) -> bool:
     return any(end.node == node for end in ends)
 
 
-def _ends(word: str, ends: Sequence[End]) -> tuple[tuple[str, str], ...]:
+def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
     return _names(word, tuple(dict.fromkeys(end.node for end in ends)))
 
 
@@ -128,7 +130,7 @@ def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
     return ((f"{word} ", "dim"), (", ".join(names) or "nobody", PLAIN))
 
 
-def _terms(end: End) -> str:
+def _terms(end: EndpointState) -> str:
     """Its quality of service in a few words."""
     qos = end.qos
     kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"

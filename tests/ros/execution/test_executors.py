@@ -123,7 +123,7 @@ class TestSpinning:
 
     def test_a_shutdown_from_outside_raises(self, alone: Graph) -> None:
         node = alone.create_node("node")
-        threading.Timer(0.02, node.context.end_from_outside).start()
+        threading.Timer(0.02, node.context.shutdown_from_outside).start()
         with pytest.raises(ExternalShutdownException):
             rclpy.spin(node)
         node.context.shutdown()  # the program's own, which comes late, not wrong
@@ -132,7 +132,7 @@ class TestSpinning:
 
     def test_a_shutdown_from_outside_during_a_callback_raises_too(self, alone: Graph) -> None:
         node = alone.create_node("node")
-        node.create_timer(0.001, node.context.end_from_outside)
+        node.create_timer(0.001, node.context.shutdown_from_outside)
         with pytest.raises(ExternalShutdownException):
             rclpy.spin(node)
 
@@ -141,7 +141,7 @@ class TestSpinning:
         node = graph.create_node("node")
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), kwargs={"timeout_sec": 1.0})
         thread.start()
-        until(lambda: bool(graph.looks))
+        until(lambda: bool(graph.waiting_threads))
         graph.advance(0)
         thread.join(5)
         assert not thread.is_alive()
@@ -382,8 +382,8 @@ class TestThreads:
         assert problems == []
 
 
-class StagedPump:
-    """A pump in a test's hands: each wait takes the next stage, as a frame from a pipe would."""
+class StagedWaiter:
+    """A waiter in a test's hands: each wait takes the next stage, as a frame from a pipe would."""
 
     def __init__(self, *stages: Callable[[Graph], None]) -> None:
         self.stages = list(stages)
@@ -392,17 +392,17 @@ class StagedPump:
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         self.inside += 1
-        assert self.inside == 1, "one thread pumps at a time"
+        assert self.inside == 1, "one thread calls the waiter at a time"
         self.asked.append(until_ns)
         time.sleep(0.001)
         self.stages.pop(0)(graph)
         self.inside -= 1
 
 
-class TestPump:
+class TestWaiter:
     def test_time_and_messages_come_while_it_waits(self) -> None:
-        pump = StagedPump(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
-        graph = Graph(pump=pump)
+        waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
+        graph = Graph(waiter=waiter)
         node = graph.create_node("node")
         times: list[int] = []
         done: Future[None] = Future()
@@ -415,14 +415,14 @@ class TestPump:
         node.create_timer(0.1, tick)
         rclpy.spin_until_future_complete(node, done)
         assert times == [100, 200, 300]
-        assert pump.asked[0] == 100 * MS
+        assert waiter.asked[0] == 100 * MS
         rate = node.create_rate(20.0)
         rate.sleep()
         assert graph.now_ns == 350 * MS
 
     def test_a_program_may_wait_inside_a_callback(self) -> None:
-        pump = StagedPump(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
-        graph = Graph(pump=pump)
+        waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
+        graph = Graph(waiter=waiter)
         node = graph.create_node("node")
         times: list[int] = []
 
@@ -434,9 +434,9 @@ class TestPump:
         rclpy.spin_once(node)
         assert times == [150]
 
-    def test_only_one_of_many_threads_pumps(self) -> None:
-        pump = StagedPump(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 500)))
-        graph = Graph(pump=pump)
+    def test_only_one_of_many_threads_calls_the_waiter(self) -> None:
+        waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 500)))
+        graph = Graph(waiter=waiter)
         node = graph.create_node("node")
         slept: list[int] = []
 
@@ -504,7 +504,7 @@ class TestTasks:
         tasks: list[Task[Any]] = []
 
         async def wait() -> None:
-            work = graph.performing.work
+            work = graph.thread_state.work
             assert work is not None
             if isinstance(work[1], Task):
                 tasks.append(work[1])

@@ -10,8 +10,8 @@ from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import NodeFailure, NotInitializedException, WouldDeadlock
-from kit.ros.execution.context import Context, get_default_context, hosting
-from kit.ros.graph.graph import MOST_CALLBACKS, Graph
+from kit.ros.execution.context import Context, default_context, get_default_context
+from kit.ros.graph.graph import MAX_CALLBACKS, Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.node import Node
 from kit.ros.node.qos import HistoryPolicy, QoSProfile
@@ -121,7 +121,7 @@ class TestEndlessTalk:
         node.create_subscription(Int32, "echo", repeat, 10)
         publisher.publish(Int32())
         done = graph.run_due()
-        assert 0 < done == len(heard) <= MOST_CALLBACKS
+        assert 0 < done == len(heard) <= MAX_CALLBACKS
         assert graph.run_due() > 0, "the rest waits for the next tick"
         assert heard == list(range(len(heard)))
         assert [line.text for line in lines if "/echo" in line.text and "own messages" in line.text] == [
@@ -139,7 +139,7 @@ class TestEndlessTalk:
 
         node.create_subscription(Int32, "echo", multiply, everything)
         publisher.publish(Int32())
-        assert graph.run_due() == MOST_CALLBACKS
+        assert graph.run_due() == MAX_CALLBACKS
 
 
 class TestFailures:
@@ -236,7 +236,7 @@ class TestTime:
         graph.advance(3 * SECOND + 5)
         node = graph.create_node("node")
         assert node.get_clock().now().seconds_nanoseconds() == (3, 5)
-        with hosting(graph.context):
+        with default_context(graph.context):
             for clock_type in ClockType:
                 assert Clock(clock_type=clock_type).now().nanoseconds == 3 * SECOND + 5
 
@@ -250,7 +250,7 @@ def test_discard_forgets_what_is_on_its_way(graph: Graph) -> None:
     node.create_service(Trigger, "s", lambda request, response: heard.append(request))
     publisher.publish(Int32())
     client.call_async(Trigger.Request())
-    graph.discard()
+    graph.discard_messages()
     assert graph.run_due() == 0
     assert heard == []
     publisher.publish(Int32(data=2))
@@ -261,7 +261,7 @@ def test_discard_forgets_what_is_on_its_way(graph: Graph) -> None:
 class TestWatching:
     def test_a_watcher_sees_all_that_is_said(self, graph: Graph) -> None:
         seen: list[tuple[int, str, str, str]] = []
-        stop = graph.watch(
+        stop = graph.add_message_listener(
             lambda time_ns, node, topic, message: seen.append(
                 (time_ns, node.get_name(), topic, repr(message)[:20])
             )
@@ -285,7 +285,7 @@ class TestNodesWithoutContext:
             def __init__(self) -> None:
                 super().__init__("controller")
 
-        with hosting(graph.context):
+        with default_context(graph.context):
             node = Controller()
             assert get_default_context() is graph.context
         assert graph.nodes == (node,)

@@ -6,7 +6,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.snapshot import End, snapshot
+from kit.ros.graph.snapshot import EndpointState, snapshot
 from kit.ros.node.qos import qos_profile_sensor_data
 
 
@@ -35,8 +35,8 @@ def test_what_ros_needs_for_itself_is_known_as_such(graph: Graph) -> None:
     node.create_publisher(String, "words", 10)
     node.create_service(Trigger, "/other/get_parameters", lambda request, response: response)
     state = snapshot(graph)
-    assert {topic.name for topic in state.topics if not topic.is_plumbing} == {"/words"}
-    assert {service.name for service in state.services if not service.is_plumbing} == {
+    assert {topic.name for topic in state.topics if not topic.is_infrastructure} == {"/words"}
+    assert {service.name for service in state.services if not service.is_infrastructure} == {
         "/other/get_parameters"
     }
 
@@ -49,9 +49,9 @@ def test_ends_that_do_not_go_together_are_named_with_the_policy(graph: Graph) ->
     scan = next(topic for topic in snapshot(graph).topics if topic.name == "/scan")
     policy, types = scan.mismatches
     assert (policy.publisher, policy.subscription) == ("/robot", "/student")
-    assert policy.why.startswith("RELIABILITY")
-    assert "BEST_EFFORT" in policy.why
-    assert "std_msgs/msg/String" in types.why
+    assert policy.reason.startswith("RELIABILITY")
+    assert "BEST_EFFORT" in policy.reason
+    assert "std_msgs/msg/String" in types.reason
 
 
 def test_nodes_of_one_name_count_once(graph: Graph) -> None:
@@ -60,7 +60,7 @@ def test_nodes_of_one_name_count_once(graph: Graph) -> None:
     state = snapshot(graph)
     assert state.nodes == ("/twin",)
     words = next(topic for topic in state.topics if topic.name == "/words")
-    assert words.publishers == (End("/twin", "std_msgs/msg/String", words.publishers[0].qos),) * 2
+    assert words.publishers == (EndpointState("/twin", "std_msgs/msg/String", words.publishers[0].qos),) * 2
 
 
 def test_the_version_changes_with_whatever_comes_or_goes(graph: Graph) -> None:

@@ -7,10 +7,10 @@ import pytest
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.topic_stats import Flow, Traffic
+from kit.ros.graph.topic_stats import MessageFlow, TopicStats
 
 MS = 1_000_000
-WORDS = Flow("/talker", "/words")
+WORDS = MessageFlow("/talker", "/words")
 
 
 def speak(graph: Graph, times: int, period_ms: int) -> None:
@@ -24,82 +24,82 @@ def speak(graph: Graph, times: int, period_ms: int) -> None:
 
 
 def test_a_rate_is_that_of_the_graphs_time(graph: Graph) -> None:
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     speak(graph, 1, 50)
-    assert traffic.said()[WORDS].rate is None
+    assert stats.flow_stats()[WORDS].rate is None
     speak(graph, 20, 50)
-    said = traffic.said()[WORDS]
+    said = stats.flow_stats()[WORDS]
     assert said.count == 21
     assert said.rate == pytest.approx(20.0)
     speak(graph, 100, 200)
-    assert traffic.said()[WORDS].rate == pytest.approx(5.0)
+    assert stats.flow_stats()[WORDS].rate == pytest.approx(5.0)
 
 
 def test_a_rate_ends_when_it_has_been_silent_for_a_while_and_survives_a_pause(graph: Graph) -> None:
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     speak(graph, 10, 100)
     for _ in range(2):  # as long as time stands still, so does the rate
-        assert traffic.said()[WORDS].rate == pytest.approx(10.0)
+        assert stats.flow_stats()[WORDS].rate == pytest.approx(10.0)
     graph.advance(graph.now_ns + 3100 * MS)
-    assert traffic.said()[WORDS].rate is None
-    assert traffic.said()[WORDS].count == 10
+    assert stats.flow_stats()[WORDS].rate is None
+    assert stats.flow_stats()[WORDS].count == 10
     speak(graph, 3, 20_000)
-    assert traffic.said()[WORDS].rate is not None
+    assert stats.flow_stats()[WORDS].rate is not None
 
 
 def test_a_slow_flow_is_not_taken_for_a_silent_one(graph: Graph) -> None:
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     speak(graph, 3, 5000)
     graph.advance(graph.now_ns + 9000 * MS)
-    assert traffic.said()[WORDS].rate == pytest.approx(0.2)
+    assert stats.flow_stats()[WORDS].rate == pytest.approx(0.2)
 
 
 def test_a_reset_of_the_time_starts_the_rates_anew(graph: Graph) -> None:
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     speak(graph, 10, 100)
     graph.advance(0)
-    assert traffic.said()[WORDS].rate is None
+    assert stats.flow_stats()[WORDS].rate is None
     speak(graph, 10, 25)
-    assert traffic.said()[WORDS].rate == pytest.approx(40.0)
+    assert stats.flow_stats()[WORDS].rate == pytest.approx(40.0)
 
 
 def test_questions_and_answers_name_who_asked(graph: Graph) -> None:
     server = graph.create_node("server")
     server.create_service(Trigger, "/ring", lambda request, response: response)
     clients = [graph.create_node(name).create_client(Trigger, "/ring") for name in ("anna", "bert")]
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     for client in (clients[1], clients[0], clients[1]):
         client.call_async(Trigger.Request())
         graph.run_due()
-    counts = {flow: said.count for flow, said in traffic.said().items()}
+    counts = {flow: said.count for flow, said in stats.flow_stats().items()}
     assert counts == {
-        Flow("/anna", "/ring", is_service=True): 1,
-        Flow("/bert", "/ring", is_service=True): 2,
-        Flow("/server", "/ring", is_service=True, answer_to="/anna"): 1,
-        Flow("/server", "/ring", is_service=True, answer_to="/bert"): 2,
+        MessageFlow("/anna", "/ring", is_service=True): 1,
+        MessageFlow("/bert", "/ring", is_service=True): 2,
+        MessageFlow("/server", "/ring", is_service=True, response_to="/anna"): 1,
+        MessageFlow("/server", "/ring", is_service=True, response_to="/bert"): 2,
     }
 
 
 def test_the_newest_message_of_the_chosen_topic_is_a_copy(graph: Graph) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "words", 10)
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     publisher.publish(String(data="before"))
-    traffic.choose("/words")
-    assert traffic.newest is None
+    stats.select("/words")
+    assert stats.latest_message is None
     message = String(data="after")
     publisher.publish(message)
     message.data = "changed by the sender"
-    assert traffic.newest == String(data="after")
-    traffic.choose("/words")
-    assert traffic.newest == String(data="after")
-    traffic.choose("/others")
-    assert traffic.newest is None
+    assert stats.latest_message == String(data="after")
+    stats.select("/words")
+    assert stats.latest_message == String(data="after")
+    stats.select("/others")
+    assert stats.latest_message is None
 
 
 def test_nothing_is_heard_after_the_stop(graph: Graph) -> None:
-    traffic = Traffic(graph)
+    stats = TopicStats(graph)
     speak(graph, 2, 100)
-    traffic.stop()
-    assert graph.watchers == ()
+    stats.stop()
+    assert graph.message_listeners == ()
     speak(graph, 2, 100)
-    assert traffic.said()[WORDS].count == 2
+    assert stats.flow_stats()[WORDS].count == 2

@@ -12,7 +12,7 @@ import pytest
 from kit.msg.builtin_interfaces import Duration as DurationMessage
 from kit.msg.builtin_interfaces import Time as TimeMessage
 from kit.ros.exceptions import NotInitializedException
-from kit.ros.execution.context import hosting
+from kit.ros.execution.context import default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.node.clock import Clock, ROSClock
 from kit.ros.node.time import ClockType, Duration, Time
@@ -108,13 +108,13 @@ def test_sleeping_in_simulated_time(graph: Graph) -> None:
     slept: list[int] = []
 
     def sleep() -> None:
-        with hosting(graph.context):
+        with default_context(graph.context):
             graph.create_node("n").get_clock().sleep_for(Duration(seconds=1))
         slept.append(graph.now_ns)
 
     thread = threading.Thread(target=sleep)
     thread.start()
-    while not graph.looks:
+    while not graph.waiting_threads:
         time.sleep(0.001)
     for tick in range(1, 12):
         graph.advance(tick * 100_000_000)

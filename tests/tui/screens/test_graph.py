@@ -251,10 +251,10 @@ def test_a_step_while_paused_shows_what_was_said_in_it() -> None:
 
 def test_closed_it_listens_no_more() -> None:
     async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
-        assert behind.graph.watchers
+        assert behind.graph.message_listeners
         await pilot.press("escape")
         await pilot.pause()
-        assert not behind.graph.watchers
+        assert not behind.graph.message_listeners
         assert behind.listener is None
 
     play(scene)
