@@ -29,7 +29,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.ros import names_folder
-from kit.ros.execution.context import hosting
+from kit.ros.execution.context import default_context
 from kit.ros.graph.graph import Graph
 
 STEPS = 5000
@@ -74,7 +74,7 @@ def in_this_process(graph: Graph, controller: Path) -> Any:
     assert spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
-    with hosting(graph.context):
+    with default_context(graph.context):
         return module.Avoid()
 
 
