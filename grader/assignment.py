@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from grader.evidence.service_calls import Call
-from grader.result import Visibility
 from grader.scoring import Anchors
 from grader.teacher_tests import OwnTest
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.run.scenario import Place
+from kit.school.result import Visibility
 
 
 class Seeds(Enum):

@@ -14,20 +14,20 @@ from typing import Any, Final, Protocol
 
 from grader.assignment import Assignment, Criterion, Seeds
 from grader.kinds.contract import sort_of
-from grader.result import Episode, Result, Status, Test, Timing
 from grader.submission import Submission
 from grader.teacher_tests import judged
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
 
-STATUS_OF: Final[Mapping[FailureKind, Status]] = MappingProxyType(
+STATUS_OF: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
     {
-        FailureKind.TIMEOUT: Status.TIMEOUT,
-        FailureKind.MEMORY: Status.RESOURCE_LIMIT,
-        FailureKind.KILLED: Status.RESOURCE_LIMIT,
-        FailureKind.PROTOCOL: Status.PROTOCOL_ERROR,
-        FailureKind.CONFINEMENT: Status.GRADER_ERROR,
+        FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
+        FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
+        FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,
+        FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
     }
 )
 """What a failure of the program means for a test; any other kind is the student's error."""
@@ -38,12 +38,12 @@ LAST_WORD_S: Final = 0.5
 """How long to wait then before saying so: whoever shuts a machine down ends the grader too, a moment later, and what a
 program lost by that is not its author's fault."""
 
-COARSE: Final[Mapping[Status, str]] = MappingProxyType(
+COARSE: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
-        Status.TIMEOUT: "Your program took too long",
-        Status.RESOURCE_LIMIT: "Your program used too much memory",
-        Status.PROTOCOL_ERROR: "Your program disturbed its conversation with the kit",
-        Status.STUDENT_ERROR: "Your program stopped with an error",
+        CriterionStatus.TIMEOUT: "Your program took too long",
+        CriterionStatus.RESOURCE_LIMIT: "Your program used too much memory",
+        CriterionStatus.PROTOCOL_ERROR: "Your program disturbed its conversation with the kit",
+        CriterionStatus.STUDENT_ERROR: "Your program stopped with an error",
     }
 )
 """All that is said of a failure where seeds are secret: an error's own text could carry away what was seen."""
@@ -103,11 +103,11 @@ class Grading:
         self._secret = secret
         self._checks = sort_of(assignment.kind).checks
         self._looks: dict[str, tuple[_Look, ...]] = {}
-        self._tests: dict[str, Test] = {}
+        self._tests: dict[str, CriterionResult] = {}
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
-    def judge(self, criterion: Criterion) -> Test:
+    def judge(self, criterion: Criterion) -> CriterionResult:
         """The criterion's test. Never raises: what breaks here is the grader's, and said to be."""
         if criterion.id not in self._tests:
             try:
@@ -117,14 +117,14 @@ class Grading:
             self._tests[criterion.id] = test
         return self._tests[criterion.id]
 
-    def result(self) -> Result:
+    def result(self) -> GradingResult:
         """All criteria judged."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
         tests += judged(self, self.assignment.own_tests, self.assignment.own_files)
         seen = self._gatherer.all()
         if any(each.failure is not None and each.failure.kind in FROM_OUTSIDE for each in seen):
             time.sleep(LAST_WORD_S)
-        return Result(
+        return GradingResult(
             assignment=self.assignment.id,
             assignment_version=self.assignment.version,
             submission=self.submission.digest,
@@ -135,7 +135,7 @@ class Grading:
             tests=tests,
             notices=tuple(self._notices(tests)),
             steps=sum(each.steps for each in seen),
-            timing=Timing(self._started, round(time.perf_counter() - self._began, 3)),
+            timing=GradingTiming(self._started, round(time.perf_counter() - self._began, 3)),
         )
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
@@ -153,14 +153,21 @@ class Grading:
         lost, evidence = max(shares.values(), key=lambda each: each[0], default=(0.0, None))
         return evidence if lost > 0 else None
 
-    def _judge(self, criterion: Criterion) -> Test:
+    def _judge(self, criterion: Criterion) -> CriterionResult:
         looks = self._look(criterion)
-        blank = Test(
-            criterion.id, criterion.title, Status.SKIPPED, 0.0, criterion.points, criterion.visibility
+        blank = CriterionResult(
+            criterion.id,
+            criterion.title,
+            CriterionStatus.SKIPPED,
+            0.0,
+            criterion.points,
+            criterion.visibility,
         )
         if not looks:
             return replace(blank, rationale="Judged with secret seeds when you hand in.")
-        broken = next((look for look in looks if _status(look.evidence.failure) is Status.GRADER_ERROR), None)
+        broken = next(
+            (look for look in looks if _status(look.evidence.failure) is CriterionStatus.GRADER_ERROR), None
+        )
         if broken is not None:
             return self._broken(criterion, str(broken.evidence.failure))
         if criterion.after is not None and not any(
@@ -171,7 +178,9 @@ class Grading:
         share = _share(criterion, [look.share for look in looks])
         worst = min(looks, key=lambda look: look.share)
         full = share == 1.0
-        status = Status.PASS if full else (Status.PARTIAL if share > 0 else Status.FAIL)
+        status = (
+            CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
+        )
         if worst.evidence.failure is not None and share == 0.0:
             status = _status(worst.evidence.failure)
         check = self._checks[criterion.check]
@@ -185,7 +194,7 @@ class Grading:
             actual="" if worst.measure is None else check.said(worst.measure),
             metrics={"share": round(share, 6)},
             episodes=tuple(
-                Episode(
+                EpisodeSummary(
                     look.evidence.label,
                     look.evidence.outcome,
                     look.evidence.steps,
@@ -241,11 +250,11 @@ class Grading:
         )
         return f"{said} {evidence.remark(criterion.check, criterion.params)}".strip()
 
-    def _broken(self, criterion: Criterion, log: str) -> Test:
-        return Test(
+    def _broken(self, criterion: Criterion, log: str) -> CriterionResult:
+        return CriterionResult(
             criterion.id,
             criterion.title,
-            Status.GRADER_ERROR,
+            CriterionStatus.GRADER_ERROR,
             0.0,
             criterion.points,
             criterion.visibility,
@@ -253,8 +262,8 @@ class Grading:
             log=log,
         )
 
-    def _notices(self, tests: Sequence[Test]) -> Sequence[str]:
-        later = [test for test in tests if test.status is Status.SKIPPED and test.depends_on is None]
+    def _notices(self, tests: Sequence[CriterionResult]) -> Sequence[str]:
+        later = [test for test in tests if test.status is CriterionStatus.SKIPPED and test.depends_on is None]
         seeds = any(criterion.seeds is not Seeds.PUBLIC for criterion in self.assignment.criteria)
         notices = []
         if later:
@@ -280,8 +289,12 @@ def _share(criterion: Criterion, shares: Sequence[float]) -> float:
     return 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
 
 
-def _status(failure: Failure | None) -> Status:
-    return Status.FAIL if failure is None else STATUS_OF.get(failure.kind, Status.STUDENT_ERROR)
+def _status(failure: Failure | None) -> CriterionStatus:
+    return (
+        CriterionStatus.FAIL
+        if failure is None
+        else STATUS_OF.get(failure.kind, CriterionStatus.STUDENT_ERROR)
+    )
 
 
 def _finite(measure: float | None) -> float | None:

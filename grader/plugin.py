@@ -22,11 +22,11 @@ from grader.assignment import Assignment, Criterion
 from grader.grading import Grading
 from grader.reading import SHEET, read
 from grader.reports.cleaning import plain
-from grader.result import Status, Test, amount
 from grader.session import LevelTooLow, Terms, opened
 from grader.submission import take
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionResult, CriterionStatus, format_points
 from kit.world.problems import WorldError
 
 
@@ -77,15 +77,15 @@ class CriterionItem(pytest.Item):
     def runtest(self) -> None:
         test = self.config.stash[GRADINGS].open(self._assignment).judge(self._criterion)
         self.user_properties += [
-            ("points", amount(test.points)),
-            ("max_points", amount(test.max_points)),
+            ("points", format_points(test.points)),
+            ("max_points", format_points(test.max_points)),
             ("status", test.status.value),
         ]
-        if test.status is Status.SKIPPED:
+        if test.status is CriterionStatus.SKIPPED:
             pytest.skip(plain(test.rationale))
-        if test.status is Status.GRADER_ERROR:
+        if test.status is CriterionStatus.GRADER_ERROR:
             raise GraderBroken(plain(f"{test.rationale}\n{test.log}"))
-        if test.status is not Status.PASS:
+        if test.status is not CriterionStatus.PASS:
             raise NotPassed(_feedback(test))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
@@ -96,9 +96,9 @@ class CriterionItem(pytest.Item):
         return self.path, None, f"{self._assignment.title}: {self._criterion.title}"
 
 
-def _feedback(test: Test) -> str:
+def _feedback(test: CriterionResult) -> str:
     parts = [
-        f"{amount(test.points)} of {amount(test.max_points)} points",
+        f"{format_points(test.points)} of {format_points(test.max_points)} points",
         test.rationale,
         f"expected {test.expected}, got {test.actual}" if test.actual else "",
         *(f"hint: {hint}" for hint in test.hints[:1]),
@@ -154,8 +154,8 @@ def pytest_runtest_makereport(
     mark = item.get_closest_marker(MARK)
     if mark is not None and mark.args and report.when == "call":
         item.user_properties += [
-            ("points", amount(mark.args[0] if report.passed else 0.0)),
-            ("max_points", amount(mark.args[0])),
+            ("points", format_points(mark.args[0] if report.passed else 0.0)),
+            ("max_points", format_points(mark.args[0])),
         ]
         report.user_properties = list(item.user_properties)
     if (

@@ -15,11 +15,11 @@ from typing import Any, Final
 from grader.assignment import HINT_STEPS, Assignment, Criterion, Seeds, Trial
 from grader.checks.contract import Check
 from grader.kinds.contract import Sheet, kinds, sort_of
-from grader.result import Visibility
 from grader.scoring import Anchors
 from grader.teacher_tests import OwnTest, declared
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER, MIB, Limits
+from kit.school.result import Visibility
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, quoted, suggestion

@@ -14,10 +14,10 @@ from typing import Final
 
 from grader.archives import Refused
 from grader.assignment import Assignment, Seeds
-from grader.result import Result, Status, Verdict, amount
 from grader.scoring import least_passes, unfair_fail
 from grader.session import Terms, grade
 from grader.submission import take
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
 STARTER: Final = "starter"
 SOLUTION: Final = "solution"
@@ -96,9 +96,14 @@ def _starter(assignment: Assignment, file: Path, terms: Terms) -> Proof:
     if isinstance(result, str):
         return Proof(file.name, (result,), "")
     problems = _broken(result)
-    if result.verdict is Verdict.PASS:
+    if result.verdict is GradingVerdict.PASS:
         problems.append("it passes: there is nothing left to do")
-    rude = {Status.STUDENT_ERROR, Status.TIMEOUT, Status.RESOURCE_LIMIT, Status.PROTOCOL_ERROR}
+    rude = {
+        CriterionStatus.STUDENT_ERROR,
+        CriterionStatus.TIMEOUT,
+        CriterionStatus.RESOURCE_LIMIT,
+        CriterionStatus.PROTOCOL_ERROR,
+    }
     problems += [
         f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in rude
     ]
@@ -111,15 +116,17 @@ def _solution(assignment: Assignment, file: Path, terms: Terms) -> Proof:
         return Proof(file.name, (result,), "")
     problems = _broken(result)
     problems += [
-        f"{test.id}: {test.status.value}, {amount(test.points)} of {amount(test.max_points)} points: {test.rationale}"
+        f"{test.id}: {test.status.value}, {format_points(test.points)} of {format_points(test.max_points)} points: {test.rationale}"
         for test in result.tests
-        if test.is_judged and test.status is not Status.PASS
+        if test.is_judged and test.status is not CriterionStatus.PASS
     ]
     problems += [
-        f"{test.id}: not judged: {test.rationale}" for test in result.tests if test.status is Status.SKIPPED
+        f"{test.id}: not judged: {test.rationale}"
+        for test in result.tests
+        if test.status is CriterionStatus.SKIPPED
     ]
     again = _graded(assignment, file, terms)
-    if isinstance(again, Result) and again.tests != result.tests:
+    if isinstance(again, GradingResult) and again.tests != result.tests:
         problems.append(
             "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
         )
@@ -135,7 +142,7 @@ def _wrong(assignment: Assignment, file: Path, terms: Terms) -> Proof:
     result = _graded(assignment, file, terms)
     if isinstance(result, str):
         return Proof(name, (result,), "")
-    lost = {test.id for test in result.tests if test.status is not Status.PASS}
+    lost = {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
     depending = {
         criterion.id for criterion in assignment.criteria if _depends(assignment, criterion.id, meant)
     }
@@ -155,7 +162,7 @@ def _depends(assignment: Assignment, identity: str, meant: set[str]) -> bool:
     return False
 
 
-def _graded(assignment: Assignment, file: Path, terms: Terms) -> Result | str:
+def _graded(assignment: Assignment, file: Path, terms: Terms) -> GradingResult | str:
     if not file.exists():
         return "it is missing"
     try:
@@ -164,17 +171,19 @@ def _graded(assignment: Assignment, file: Path, terms: Terms) -> Result | str:
         return str(error)
 
 
-def _broken(result: Result) -> list[str]:
+def _broken(result: GradingResult) -> list[str]:
     return [
         f"{test.id}: the grader broke: {(test.log.strip().splitlines() or ['?'])[-1]}"
         for test in result.tests
-        if test.status is Status.GRADER_ERROR
+        if test.status is CriterionStatus.GRADER_ERROR
     ]
 
 
-def _summary(result: Result) -> str:
+def _summary(result: GradingResult) -> str:
     points = (
-        "no grade" if result.points is None else f"{amount(result.points)} of {amount(result.max_points)}"
+        "no grade"
+        if result.points is None
+        else f"{format_points(result.points)} of {format_points(result.max_points)}"
     )
-    lost = ", ".join(test.id for test in result.tests if test.status is not Status.PASS)
+    lost = ", ".join(test.id for test in result.tests if test.status is not CriterionStatus.PASS)
     return f"{points} points" + (f"; lost: {lost}" if lost else "")

@@ -10,9 +10,9 @@ from grader.assignment import Assignment
 from grader.grading import Grading
 from grader.hardening import hide
 from grader.kinds.contract import Conditions, sort_of
-from grader.result import Result
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import GradingResult
 
 
 class LevelTooLow(Exception):
@@ -47,7 +47,7 @@ def opened(assignment: Assignment, submission: Submission, terms: Terms) -> Iter
             yield Grading(assignment, submission, gatherer, secret=terms.secret)
 
 
-def grade(assignment: Assignment, submission: Submission, terms: Terms) -> Result:
+def grade(assignment: Assignment, submission: Submission, terms: Terms) -> GradingResult:
     """The result of one submission. Raises LevelTooLow."""
     with opened(assignment, submission, terms) as grading:
         return grading.result()

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from grader.result import Status, Test, Visibility
+from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
     import pytest
@@ -88,14 +88,14 @@ class _Session:
     """A pytest plugin that lends the grading out and notes what came of each test."""
 
     grading: Grading
-    outcomes: dict[str, list[tuple[Status, str]]] = field(default_factory=dict)
+    outcomes: dict[str, list[tuple[CriterionStatus, str]]] = field(default_factory=dict)
 
-    def note(self, item: Any, status: Status, said: str) -> None:
+    def note(self, item: Any, status: CriterionStatus, said: str) -> None:
         name = getattr(item, "originalname", None) or item.name
         self.outcomes.setdefault(name, []).append((status, said))
 
 
-def judged(grading: Grading, tests: Sequence[OwnTest], files: Sequence[Path]) -> tuple[Test, ...]:
+def judged(grading: Grading, tests: Sequence[OwnTest], files: Sequence[Path]) -> tuple[CriterionResult, ...]:
     """Runs the tests in this process. What breaks in them is the teacher's and costs no student a point."""
     if not tests:
         return ()
@@ -147,13 +147,13 @@ def _plugin(session: _Session) -> object:
             report = yield
             if call.excinfo is None:
                 if call.when == "call":
-                    session.note(item, Status.PASS, "")
+                    session.note(item, CriterionStatus.PASS, "")
             elif call.excinfo.errisinstance(pytest.skip.Exception):
-                session.note(item, Status.SKIPPED, str(call.excinfo.value))
+                session.note(item, CriterionStatus.SKIPPED, str(call.excinfo.value))
             elif call.when == "call" and call.excinfo.errisinstance((AssertionError, pytest.fail.Exception)):
-                session.note(item, Status.FAIL, _own_words(str(call.excinfo.value)))
+                session.note(item, CriterionStatus.FAIL, _own_words(str(call.excinfo.value)))
             else:
-                session.note(item, Status.GRADER_ERROR, str(report.longrepr))
+                session.note(item, CriterionStatus.GRADER_ERROR, str(report.longrepr))
             return report
 
     return Plugin()
@@ -164,24 +164,28 @@ def _own_words(message: str) -> str:
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(own: OwnTest, outcomes: Sequence[tuple[Status, str]]) -> Test:
+def _test(own: OwnTest, outcomes: Sequence[tuple[CriterionStatus, str]]) -> CriterionResult:
     """Several outcomes are those of several parameters: each is worth its share."""
     statuses = [status for status, _ in outcomes]
-    blank = Test(own.id, own.title, Status.SKIPPED, 0.0, own.points, own.visibility)
-    if not outcomes or Status.GRADER_ERROR in statuses:
-        log = next((said for status, said in outcomes if status is Status.GRADER_ERROR), "It did not run.")
+    blank = CriterionResult(own.id, own.title, CriterionStatus.SKIPPED, 0.0, own.points, own.visibility)
+    if not outcomes or CriterionStatus.GRADER_ERROR in statuses:
+        log = next(
+            (said for status, said in outcomes if status is CriterionStatus.GRADER_ERROR), "It did not run."
+        )
         broken = "The grader broke here; that is not your fault and costs no points. Your teacher is told."
-        return replace(blank, status=Status.GRADER_ERROR, rationale=broken, log=log)
-    if set(statuses) == {Status.SKIPPED}:
+        return replace(blank, status=CriterionStatus.GRADER_ERROR, rationale=broken, log=log)
+    if set(statuses) == {CriterionStatus.SKIPPED}:
         return replace(blank, rationale=outcomes[0][1])
-    judged = [each for each in statuses if each is not Status.SKIPPED]
-    share = judged.count(Status.PASS) / len(judged)
+    judged = [each for each in statuses if each is not CriterionStatus.SKIPPED]
+    share = judged.count(CriterionStatus.PASS) / len(judged)
     if share == 1.0:
-        return replace(blank, status=Status.PASS, points=own.points)
-    said = next((words for status, words in outcomes if status is Status.FAIL and words), own.feedback)
+        return replace(blank, status=CriterionStatus.PASS, points=own.points)
+    said = next(
+        (words for status, words in outcomes if status is CriterionStatus.FAIL and words), own.feedback
+    )
     return replace(
         blank,
-        status=Status.PARTIAL if share > 0 else Status.FAIL,
+        status=CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL,
         points=round(own.points * share, 6),
         rationale=said or f"“{own.title}” does not hold.",
         hints=own.hints,

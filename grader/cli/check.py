@@ -12,7 +12,7 @@ from grader.cli import options
 
 if TYPE_CHECKING:
     from grader.grading import Evidence, Grading
-    from grader.result import Result
+    from kit.school.result import GradingResult
 
 EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
 
@@ -99,7 +99,7 @@ def command(
     raise SystemExit(EXITS[result.verdict.value])
 
 
-def _report(result: Result, form: str, hints: int, picture: str) -> str:
+def _report(result: GradingResult, form: str, hints: int, picture: str) -> str:
     from grader.reports import terminal, writer
 
     return terminal.write(result, hints=hints) + picture if form == "text" else writer(form)(result)

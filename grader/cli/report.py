@@ -26,13 +26,13 @@ from grader.cli import options
 def command(file: Path, form: str, output: Path | None) -> None:
     """Write a result (made by `grader check --json`) in another format."""
     from grader.reports import FORMATS, writer
-    from grader.result import Result
+    from kit.school.result import GradingResult
     from kit.workspace import write_atomically
 
     if form not in FORMATS:
         options.fail(f"There is no format {form}; there are: {', '.join(FORMATS)}.")
     try:
-        result = Result.from_dict(json.loads(file.read_bytes()))
+        result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
         options.fail(f"{file}: not a result of the grader.")
     text = writer(form)(result)

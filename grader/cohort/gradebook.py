@@ -12,7 +12,7 @@ from typing import Any, Final
 from grader.cohort.late import Arrival, LatePolicy
 from grader.cohort.queue import Queue
 from grader.reports.cleaning import cell, one_line
-from grader.result import Status, Verdict, amount
+from kit.school.result import CriterionStatus, GradingVerdict, format_points
 
 REFUSED: Final = "refused"
 WAITING: Final = "waiting"
@@ -66,7 +66,9 @@ def _rows(queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, Arriva
             None if points is None else round(points * kept, 6),
             {test.id: test.points for test in result.tests},
             {test.id: test.status.value for test in result.tests},
-            one_line(next((test.rationale for test in result.tests if test.status is not Status.PASS), "")),
+            one_line(
+                next((test.rationale for test in result.tests if test.status is not CriterionStatus.PASS), "")
+            ),
             result.submission,
         )
 
@@ -85,13 +87,18 @@ def as_csv(table: Sequence[Row]) -> str:
     )
     for row in table:
         tests = [_number(row.tests.get(identity)) for identity in criteria]
-        sums = [_number(row.final), _number(row.points), amount(row.max_points), amount(row.kept)]
+        sums = [
+            _number(row.final),
+            _number(row.points),
+            format_points(row.max_points),
+            format_points(row.kept),
+        ]
         writer.writerow([cell(row.name), row.verdict, *sums, *tests, cell(row.note)])
     return out.getvalue()
 
 
 def _number(points: float | None) -> str:
-    return "" if points is None else amount(points)
+    return "" if points is None else format_points(points)
 
 
 def read_json(text: str) -> tuple[Row, ...]:
@@ -121,6 +128,12 @@ def changes(before: Sequence[Row], after: Sequence[Row]) -> Iterator[str]:
 
 def summary(table: Sequence[Row]) -> str:
     """One line: how many of each."""
-    kinds = [Verdict.PASS.value, Verdict.FAIL.value, Verdict.BROKEN.value, REFUSED, WAITING]
+    kinds = [
+        GradingVerdict.PASS.value,
+        GradingVerdict.FAIL.value,
+        GradingVerdict.BROKEN.value,
+        REFUSED,
+        WAITING,
+    ]
     counts: dict[str, Any] = {kind: sum(row.verdict == kind for row in table) for kind in kinds}
     return ", ".join(f"{count} {kind}" for kind, count in counts.items() if count) or "nobody"

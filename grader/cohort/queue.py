@@ -14,11 +14,11 @@ from typing import Any, Final
 from grader.archives import Refused, is_archive
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.result import SCHEMA, Result
 from grader.session import Terms
 from grader.submission import WORTHLESS, Submission, take
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level
+from kit.school.result import SCHEMA, GradingResult
 from kit.workspace import write_atomically
 
 MANIFEST: Final = "manifest.json"
@@ -73,10 +73,10 @@ class Queue:
     def entries(self) -> tuple[Entry, ...]:
         return tuple(Entry(**each) for each in self.manifest()["entries"])
 
-    def result(self, key: str) -> Result | None:
+    def result(self, key: str) -> GradingResult | None:
         """None if there is none yet, or none that can be read: then it is graded again."""
         try:
-            return Result.from_dict(json.loads(self.result_file(key).read_bytes()))
+            return GradingResult.from_dict(json.loads(self.result_file(key).read_bytes()))
         except (OSError, KeyError, TypeError, ValueError):
             return None
 
@@ -91,7 +91,7 @@ class Queue:
         files = {name: base64.b64decode(data) for name, data in content["files"].items()}
         return Submission(content["name"], content["main"], files)
 
-    def keep(self, key: str, result: Result) -> None:
+    def keep(self, key: str, result: GradingResult) -> None:
         write_atomically(
             self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
         )

@@ -15,9 +15,9 @@ from typing import IO, Final
 
 from grader.assignment import Assignment
 from grader.cohort.queue import Queue
-from grader.result import Result, Status, Test, Verdict
 from grader.session import grade
 from grader.version import grader_version
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 
 DONE: Final = "done"
 TRIES: Final = 2
@@ -29,14 +29,14 @@ def _assignment(folder: Path, version: str) -> Assignment:
     return Queue(folder).assignment()
 
 
-def work(queue: Queue, key: str) -> Result:
+def work(queue: Queue, key: str) -> GradingResult:
     """Grades one job and keeps its result."""
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
     submission, terms = queue.submission(key), queue.terms()
     result = grade(assignment, submission, terms)
     for _ in range(TRIES - 1):
-        if result.verdict is not Verdict.BROKEN:
+        if result.verdict is not GradingVerdict.BROKEN:
             break
         result = grade(assignment, submission, terms)
     queue.keep(key, result)
@@ -132,17 +132,19 @@ def give_up(queue: Queue, key: str) -> None:
     queue.keep(key, _incident(queue, key))
 
 
-def _incident(queue: Queue, key: str) -> Result:
+def _incident(queue: Queue, key: str) -> GradingResult:
     """The grader died, more than once: no grade, and somebody has to look."""
     assignment, submission, terms = queue.assignment(), queue.submission(key), queue.terms()
     tests = tuple(
         replace(
-            Test(each.id, each.title, Status.GRADER_ERROR, 0.0, each.points, each.visibility),
+            CriterionResult(
+                each.id, each.title, CriterionStatus.GRADER_ERROR, 0.0, each.points, each.visibility
+            ),
             rationale="The grader died while it graded this. Nothing is lost; your teacher is told.",
         )
         for each in assignment.tests
     )
-    return Result(
+    return GradingResult(
         assignment.id,
         assignment.version,
         submission.digest,

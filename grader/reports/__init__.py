@@ -8,7 +8,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Final
 
-from grader.result import Result
+from kit.school.result import GradingResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ FORMATS: Final[Mapping[str, Format]] = MappingProxyType(
 )
 
 
-def writer(name: str) -> Callable[[Result], str]:
+def writer(name: str) -> Callable[[GradingResult], str]:
     """The writer of a format. KeyError if there is none."""
-    write: Callable[[Result], str] = import_module(f"grader.reports.{FORMATS[name].module}").write
+    write: Callable[[GradingResult], str] = import_module(f"grader.reports.{FORMATS[name].module}").write
     return write

@@ -6,10 +6,10 @@ import json
 from typing import Any
 
 from grader.reports.cleaning import one_line, plain
-from grader.result import Result, Status, Test
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult
 
 
-def write(result: Result) -> str:
+def write(result: GradingResult) -> str:
     result = result.for_student()
     content = {
         "slug": one_line(result.assignment),
@@ -19,16 +19,16 @@ def write(result: Result) -> str:
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _test(test: Test) -> dict[str, Any]:
+def _test(test: CriterionResult) -> dict[str, Any]:
     cause: dict[str, Any] | None = None
-    if test.status is not Status.PASS:
+    if test.status is not CriterionStatus.PASS:
         cause = {"rationale": plain(test.rationale), "help": plain(test.hints[0]) if test.hints else None}
         if test.actual:
             cause |= {"expected": one_line(test.expected), "actual": one_line(test.actual)}
     return {
         "name": one_line(test.id),
         "description": one_line(test.title),
-        "passed": test.status is Status.PASS if test.is_judged else None,
+        "passed": test.status is CriterionStatus.PASS if test.is_judged else None,
         "log": plain(test.log).splitlines()[:100],
         "cause": cause,
         "data": {"points": test.points, "max_points": test.max_points, **test.metrics},

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from grader.reports.cleaning import one_line, plain
-from grader.result import Result, Status, Test, Verdict, Visibility
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 
 SHOWN: Final[Mapping[Visibility, str]] = MappingProxyType(
     {
@@ -20,7 +20,7 @@ SHOWN: Final[Mapping[Visibility, str]] = MappingProxyType(
 )
 
 
-def write(result: Result) -> str:
+def write(result: GradingResult) -> str:
     """A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0."""
     content: dict[str, Any] = {
         "execution_time": round(result.timing.wall_s, 2),
@@ -38,7 +38,7 @@ def write(result: Result) -> str:
             "verdict": result.verdict.value,
         },
     }
-    if result.verdict is Verdict.BROKEN:
+    if result.verdict is GradingVerdict.BROKEN:
         content["output"] = "The grader broke. Nothing was lost: tell your teacher, it will run again."
     else:
         content["score"] = result.points
@@ -46,9 +46,9 @@ def write(result: Result) -> str:
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _test(number: int, test: Test) -> dict[str, Any]:
+def _test(number: int, test: CriterionResult) -> dict[str, Any]:
     parts = [test.rationale]
-    if test.actual and test.status is not Status.PASS:
+    if test.actual and test.status is not CriterionStatus.PASS:
         parts.append(f"expected {test.expected}, got {test.actual}")
     parts += [f"hint: {hint}" for hint in test.hints[:1]]
     if test.log and test.is_judged:
@@ -60,7 +60,7 @@ def _test(number: int, test: Test) -> dict[str, Any]:
         "number": str(number),
         "score": test.points,
         "max_score": test.max_points,
-        "status": "passed" if test.status is Status.PASS else "failed",
+        "status": "passed" if test.status is CriterionStatus.PASS else "failed",
         "output": output,
         "output_format": "text",
         "name_format": "text",

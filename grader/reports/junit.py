@@ -5,13 +5,13 @@ from __future__ import annotations
 from xml.etree import ElementTree
 
 from grader.reports.cleaning import one_line, xml
-from grader.result import Result, Status, Test, amount
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, format_points
 
 
-def write(result: Result) -> str:
-    broken = sum(test.status is Status.GRADER_ERROR for test in result.tests)
-    skipped = sum(test.status is Status.SKIPPED for test in result.tests)
-    failed = sum(test.is_judged and test.status is not Status.PASS for test in result.tests)
+def write(result: GradingResult) -> str:
+    broken = sum(test.status is CriterionStatus.GRADER_ERROR for test in result.tests)
+    skipped = sum(test.status is CriterionStatus.SKIPPED for test in result.tests)
+    failed = sum(test.is_judged and test.status is not CriterionStatus.PASS for test in result.tests)
     counts = {
         "tests": str(len(result.tests)),
         "failures": str(failed),
@@ -27,8 +27,8 @@ def write(result: Result) -> str:
     )
     properties = ElementTree.SubElement(suite, "properties")
     for name, value in (
-        ("points", "none" if result.points is None else amount(result.points)),
-        ("max_points", amount(result.max_points)),
+        ("points", "none" if result.points is None else format_points(result.points)),
+        ("max_points", format_points(result.max_points)),
         ("verdict", result.verdict.value),
         ("level", str(result.level)),
         ("seeds", result.seeds),
@@ -43,7 +43,7 @@ def write(result: Result) -> str:
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _case(suite: ElementTree.Element, test: Test, assignment: str, names: set[str]) -> None:
+def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, names: set[str]) -> None:
     name = one_line(test.title, 120)
     while name in names:  # of two tests with one name GitLab keeps the first
         name += " (again)"
@@ -53,16 +53,16 @@ def _case(suite: ElementTree.Element, test: Test, assignment: str, names: set[st
     )
     properties = ElementTree.SubElement(case, "properties")
     for key, points in (("points", test.points), ("max_points", test.max_points)):
-        ElementTree.SubElement(properties, "property", {"name": key, "value": amount(points)})
-    earned = f"{amount(test.points)} of {amount(test.max_points)} points"
+        ElementTree.SubElement(properties, "property", {"name": key, "value": format_points(points)})
+    earned = f"{format_points(test.points)} of {format_points(test.max_points)} points"
     message = _attribute(f"{earned}. {test.rationale}")
-    if test.status is Status.SKIPPED:
+    if test.status is CriterionStatus.SKIPPED:
         ElementTree.SubElement(case, "skipped", {"message": message})
-    elif test.status is Status.GRADER_ERROR:
+    elif test.status is CriterionStatus.GRADER_ERROR:
         ElementTree.SubElement(case, "error", {"type": test.status.value, "message": message}).text = xml(
             test.log
         )
-    elif test.status is not Status.PASS:
+    elif test.status is not CriterionStatus.PASS:
         text = "\n".join(part for part in (test.rationale, *test.hints[:1]) if part)
         ElementTree.SubElement(case, "failure", {"type": test.status.value, "message": message}).text = xml(
             text

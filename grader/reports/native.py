@@ -6,10 +6,10 @@ import json
 from typing import Any
 
 from grader.reports.cleaning import plain
-from grader.result import Result
+from kit.school.result import GradingResult
 
 
-def write(result: Result) -> str:
+def write(result: GradingResult) -> str:
     return json.dumps(_clean(result.as_dict()), indent=2, sort_keys=True, allow_nan=False) + "\n"
 
 

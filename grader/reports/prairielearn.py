@@ -6,21 +6,21 @@ import json
 from typing import Any, Final
 
 from grader.reports.cleaning import one_line, plain
-from grader.result import Result, Status, Test, Verdict
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 
-STOPPED: Final = (Status.STUDENT_ERROR, Status.SKIPPED)
+STOPPED: Final = (CriterionStatus.STUDENT_ERROR, CriterionStatus.SKIPPED)
 
 
-def write(result: Result) -> str:
+def write(result: GradingResult) -> str:
     result = result.for_student()
     content: dict[str, Any] = {"gradable": True, "output": plain("\n".join(result.notices))}
     stopped = all(test.status in STOPPED for test in result.tests) and any(
-        test.status is Status.STUDENT_ERROR for test in result.tests
+        test.status is CriterionStatus.STUDENT_ERROR for test in result.tests
     )
-    if result.verdict is Verdict.BROKEN:
+    if result.verdict is GradingVerdict.BROKEN:
         content |= {"gradable": False, "message": "The grader broke. Nothing was lost: tell your teacher."}
     elif stopped:
-        first = next(test for test in result.tests if test.status is Status.STUDENT_ERROR)
+        first = next(test for test in result.tests if test.status is CriterionStatus.STUDENT_ERROR)
         content |= {"gradable": False, "format_errors": [plain(first.rationale)]}
     else:
         most = result.max_points
@@ -29,7 +29,7 @@ def write(result: Result) -> str:
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _test(test: Test) -> dict[str, Any]:
+def _test(test: CriterionResult) -> dict[str, Any]:
     return {
         "name": one_line(test.title),
         "description": one_line(test.rationale),

@@ -1,81 +1,39 @@
-"""For people in a terminal: a line per criterion, what was wrong, and what to do next. Plain characters only."""
+"""The report for people in a terminal: the lines of the kit's own renderer, with the totals and the notices below.
+Printable characters only."""
 
 from __future__ import annotations
 
+import json
 import textwrap
-from collections.abc import Iterator, Mapping
-from types import MappingProxyType
-from typing import Final
+from collections.abc import Iterator
 
-from grader.reports.cleaning import indented, one_line
-from grader.result import Result, Status, Test, Verdict, amount
+from grader.reports import native
+from grader.reports.cleaning import one_line
+from kit.school.result import GradingResult
+from kit.school.result_text import VERDICTS, criterion_lines, plain, points_text
 
-WIDTH: Final = 78
-
-MARKS: Final[Mapping[Status, str]] = MappingProxyType(
-    {
-        Status.PASS: "[ok]  ",
-        Status.PARTIAL: "[part]",
-        Status.FAIL: "[no]  ",
-        Status.STUDENT_ERROR: "[stop]",
-        Status.TIMEOUT: "[slow]",
-        Status.RESOURCE_LIMIT: "[big] ",
-        Status.PROTOCOL_ERROR: "[odd] ",
-        Status.SKIPPED: "[later]",
-        Status.GRADER_ERROR: "[????]",
-    }
-)
-"""Words, not colours: they survive a pipe and a screen reader."""
-
-ENDINGS: Final[Mapping[Verdict, str]] = MappingProxyType(
-    {
-        Verdict.PASS: "All tests that ran here passed.",
-        Verdict.FAIL: "Not yet.",
-        Verdict.BROKEN: "The grader itself is broken: no grade was given, nothing was lost.",
-    }
-)
+WIDTH = 78
+LOG_LINES = 8
 
 
-def write(result: Result, *, hints: int = 1) -> str:
-    """``hints``: how many of the hint steps to show."""
+def write(result: GradingResult, *, hints: int = 1) -> str:
+    """``hints``: how many hints of a criterion to show."""
     return "\n".join(lines(result, hints)) + "\n"
 
 
-def lines(result: Result, hints: int) -> Iterator[str]:
-    for test in result.tests:
-        yield from _test(test, hints)
+def lines(result: GradingResult, hints: int) -> Iterator[str]:
+    # What the JSON report shows of a result is clean: no terminal escapes, no commands of a CI runner.
+    shown = GradingResult.from_dict(json.loads(native.write(result)))
+    more_hints = f"For more help, add --hints {hints + 1}."
+    for test in shown.tests:
+        for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):
+            yield plain(line)
     yield ""
-    points = (
-        "no grade"
-        if result.points is None
-        else f"{amount(result.points)} of {amount(result.max_points)} points"
-    )
-    yield f"{points}. {ENDINGS[result.verdict]}"
-    for notice in result.notices:
+    points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
+    yield f"{points}. {VERDICTS[shown.verdict]}"
+    for notice in shown.notices:
         yield from textwrap.wrap(one_line(notice), WIDTH)
-    yield f"level {result.level}, seeds {result.seeds}, fingerprint {result.submission[:8]}-{result.assignment_version[:8]}"
-
-
-def _test(test: Test, hints: int) -> Iterator[str]:
-    points = f"{amount(test.points)}/{amount(test.max_points)}"
-    yield f"{MARKS[test.status]:<7} {one_line(test.title, 56):<56} {points:>11}"
-    margin = " " * 8
-    if test.rationale:
-        yield from textwrap.wrap(
-            one_line(test.rationale, 600), WIDTH, initial_indent=margin, subsequent_indent=margin
-        )
-    if test.status is Status.PARTIAL or test.status is Status.FAIL:
-        if test.actual:
-            yield f"{margin}expected {one_line(test.expected)}, got {one_line(test.actual)}"
-        for number, hint in enumerate(test.hints[:hints], 1):
-            yield from textwrap.wrap(
-                f"hint {number} of {len(test.hints)}: {one_line(hint, 600)}",
-                WIDTH,
-                initial_indent=margin,
-                subsequent_indent=margin,
-            )
-        if len(test.hints) > hints:
-            yield f"{margin}more help: add --hints {hints + 1}"
-    if test.log and test.status in (Status.STUDENT_ERROR, Status.GRADER_ERROR):
-        yield f"{margin}what it printed:"
-        yield indented("\n".join(test.log.splitlines()[-8:]), f"{margin}| ")
+    yield (
+        f"level {shown.level}, seeds {shown.seeds}, "
+        f"fingerprint {shown.submission[:8]}-{shown.assignment_version[:8]}"
+    )

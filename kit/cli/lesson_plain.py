@@ -10,11 +10,13 @@ import click
 
 from kit.cli.waiting import Intake, Lines
 from kit.host.file_watcher import FileWatch
-from kit.school.lessons.checking import Report, handed_in
+from kit.school.lessons.checking import CheckReport, handed_in
 from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.markup import parsed, plain, rows
 from kit.school.lessons.reading import WIDTH
 from kit.school.lessons.records import Command, Exercise, Scene, Step, StepKind
+from kit.school.result_text import criterion_lines, points_text, replay_lines
+from kit.school.result_text import plain as plain_line
 
 LOOK_S: Final = 0.2
 """How often to look whether the student's file was saved."""
@@ -152,11 +154,11 @@ class PlainLesson:
             click.echo("\nStopped; it does not count. r checks again, q leaves.")
             return
         self._visit.take(exercise, report)
-        for line in said(report):
+        for line in report_lines(report):
             click.echo(line)
-        if report.passed:
+        if report.is_passed:
             click.echo("Passed. s shows the reference solution, n goes on.")
-        elif report.lost and any(each.hints for each in report.lost):
+        elif report.lost_criteria and any(each.hints for each in report.lost_criteria):
             click.echo("h gives a hint.")
 
     def hint(self) -> None:
@@ -170,7 +172,7 @@ class PlainLesson:
         if not opened:
             raise Mistake(
                 "no hint was written for what is missing"
-                if (report := self._visit.report(exercise)) is not None and report.lost
+                if (report := self._visit.report(exercise)) is not None and report.lost_criteria
                 else "there is a hint when a check (r) has shown what is missing"
             )
         click.echo("These are all hints for it:")
@@ -299,22 +301,15 @@ class PlainLesson:
             click.echo("> ", nl=False)
 
 
-def said(report: Report) -> list[str]:
-    """A check's outcome, line by line."""
+def report_lines(report: CheckReport) -> list[str]:
+    """The outcome of a check, line by line."""
     if report.problem:
         return [_wrapped(report.problem)]
-    lines = []
-    for each in report.criteria:
-        mark = "[ok]" if each.passed else "[--]" if each.status == "skipped" else "[no]"
-        lines.append(f"{mark} {each.title}: {each.points:g} of {each.max_points:g}")
-        if not each.passed and each.said:
-            lines.append(_wrapped(f"     {each.said}", "     "))
-        if not each.passed and each.expected and each.actual:
-            lines.append(f"     wanted: {each.expected}; found: {each.actual}")
-    picture = next((each.picture for each in report.lost if each.picture), "")
+    lines = [plain_line(line) for each in report.criteria for line in criterion_lines(each, WIDTH)]
+    picture = replay_lines(report.criteria)
     if picture:
-        lines += ["", picture.rstrip()]
-    lines.append(f"{report.points:g} of {report.max_points:g} points, in {report.seconds:.1f} s")
+        lines += ["", *picture]
+    lines.append(f"{points_text(report.points, report.max_points)} points, in {report.seconds:.1f} s")
     return lines
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatch
-from kit.school.lessons.checking import Check, Report, handed_in
+from kit.school.lessons.checking import Check, CheckReport, handed_in
 from kit.school.lessons.exercise_files import STARTER
 from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.records import Exercise
@@ -81,7 +81,7 @@ class Workbench:
         return None if self._check is None else self._check.seconds
 
     @property
-    def report(self) -> Report | None:
+    def report(self) -> CheckReport | None:
         """The newest check's."""
         return self._visit.report(self.exercise)
 

@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.archives import Refused
 from grader.reading import read
-from grader.result import Result, Status
 from grader.session import Terms, grade
 from grader.submission import take
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"
 """A secret: in the assignment, in the grader's environment, in its memory."""
@@ -248,7 +248,7 @@ def program(attack: Attack, secret: Path, victim: Path) -> str:
 class Outcome:
     """What became of an attack."""
 
-    result: Result | None
+    result: GradingResult | None
     refused: str
     got: str
     """What it says it got; empty if nothing."""
@@ -262,8 +262,14 @@ class Outcome:
         if self.result is None:
             return "refused"
         statuses = [test.status for test in self.result.tests]
-        worst = [each for each in statuses if each not in (Status.PASS, Status.FAIL, Status.SKIPPED)]
-        return (worst or [Status.FAIL if Status.FAIL in statuses else Status.PASS])[0].value
+        worst = [
+            each
+            for each in statuses
+            if each not in (CriterionStatus.PASS, CriterionStatus.FAIL, CriterionStatus.SKIPPED)
+        ]
+        return (
+            worst or [CriterionStatus.FAIL if CriterionStatus.FAIL in statuses else CriterionStatus.PASS]
+        )[0].value
 
     def holds(self, attack: Attack) -> bool:
         """Whether it got nothing, earned what was honest, and was told the right reason."""

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read
-from grader.result import Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 
 SHEET = """
@@ -85,15 +85,15 @@ def test_a_known_mistake_is_answered(folder: Path) -> None:
 )
 def test_a_file_that_cannot_be_read_is_an_error_with_its_place(folder: Path, text: str) -> None:
     result = grade(read(folder), handed_in(text), DESK)
-    assert {test.status for test in result.tests} == {Status.STUDENT_ERROR}
+    assert {test.status for test in result.tests} == {CriterionStatus.STUDENT_ERROR}
     assert "answers.yaml" in result.tests[0].rationale
     assert "/tmp" not in result.tests[0].rationale
 
 
 def test_without_the_secret_nothing_is_judged(folder: Path) -> None:
     result = grade(read(folder), handed_in("topic: cmd_vel\n"), Terms(Level.LIMITED))
-    assert {test.status for test in result.tests} == {Status.SKIPPED}
-    assert result.verdict is Verdict.FAIL
+    assert {test.status for test in result.tests} == {CriterionStatus.SKIPPED}
+    assert result.verdict is GradingVerdict.FAIL
 
 
 def test_a_key_must_be_one_of_the_choices(folder: Path) -> None:

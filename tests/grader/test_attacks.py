@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from grader.reports import FORMATS, writer
-from grader.result import Verdict
 from kit.host.sandbox.confinement import Level
+from kit.school.result import GradingVerdict
 from tests.grader.attacks import ATTACKS, TOKEN, Attack, attempt
 from tests.grader.conftest import LOCKS
 
@@ -54,7 +54,7 @@ def test_nobody_gains_anything(
     if outcome.result is None:
         assert outcome.refused
     else:
-        assert outcome.result.verdict is not Verdict.BROKEN
+        assert outcome.result.verdict is not GradingVerdict.BROKEN
         stopped = [test for test in outcome.result.tests if test.points < test.max_points]
         assert all(test.rationale for test in stopped), "what was lost is explained"
         for form in FORMATS:

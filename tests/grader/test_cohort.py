@@ -29,11 +29,11 @@ from grader.cohort.late import Arrival, LatePolicy, moment, read_arrivals, read_
 from grader.cohort.queue import Queue, QueueError, key_of, prepare
 from grader.cohort.work import Pool, work
 from grader.reading import read
-from grader.result import Verdict
 from grader.session import Terms
 from grader.submission import take
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe
+from kit.school.result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
@@ -116,7 +116,7 @@ def test_a_worker_that_dies_is_nobodys_fault(queue: Queue, monkeypatch: pytest.M
     locally(queue, [key], 1, lambda key: None)
     result = queue.result(key)
     assert result is not None
-    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+    assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
     assert [row.final for row in rows(queue) if row.verdict == "broken"] in ([None], [None, None])
 
 
@@ -322,7 +322,7 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     assert sorted(done) == sorted(keys)
     assert queue.waiting() == ()
     verdicts = [result.verdict for key in keys if (result := queue.result(key)) is not None]
-    assert [verdict is Verdict.BROKEN for verdict in verdicts] == [False, True, False, False]
+    assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
     with pytest.raises(CannotRun, match="--cluster"):
         by_dask(queue, keys, "", done.append)
 

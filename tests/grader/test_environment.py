@@ -9,11 +9,11 @@ import pytest
 
 from grader.evidence.environment import sectors
 from grader.reading import read
-from grader.result import Result, Status
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.observations import NINE
+from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
@@ -55,7 +55,7 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def graded(folder: Path, *changes: tuple[str, str], terms: Terms = DESK) -> Result:
+def graded(folder: Path, *changes: tuple[str, str], terms: Terms = DESK) -> GradingResult:
     source = GOOD.read_text()
     for old, new in (SHORT, *changes):
         assert old in source
@@ -65,8 +65,8 @@ def graded(folder: Path, *changes: tuple[str, str], terms: Terms = DESK) -> Resu
     )
 
 
-def lost(result: Result) -> set[str]:
-    return {test.id for test in result.tests if test.status is not Status.PASS}
+def lost(result: GradingResult) -> set[str]:
+    return {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
 
 
 @LOCKS
@@ -102,19 +102,19 @@ def test_a_mistake_loses_what_it_is_about(
 @pytest.mark.parametrize(
     ("change", "status", "word"),
     [
-        (("class HallwayEnv(gymnasium.Env)", "class HallEnv(gymnasium.Env)"), Status.STUDENT_ERROR, "HallEnv"),
-        (("class HallwayEnv(gymnasium.Env)", "class HallwayEnv"), Status.STUDENT_ERROR, "gymnasium.Env"),
-        (("self.steps += 1", "self.steps += 1 / 0"), Status.STUDENT_ERROR, "hallway_env.py"),
-        (("self.steps += 1", "import sys; sys.exit(0)"), Status.STUDENT_ERROR, ""),
-        (("self.steps += 1", "while True: pass"), Status.TIMEOUT, "hallway_env.py"),
-        (('"static_laser"', '"no_laser"'), Status.TIMEOUT, "did not come back"),
-        (("rclpy.spin_once(self)", "pass"), Status.TIMEOUT, "hallway_env.py"),
-        (("import math", "import math, os; os._exit(3)"), Status.STUDENT_ERROR, ""),
+        (("class HallwayEnv(gymnasium.Env)", "class HallEnv(gymnasium.Env)"), CriterionStatus.STUDENT_ERROR, "HallEnv"),
+        (("class HallwayEnv(gymnasium.Env)", "class HallwayEnv"), CriterionStatus.STUDENT_ERROR, "gymnasium.Env"),
+        (("self.steps += 1", "self.steps += 1 / 0"), CriterionStatus.STUDENT_ERROR, "hallway_env.py"),
+        (("self.steps += 1", "import sys; sys.exit(0)"), CriterionStatus.STUDENT_ERROR, ""),
+        (("self.steps += 1", "while True: pass"), CriterionStatus.TIMEOUT, "hallway_env.py"),
+        (('"static_laser"', '"no_laser"'), CriterionStatus.TIMEOUT, "did not come back"),
+        (("rclpy.spin_once(self)", "pass"), CriterionStatus.TIMEOUT, "hallway_env.py"),
+        (("import math", "import math, os; os._exit(3)"), CriterionStatus.STUDENT_ERROR, ""),
     ],
     ids=["no class", "no env", "raises", "leaves", "loops", "waits for nobody", "waits without spinning", "dies"],
 )  # fmt: skip
 def test_what_does_not_come_back_is_told(
-    folder: Path, change: tuple[str, str], status: Status, word: str
+    folder: Path, change: tuple[str, str], status: CriterionStatus, word: str
 ) -> None:
     test = graded(folder, change).tests[0]
     assert test.status is status
@@ -129,7 +129,7 @@ def test_answers_that_are_forged_are_no_answers(folder: Path) -> None:
         answers = self.robot.create_publisher(String, '/examination/answer', 10)
         answers.publish(String(data='[' * 2000))
 """
-    assert graded(folder, (drive, forged + drive)).tests[0].status is Status.PROTOCOL_ERROR
+    assert graded(folder, (drive, forged + drive)).tests[0].status is CriterionStatus.PROTOCOL_ERROR
 
 
 def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> None:
@@ -139,7 +139,7 @@ def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> 
     )
     result = graded(folder, hostile)
     assert {"steps", "sees", "crash", "timeout"} <= lost(result)
-    assert all(test.status is not Status.GRADER_ERROR for test in result.tests)
+    assert all(test.status is not CriterionStatus.GRADER_ERROR for test in result.tests)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.result import Result, Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 
 SHEET = """
 title: Charges
@@ -42,7 +42,7 @@ def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     return read(folder)
 
 
-def handed_in(assignment: Assignment, text: str) -> Result:
+def handed_in(assignment: Assignment, text: str) -> GradingResult:
     return grade(
         assignment,
         Submission("ada", "charges.yaml", {"charges.yaml": text.encode()}),
@@ -52,8 +52,8 @@ def handed_in(assignment: Assignment, text: str) -> Result:
 
 def test_a_good_layout_earns_everything(assignment: Assignment) -> None:
     result = handed_in(assignment, GOOD)
-    assert [test.rationale for test in result.tests if test.status is not Status.PASS] == []
-    assert result.verdict is Verdict.PASS
+    assert [test.rationale for test in result.tests if test.status is not CriterionStatus.PASS] == []
+    assert result.verdict is GradingVerdict.PASS
 
 
 def test_a_trap_is_told_with_its_place(assignment: Assignment) -> None:
@@ -94,7 +94,7 @@ ALIASES = "a: &a [1, 1]\n" + "".join(
 )
 def test_what_is_no_layout_is_told_and_harms_nobody(assignment: Assignment, text: str) -> None:
     result = handed_in(assignment, text)
-    assert result.verdict is Verdict.FAIL
-    assert {test.status for test in result.tests} == {Status.STUDENT_ERROR}
+    assert result.verdict is GradingVerdict.FAIL
+    assert {test.status for test in result.tests} == {CriterionStatus.STUDENT_ERROR}
     assert result.tests[0].rationale
     assert "/tmp" not in result.tests[0].rationale

@@ -8,10 +8,10 @@ import pytest
 
 from grader.kinds.function import alike, shown
 from grader.reading import read
-from grader.result import Result, Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
@@ -64,14 +64,14 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def graded(folder: Path, source: str, terms: Terms = DESK) -> Result:
+def graded(folder: Path, source: str, terms: Terms = DESK) -> GradingResult:
     return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), terms)
 
 
 @pytest.mark.parametrize("terms", [DESK, GRADE], ids=["practice", "grade"])
 def test_a_good_one_earns_everything(folder: Path, terms: Terms) -> None:
     result = graded(folder, NEAREST + HALVES, terms)
-    assert (result.points, result.verdict) == (3.0, Verdict.PASS)
+    assert (result.points, result.verdict) == (3.0, GradingVerdict.PASS)
 
 
 @LOCKS
@@ -88,43 +88,43 @@ def test_numpy_is_taken_for_what_it_is(folder: Path) -> None:
 def test_the_first_difference_is_told(folder: Path) -> None:
     result = graded(folder, "def nearest(ranges):\n    return ranges[0] if ranges[0] > 0 else 2.0\n" + HALVES)
     test = result.tests[0]
-    assert test.status is Status.FAIL
+    assert test.status is CriterionStatus.FAIL
     assert "nearest(ranges=[1, 0.5]) should be 0.5, and is 1." in test.rationale
-    assert result.tests[1].status is Status.PASS
+    assert result.tests[1].status is CriterionStatus.PASS
 
 
 def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
     (folder / "assignment.yaml").write_text(SHEET.replace("share: {none: 0.9, full: 1}", "seeds: secret"))
     source = NEAREST + "def halves(ranges, side):\n    return [side, [0.0, 0.0]]\n"
     test = graded(folder, source, GRADE).tests[1]
-    assert test.status is Status.FAIL
+    assert test.status is CriterionStatus.FAIL
     assert "should be" not in test.rationale
-    assert graded(folder, source, DESK).tests[1].status is Status.SKIPPED
+    assert graded(folder, source, DESK).tests[1].status is CriterionStatus.SKIPPED
 
 
 @pytest.mark.parametrize(
     ("body", "status", "word"),
     [
-        ("return None", Status.FAIL, "returns nothing"),
-        ("return [0.5]", Status.FAIL, "should be 0.5"),
-        ("return str(min(ranges))", Status.FAIL, "'0.5'"),
-        ("return min(ranges) == 0.5", Status.FAIL, "True"),
-        ("return 1 / 0", Status.STUDENT_ERROR, "nearest(ranges=[1, 0.5])"),
-        ("return float('nan')", Status.STUDENT_ERROR, "finite"),
-        ("return object()", Status.STUDENT_ERROR, "must return"),
-        ("return [[[[1]]]]", Status.STUDENT_ERROR, "must return"),
-        ("while True: pass", Status.TIMEOUT, "scans.py:2"),
-        ("import sys; sys.exit()", Status.STUDENT_ERROR, "sys.exit"),
-        ("import os; os._exit(0)", Status.STUDENT_ERROR, ""),
-        ("return 'x' * 10**7", Status.PROTOCOL_ERROR, ""),
+        ("return None", CriterionStatus.FAIL, "returns nothing"),
+        ("return [0.5]", CriterionStatus.FAIL, "should be 0.5"),
+        ("return str(min(ranges))", CriterionStatus.FAIL, "'0.5'"),
+        ("return min(ranges) == 0.5", CriterionStatus.FAIL, "True"),
+        ("return 1 / 0", CriterionStatus.STUDENT_ERROR, "nearest(ranges=[1, 0.5])"),
+        ("return float('nan')", CriterionStatus.STUDENT_ERROR, "finite"),
+        ("return object()", CriterionStatus.STUDENT_ERROR, "must return"),
+        ("return [[[[1]]]]", CriterionStatus.STUDENT_ERROR, "must return"),
+        ("while True: pass", CriterionStatus.TIMEOUT, "scans.py:2"),
+        ("import sys; sys.exit()", CriterionStatus.STUDENT_ERROR, "sys.exit"),
+        ("import os; os._exit(0)", CriterionStatus.STUDENT_ERROR, ""),
+        ("return 'x' * 10**7", CriterionStatus.PROTOCOL_ERROR, ""),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_a_mistake_in_one_costs_no_other(folder: Path, body: str, status: Status, word: str) -> None:
+def test_a_mistake_in_one_costs_no_other(folder: Path, body: str, status: CriterionStatus, word: str) -> None:
     result = graded(folder, f"def nearest(ranges):\n    {body}\n" + HALVES)
     assert result.tests[0].status is status
     assert word in result.tests[0].rationale
-    assert result.tests[1].status is Status.PASS
+    assert result.tests[1].status is CriterionStatus.PASS
 
 
 @pytest.mark.parametrize(
@@ -132,7 +132,7 @@ def test_a_mistake_in_one_costs_no_other(folder: Path, body: str, status: Status
 )
 def test_what_cannot_be_called_is_the_students_error(folder: Path, source: str) -> None:
     test = graded(folder, source).tests[0]
-    assert test.status is Status.STUDENT_ERROR
+    assert test.status is CriterionStatus.STUDENT_ERROR
     assert "scans.py" in test.rationale
     assert "/tmp" not in test.rationale
 

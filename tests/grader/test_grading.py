@@ -18,13 +18,13 @@ from grader.checks import contract, drives
 from grader.kinds import controller
 from grader.kinds.contract import kinds, sort_of
 from grader.reading import read
-from grader.result import Result, Status, Verdict
 from grader.self_test import odds, prove
 from grader.session import LevelTooLow, Terms, grade, opened
 from grader.submission import Submission
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import load
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
 DESK = Terms(Level.LIMITED)
@@ -34,14 +34,14 @@ def handed_in(source: str) -> Submission:
     return Submission("ada", "controller.py", {"controller.py": source.encode()})
 
 
-def statuses(result: Result) -> dict[str, str]:
+def statuses(result: GradingResult) -> dict[str, str]:
     return {test.id: test.status.value for test in result.tests}
 
 
 def test_an_honest_program(quick: Assignment) -> None:
     result = grade(quick, handed_in(FORWARD), DESK)
     assert statuses(result) == {"runs": "pass", "moves": "pass", "reached": "fail"}
-    assert (result.points, result.max_points, result.verdict) == (3.0, 6.0, Verdict.FAIL)
+    assert (result.points, result.max_points, result.verdict) == (3.0, 6.0, GradingVerdict.FAIL)
     failed = result.tests[2]
     assert failed.hints == ("one", "two", "three")
     assert (failed.expected, failed.actual) == ("reached", "not reached")
@@ -62,7 +62,7 @@ def test_what_depends_on_a_failure_is_not_judged(quick: Assignment) -> None:
     assert result.points == 0.0
     assert "controller.py:2" in result.tests[0].rationale
     assert result.tests[1].depends_on == "runs"
-    assert result.verdict is Verdict.FAIL
+    assert result.verdict is GradingVerdict.FAIL
 
 
 def test_the_same_program_gets_the_same_result(quick: Assignment) -> None:
@@ -120,7 +120,7 @@ def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None
         "        self.drive.publish", "        raise ValueError('what I saw')\n        self.drive.publish"
     )
     result = grade(assignment, handed_in(source), Terms(Level.LIMITED, secret=True))
-    assert result.tests[0].status is Status.STUDENT_ERROR
+    assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     assert "what I saw" not in result.tests[0].rationale + result.tests[0].log
 
 
@@ -135,7 +135,7 @@ def test_a_check_that_breaks_costs_nobody_anything(
     monkeypatch.setattr(controller, "SORT", dataclasses.replace(controller.SORT, checks=table))
     result = grade(quick, handed_in(FORWARD), DESK)
     assert statuses(result)["moves"] == "grader_error"
-    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+    assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
     assert "KeyError" in result.tests[1].log
 
 
@@ -201,7 +201,7 @@ def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
     with opened(quick, handed_in(FORWARD), DESK) as grading:
         (drive,) = grading.evidence("moves")
         assert drive.steps == 400
-        assert grading.result().verdict is Verdict.FAIL
+        assert grading.result().verdict is GradingVerdict.FAIL
         assert grading.worst() is drive
 
 
@@ -252,7 +252,7 @@ def test_check_in_every_way(tmp_path: Path) -> None:
     assert load(replay).ticks == 400
     out = tmp_path / "result.json"
     assert invoke("check", str(file), "--assignment", str(folder), "--json", "--output", str(out)) == (1, "")
-    assert Result.from_dict(json.loads(out.read_text())).points == 3.0
+    assert GradingResult.from_dict(json.loads(out.read_text())).points == 3.0
     code, junit = invoke("report", str(out), "--format", "junit")
     assert code == 0
     assert ElementTree.fromstring(junit).attrib["failures"] == "1"

@@ -9,10 +9,10 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.result import Result, Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
@@ -42,19 +42,19 @@ def assignment() -> Assignment:
     return read(LESSON)
 
 
-def handed_in(assignment: Assignment, text: str, terms: Terms = DESK) -> Result:
+def handed_in(assignment: Assignment, text: str, terms: Terms = DESK) -> GradingResult:
     name = assignment.submit
     return grade(assignment, Submission("ada", name, {name: text.encode()}), terms)
 
 
 def test_a_right_one_earns_everything(assignment: Assignment) -> None:
-    assert handed_in(assignment, SOLUTION).verdict is Verdict.PASS
+    assert handed_in(assignment, SOLUTION).verdict is GradingVerdict.PASS
 
 
 @LOCKS
 def test_a_right_one_earns_everything_locked_in(assignment: Assignment) -> None:
     result = handed_in(assignment, SOLUTION, Terms(Level.FILTERED, secret=True))
-    assert [test.rationale for test in result.tests if test.status is not Status.PASS] == []
+    assert [test.rationale for test in result.tests if test.status is not CriterionStatus.PASS] == []
 
 
 def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignment) -> None:
@@ -89,7 +89,7 @@ def test_what_is_missing_is_named_with_what_is_there_instead(assignment: Assignm
 def test_a_wrong_or_hostile_one_is_told_why(assignment: Assignment, text: str, word: str) -> None:
     result = handed_in(assignment, text)
     assert result.points == 0
-    assert result.tests[0].status is Status.STUDENT_ERROR
+    assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     assert word in result.tests[0].rationale
     assert "/launch-" not in result.tests[0].rationale
 
@@ -97,7 +97,7 @@ def test_a_wrong_or_hostile_one_is_told_why(assignment: Assignment, text: str, w
 def test_one_that_never_ends_is_ended(assignment: Assignment) -> None:
     quick = replace(assignment, limits=replace(assignment.limits, start_s=3.0))
     result = handed_in(quick, "while True:\n    pass\n")
-    assert result.tests[0].status is Status.TIMEOUT
+    assert result.tests[0].status is CriterionStatus.TIMEOUT
 
 
 def test_a_package_outside_the_folder_is_refused(tmp_path: Path) -> None:

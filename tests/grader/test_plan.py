@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read
-from grader.result import Result, Status
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 
 SHEET = """
@@ -48,7 +48,7 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def graded(folder: Path, text: str) -> Result:
+def graded(folder: Path, text: str) -> GradingResult:
     return grade(read(folder), Submission("ada", "plan.yaml", {"plan.yaml": text.encode()}), DESK)
 
 
@@ -71,7 +71,7 @@ def graded(folder: Path, text: str) -> Result:
 )  # fmt: skip
 def test_what_is_lost(folder: Path, text: str, lost: str) -> None:
     result = graded(folder, text)
-    assert [test.id for test in result.tests if test.status is not Status.PASS] == lost.split()
+    assert [test.id for test in result.tests if test.status is not CriterionStatus.PASS] == lost.split()
     assert all(not test.status.value.endswith("error") for test in result.tests)
 
 
@@ -102,7 +102,7 @@ def test_a_proof_that_proves_nothing_is_told_why(folder: Path) -> None:
 )
 def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, text: str, word: str) -> None:
     tests = graded(folder, text).tests
-    assert {test.status for test in tests} == {Status.STUDENT_ERROR}
+    assert {test.status for test in tests} == {CriterionStatus.STUDENT_ERROR}
     assert word in tests[0].rationale
     assert "/tmp" not in tests[0].rationale
 

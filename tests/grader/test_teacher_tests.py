@@ -10,11 +10,11 @@ from grader.cohort.gradebook import rows
 from grader.cohort.queue import Queue, prepare
 from grader.cohort.work import work
 from grader.reading import read
-from grader.result import Result, Status, Test, Verdict, Visibility
 from grader.session import Terms, grade
 from grader.submission import Submission
 from grader.teacher_tests import declared
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 from tests.grader.test_grading import run_pytest
@@ -59,7 +59,7 @@ def folder_with(tmp_path: Path, own: str, sheet: str = QUICK + "tests: [test_own
     return folder
 
 
-def graded(folder: Path) -> tuple[Result, dict[str, Test]]:
+def graded(folder: Path) -> tuple[GradingResult, dict[str, CriterionResult]]:
     submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
     result = grade(read(folder), submission, DESK)
     return result, {test.id: test for test in result.tests}
@@ -72,12 +72,16 @@ def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
     drives, turns, says, far = (
         tests[f"test_it_{name}"] for name in ("drives", "turns", "says_why", "comes_far")
     )
-    assert (drives.status, drives.points, drives.title) == (Status.PASS, 2.0, "It drives")
-    assert (turns.status, turns.points, turns.rationale) == (Status.FAIL, 0.0, "The robot never turns.")
+    assert (drives.status, drives.points, drives.title) == (CriterionStatus.PASS, 2.0, "It drives")
+    assert (turns.status, turns.points, turns.rationale) == (
+        CriterionStatus.FAIL,
+        0.0,
+        "The robot never turns.",
+    )
     assert (turns.visibility, turns.hints) == (Visibility.AFTER_DUE, ("Look left.", "Turn."))
-    assert (says.status, says.rationale) == (Status.FAIL, "only 400 ticks")
-    assert (far.status, far.points, far.rationale) == (Status.PARTIAL, 0.5, "Farther.")
-    assert tests["test_for_another_day"].status is Status.SKIPPED
+    assert (says.status, says.rationale) == (CriterionStatus.FAIL, "only 400 ticks")
+    assert (far.status, far.points, far.rationale) == (CriterionStatus.PARTIAL, 0.5, "Farther.")
+    assert tests["test_for_another_day"].status is CriterionStatus.SKIPPED
     assert "assert" not in "".join(test.rationale for test in tests.values()), "no test's source is told"
     assert graded(folder)[0].tests == result.tests
 
@@ -86,14 +90,14 @@ def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
 def test_one_that_breaks_costs_nobody_anything(tmp_path: Path, body: str) -> None:
     own = f"import pytest\n@pytest.mark.points(2)\ndef test_ours(grading):\n    {body}\n"
     result, tests = graded(folder_with(tmp_path, own))
-    assert tests["test_ours"].status is Status.GRADER_ERROR
+    assert tests["test_ours"].status is CriterionStatus.GRADER_ERROR
     assert tests["test_ours"].log
-    assert (result.verdict, result.points) == (Verdict.BROKEN, None)
+    assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
 
 
 def test_a_file_that_cannot_be_loaded_is_the_graders_fault(tmp_path: Path) -> None:
     own = "import nowhere, pytest\n@pytest.mark.points(2)\ndef test_ours(grading): pass\n"
-    assert graded(folder_with(tmp_path, own))[1]["test_ours"].status is Status.GRADER_ERROR
+    assert graded(folder_with(tmp_path, own))[1]["test_ours"].status is CriterionStatus.GRADER_ERROR
 
 
 def test_what_is_not_named_is_not_run(tmp_path: Path) -> None:

@@ -10,10 +10,10 @@ from grader.evidence.training import Order, Stop, Trainings
 from grader.kinds.contract import Conditions, Look
 from grader.kinds.training import look
 from grader.reading import read
-from grader.result import Status
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus
 from kit.world.problems import WorldError
 
 SHEET = """
@@ -115,7 +115,7 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
         Submission("ada", "training.yaml", {"training.yaml": text.encode()}),
         Terms(Level.LIMITED),
     )
-    assert {test.status for test in result.tests} == {Status.STUDENT_ERROR}
+    assert {test.status for test in result.tests} == {CriterionStatus.STUDENT_ERROR}
     assert word in result.tests[0].rationale
     assert "/tmp" not in result.tests[0].rationale
 

@@ -22,11 +22,11 @@ from grader.evidence.world.world_reading import facts_of
 from grader.evidence.world.world_run import run
 from grader.kinds.contract import Look
 from grader.reading import read
-from grader.result import Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import take
 from kit.host.failure import FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
+from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES
 
@@ -274,11 +274,11 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
     result = grade(read(sheet), take(folder, "world.yaml"), Terms(Level.LIMITED))
     status = {test.id: test.status for test in result.tests}
     assert status == {
-        "loads": Status.PASS,
-        "walls": Status.PASS,
-        "collisions": Status.PASS,
-        "sights": Status.PASS,
-        "drives": Status.TIMEOUT,
+        "loads": CriterionStatus.PASS,
+        "walls": CriterionStatus.PASS,
+        "collisions": CriterionStatus.PASS,
+        "sights": CriterionStatus.PASS,
+        "drives": CriterionStatus.TIMEOUT,
     }
     assert "too many walls, rays or bodies" in result.tests[-1].rationale
 
@@ -287,7 +287,7 @@ def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
     result = grade(
         read(TEMPLATE), take(folder / "world.yaml", "world.yaml"), replace(DESK, level=Level.FILTERED)
     )
-    assert result.verdict is Verdict.FAIL
+    assert result.verdict is GradingVerdict.FAIL
     assert "room.yaml" in result.tests[0].rationale
 
 

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from grader.reports import FORMATS, cleaning, writer
-from grader.result import Result, Status, Test, Visibility
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
 
 NASTY = {
     "workflow command": "::set-output name=result::x",
@@ -31,8 +31,8 @@ NASTY = {
 }
 
 
-def result(text: str, status: Status = Status.FAIL) -> Result:
-    nasty = Test(
+def result(text: str, status: CriterionStatus = CriterionStatus.FAIL) -> GradingResult:
+    nasty = CriterionResult(
         "reached",
         text,
         status,
@@ -44,10 +44,10 @@ def result(text: str, status: Status = Status.FAIL) -> Result:
         actual=text,
         log=text,
     )
-    hidden = Test(
-        "h", "Hidden one", Status.FAIL, 0.0, 1.0, Visibility.HIDDEN, rationale="s3cret", log="s3cret"
+    hidden = CriterionResult(
+        "h", "Hidden one", CriterionStatus.FAIL, 0.0, 1.0, Visibility.HIDDEN, rationale="s3cret", log="s3cret"
     )
-    return Result("reach", "v", "abc", "0.1", "public", 1, "linux", (nasty, hidden), (text,))
+    return GradingResult("reach", "v", "abc", "0.1", "public", 1, "linux", (nasty, hidden), (text,))
 
 
 @pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
@@ -70,7 +70,7 @@ def test_xml_and_json_can_be_read_again(text: str) -> None:
     assert root.attrib["failures"] == "2"
     for form in ("json", "gradescope", "classroom", "prairielearn", "check50"):
         json.loads(writer(form)(result(text)))
-    assert Result.from_dict(json.loads(writer("json")(result(text)))).points == 1.0
+    assert GradingResult.from_dict(json.loads(writer("json")(result(text)))).points == 1.0
 
 
 @pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
@@ -111,23 +111,25 @@ def test_gradescope_gets_the_visibility_and_not_a_broken_grade() -> None:
     content = json.loads(writer("gradescope")(result("no")))
     assert [test["visibility"] for test in content["tests"]] == ["visible", "hidden"]
     assert content["score"] == sum(test["score"] for test in content["tests"]) == 1.0
-    broken = json.loads(writer("gradescope")(result("no", Status.GRADER_ERROR)))
+    broken = json.loads(writer("gradescope")(result("no", CriterionStatus.GRADER_ERROR)))
     assert "score" not in broken
     assert "tests" not in broken
 
 
 def test_classroom_always_gets_tests_and_a_maximum() -> None:
-    for status, expected in ((Status.PASS, "fail"), (Status.GRADER_ERROR, "error")):
+    for status, expected in ((CriterionStatus.PASS, "fail"), (CriterionStatus.GRADER_ERROR, "error")):
         content = json.loads(writer("classroom")(result("no", status)))
         assert (content["status"], content["max_score"]) == (expected, 3)
         assert isinstance(content["tests"], list)
 
 
 def test_prairielearn_does_not_grade_what_did_not_run() -> None:
-    stopped = Test("a", "A", Status.STUDENT_ERROR, 0.0, 1.0, rationale="work.py:3: SyntaxError")
-    later = Test("b", "B", Status.SKIPPED, 0.0, 1.0, depends_on="a")
+    stopped = CriterionResult(
+        "a", "A", CriterionStatus.STUDENT_ERROR, 0.0, 1.0, rationale="work.py:3: SyntaxError"
+    )
+    later = CriterionResult("b", "B", CriterionStatus.SKIPPED, 0.0, 1.0, depends_on="a")
     content = json.loads(
-        writer("prairielearn")(Result("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
+        writer("prairielearn")(GradingResult("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
     )
     assert content["gradable"] is False
     assert content["format_errors"] == ["work.py:3: SyntaxError"]
@@ -139,12 +141,12 @@ def test_check50_tells_failed_from_unknown() -> None:
         False,
         False,
     ]
-    broken = json.loads(writer("check50")(result("no", Status.GRADER_ERROR)))["results"]
+    broken = json.loads(writer("check50")(result("no", CriterionStatus.GRADER_ERROR)))["results"]
     assert broken[0]["passed"] is None
 
 
 def test_junit_tells_a_failure_from_an_error() -> None:
-    root = ElementTree.fromstring(writer("junit")(result("no", Status.GRADER_ERROR)))
+    root = ElementTree.fromstring(writer("junit")(result("no", CriterionStatus.GRADER_ERROR)))
     assert (root.attrib["failures"], root.attrib["errors"]) == ("1", "1")
     names = [case.attrib["name"] for case in root.iter("testcase")]
     assert len(set(names)) == len(names)

@@ -18,71 +18,59 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from kit.school.lessons.records import Exercise
+from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
 LONGEST_S: Final = 300.0
 """A check that takes longer has hung, and is ended."""
-HINT_STEPS: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
-    """One criterion, judged."""
+class CheckReport:
+    """The outcome of one check of an exercise: the grader's result, or the problem because of which there is none."""
 
-    id: str
-    title: str
-    status: str
-    """``pass``, ``partial``, ``fail``, ... as the grader says."""
-    points: float
-    max_points: float
-    said: str
-    """What was wrong."""
-    expected: str
-    actual: str
-    hints: tuple[str, ...]
-    picture: str
-    """What happened, in characters; may be empty."""
-    log: str
-    """What the program printed."""
-
-    @property
-    def passed(self) -> bool:
-        return self.status == "pass"
-
-
-@dataclass(frozen=True, slots=True)
-class Report:
-    """What came of one check."""
-
-    verdict: str
-    """``pass``, ``fail``, or ``broken``: the check itself failed, which is never the student's doing."""
-    points: float
-    max_points: float
-    criteria: tuple[Judged, ...]
-    submission: str
-    """A digest of what was checked."""
+    verdict: GradingVerdict
+    """``BROKEN``: the check itself failed, which is never the student's doing."""
+    result: GradingResult | None
     seconds: float
+    """Duration of the check."""
     problem: str = ""
-    """Why there is no judgement: for a broken check, or a file that is missing."""
-    replay: Path | None = None
-    """The worst episode's recording, where there is one."""
+    """Why there is no result: a broken check, or a file that is missing."""
+    recording: Path | None = None
+    """Recording of the worst episode; None where there is none."""
 
     @property
-    def passed(self) -> bool:
-        return self.verdict == "pass"
+    def is_passed(self) -> bool:
+        return self.verdict is GradingVerdict.PASS
 
     @property
-    def lost(self) -> tuple[Judged, ...]:
+    def is_broken(self) -> bool:
+        return self.verdict is GradingVerdict.BROKEN
+
+    @property
+    def points(self) -> float:
+        return 0.0 if self.result is None else self.result.points or 0.0
+
+    @property
+    def max_points(self) -> float:
+        return 0.0 if self.result is None else self.result.max_points
+
+    @property
+    def criteria(self) -> tuple[CriterionResult, ...]:
+        return () if self.result is None else self.result.tests
+
+    @property
+    def lost_criteria(self) -> tuple[CriterionResult, ...]:
         """The criteria that did not pass, in order."""
-        return tuple(each for each in self.criteria if not each.passed)
+        return tuple(each for each in self.criteria if not each.is_passed)
 
     def as_event(self) -> Mapping[str, Any]:
-        """What the journal keeps of it."""
+        """The content of the journal's event."""
         return {
             "points": self.points,
             "max_points": self.max_points,
-            "verdict": self.verdict,
-            "lost": [each.id for each in self.lost],
-            "submission": self.submission,
+            "verdict": self.verdict.value,
+            "lost": [each.id for each in self.lost_criteria],
+            "submission": "" if self.result is None else self.result.submission,
             "seconds": round(self.seconds, 2),
         }
 
@@ -90,29 +78,31 @@ class Report:
 class Check:
     """A check that runs. ``poll`` it, or ``wait``; leaving the context ends it and everything it started."""
 
-    def __init__(self, exercise: Exercise, file: Path, *, replay: Path | None = None) -> None:
+    def __init__(self, exercise: Exercise, file: Path, *, recording: Path | None = None) -> None:
         """``file``: what the student edits; where it came with others, their folder is handed in.
-        ``replay``: where to keep the worst episode."""
+        ``recording``: where to save the worst episode."""
         self._began = time.monotonic()
-        self._replay = replay
+        self._recording = recording
         self._out = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._said = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
-        self._report: Report | None = None
+        self._report: CheckReport | None = None
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
-            self._report = _without(f"{file} is not there. `x` lays the exercise out anew.", "fail")
-            return
-        if not file.is_file():
-            self._report = _without(
-                f"{file} is no file. Save your work under that name; `x` lays the exercise out anew and keeps what is there.",
-                "fail",
+            self._report = _without_result(
+                f"{file} is not there. `x` lays the exercise out anew.", GradingVerdict.FAIL
             )
             return
-        if replay is not None:
-            replay.unlink(missing_ok=True)
+        if not file.is_file():
+            self._report = _without_result(
+                f"{file} is no file. Save your work under that name; `x` lays the exercise out anew and keeps what is there.",
+                GradingVerdict.FAIL,
+            )
+            return
+        if recording is not None:
+            recording.unlink(missing_ok=True)
         command = [sys.executable, "-m", "grader", "check", str(handed_in(exercise, file))]
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
-        command += ["--replay", str(replay)] if replay is not None else []
+        command += ["--replay", str(recording)] if recording is not None else []
         try:
             self._process = subprocess.Popen(
                 command,
@@ -124,7 +114,9 @@ class Check:
                 start_new_session=True,
             )
         except OSError as error:
-            self._report = _without(f"The check could not be started ({error.strerror}).", "broken")
+            self._report = _without_result(
+                f"The check could not be started ({error.strerror}).", GradingVerdict.BROKEN
+            )
 
     def __enter__(self) -> Self:
         return self
@@ -139,19 +131,19 @@ class Check:
         """How long it has been running."""
         return time.monotonic() - self._began
 
-    def poll(self) -> Report | None:
+    def poll(self) -> CheckReport | None:
         """What came of it; None while it runs."""
         if self._report is None and self._process is not None:
             if self._process.poll() is not None:
                 self._report = self._read()
             elif self.seconds > LONGEST_S:
                 self._kill()
-                self._report = _without(
-                    f"The check did not end within {LONGEST_S:g} s and was stopped.", "broken"
+                self._report = _without_result(
+                    f"The check did not end within {LONGEST_S:g} s and was stopped.", GradingVerdict.BROKEN
                 )
         return self._report
 
-    def wait(self) -> Report:
+    def wait(self) -> CheckReport:
         """What came of it, however long it takes."""
         while (report := self.poll()) is None:
             assert self._process is not None
@@ -178,24 +170,26 @@ class Check:
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
 
-    def _read(self) -> Report:
+    def _read(self) -> CheckReport:
         self._out.seek(0)
         self._said.seek(0)
         said = self._said.read().decode(errors="replace").strip()
         try:
             content = json.loads(self._out.read())
-            return _report(content, self.seconds, self._replay)
+            return _with_result(GradingResult.from_dict(content), self.seconds, self._recording)
         except (ValueError, KeyError, TypeError):
             assert self._process is not None
-            # 2: what was handed in cannot be taken, which the student can mend.
-            verdict = "fail" if self._process.returncode == 2 else "broken"
+            # Exit code 2: the submission cannot be read, which the student can mend.
+            is_refused = self._process.returncode == 2
             last = said.splitlines()[-1] if said else f"exit code {self._process.returncode}"
-            return _without(said if verdict == "fail" else f"The check broke: {last}", verdict)
+            if is_refused:
+                return _without_result(said, GradingVerdict.FAIL)
+            return _without_result(f"The check broke: {last}", GradingVerdict.BROKEN)
 
 
-def check(exercise: Exercise, file: Path, *, replay: Path | None = None) -> Report:
+def check(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
     """Checks an exercise and waits for what comes of it."""
-    with Check(exercise, file, replay=replay) as running:
+    with Check(exercise, file, recording=recording) as running:
         return running.wait()
 
 
@@ -204,34 +198,17 @@ def handed_in(exercise: Exercise, file: Path) -> Path:
     return file.parent if (exercise.folder / "starter").is_dir() else file
 
 
-def _without(problem: str, verdict: str) -> Report:
-    return Report(verdict, 0.0, 0.0, (), "", 0.0, problem)
+def _without_result(problem: str, verdict: GradingVerdict) -> CheckReport:
+    return CheckReport(verdict, None, 0.0, problem)
 
 
-def _report(content: Mapping[str, Any], seconds: float, replay: Path | None) -> Report:
-    return Report(
-        verdict=str(content["verdict"]),
-        points=float(content["points"] or 0.0),
-        max_points=float(content["max_points"]),
-        criteria=tuple(_judged(each) for each in content["tests"]),
-        submission=str(content["submission"]),
-        seconds=seconds,
-        problem="The grader broke; that is not your fault." if content["verdict"] == "broken" else "",
-        replay=replay if replay is not None and replay.is_file() else None,
-    )
-
-
-def _judged(content: Mapping[str, Any]) -> Judged:
-    return Judged(
-        id=str(content["id"]),
-        title=str(content["title"]),
-        status=str(content["status"]),
-        points=float(content["points"]),
-        max_points=float(content["max_points"]),
-        said=str(content["rationale"]),
-        expected=str(content["expected"]),
-        actual=str(content["actual"]),
-        hints=tuple(map(str, content["hints"]))[:HINT_STEPS],
-        picture=str(content["replay"]),
-        log=str(content["log"]),
+def _with_result(result: GradingResult, seconds: float, recording: Path | None) -> CheckReport:
+    return CheckReport(
+        result.verdict,
+        result,
+        seconds,
+        problem="The grader broke; that is not your fault."
+        if result.verdict is GradingVerdict.BROKEN
+        else "",
+        recording=recording if recording is not None and recording.is_file() else None,
     )

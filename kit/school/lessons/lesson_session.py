@@ -7,10 +7,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from kit.school.lessons import exercise_files
-from kit.school.lessons.checking import HINT_STEPS, Check, Judged, Report
+from kit.school.lessons.checking import Check, CheckReport
 from kit.school.lessons.lesson_progress import Standing, standing
 from kit.school.lessons.records import Exercise, Lesson, Option, Step
 from kit.school.progress import Kind, Progress
+from kit.school.result import CriterionResult
 from kit.workspace import Workspace
 
 REPLAY = ".worst.npz"
@@ -21,7 +22,7 @@ REPLAY = ".worst.npz"
 class Hint:
     """One step of help with one criterion."""
 
-    criterion: Judged
+    criterion: CriterionResult
     number: int
     text: str
     more: int
@@ -37,7 +38,7 @@ class Visit:
         self.progress = progress
         self._workspace = workspace
         self._standing = self._fold()
-        self._reports: dict[str, Report] = {}
+        self._reports: dict[str, CheckReport] = {}
 
     @property
     def standing(self) -> Standing:
@@ -85,16 +86,16 @@ class Visit:
     def check(self, exercise: Exercise) -> Check:
         """Starts a check. Its report is to be handed to ``take``."""
         file = self.file(exercise)
-        replay = file.parent / REPLAY if file.parent.is_dir() else None
-        return Check(exercise, file, replay=replay)
+        recording = file.parent / REPLAY if file.parent.is_dir() else None
+        return Check(exercise, file, recording=recording)
 
-    def take(self, exercise: Exercise, report: Report) -> None:
+    def take(self, exercise: Exercise, report: CheckReport) -> None:
         """Notes what came of a check; one that broke counts for nothing."""
         self._reports[exercise.name] = report
-        if report.verdict != "broken" and report.criteria:
+        if not report.is_broken and report.criteria:
             self._note(Kind.ATTEMPT, self.lesson.subject_of(exercise), dict(report.as_event()))
 
-    def report(self, exercise: Exercise) -> Report | None:
+    def report(self, exercise: Exercise) -> CheckReport | None:
         """The newest check's, of this visit."""
         return self._reports.get(exercise.name)
 
@@ -113,7 +114,7 @@ class Visit:
         if lost is None:
             return None
         number = self._standing.hints_open(exercise, lost.id) + 1
-        if number > min(len(lost.hints), HINT_STEPS):
+        if number > len(lost.hints):
             return None
         self._note(Kind.HINT, f"{self.lesson.subject_of(exercise)}/{lost.id}", {"step": number})
         return _hint(lost, number)
@@ -131,9 +132,9 @@ class Visit:
             self._note(Kind.SOLUTION, self.lesson.subject_of(exercise))
         return files
 
-    def _first_lost(self, exercise: Exercise) -> Judged | None:
+    def _first_lost(self, exercise: Exercise) -> CriterionResult | None:
         report = self._reports.get(exercise.name)
-        return next(iter(report.lost), None) if report is not None else None
+        return next(iter(report.lost_criteria), None) if report is not None else None
 
     def _note(self, kind: Kind, subject: str, content: dict[str, object] | None = None) -> None:
         self.progress.add(kind, subject, content)
@@ -143,5 +144,5 @@ class Visit:
         return standing(self.lesson, self.progress.events())
 
 
-def _hint(lost: Judged, number: int) -> Hint:
-    return Hint(lost, number, lost.hints[number - 1], min(len(lost.hints), HINT_STEPS) - number)
+def _hint(lost: CriterionResult, number: int) -> Hint:
+    return Hint(lost, number, lost.hints[number - 1], len(lost.hints) - number)

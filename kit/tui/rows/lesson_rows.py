@@ -6,11 +6,12 @@ import textwrap
 from collections.abc import Sequence
 from typing import Final
 
-from kit.school.lessons.checking import Judged, Report
+from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import Standing
 from kit.school.lessons.lesson_session import Hint
 from kit.school.lessons.markup import Style, parsed, rows
 from kit.school.lessons.records import Command, How, Option, Step, StepKind
+from kit.school.result_text import Role, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Part, Row, row, spread
 
 WIDTH: Final = 76
@@ -20,6 +21,15 @@ LONGEST_BAR: Final = 12
 LEAST_TITLE: Final = 8
 
 _STYLES: Final = {Style.PLAIN: "", Style.CODE: "code", Style.BOLD: "bold"}
+_ROLE_STYLES: Final = {
+    Role.PASSED: "good",
+    Role.LOST: "bad",
+    Role.NOT_JUDGED: "dim",
+    Role.PLAIN: "",
+    Role.HEADING: "bold",
+    Role.DETAIL: "dim",
+    Role.HINT: "bold",
+}
 _KINDS: Final = {
     StepKind.PREDICT: "Predict",
     StepKind.RUN: "Run",
@@ -131,45 +141,20 @@ def feedback(step: Step, chosen: Option, width: int) -> list[Row]:
     ]
 
 
-def verdict(report: Report, hints: Sequence[Hint], width: int) -> list[Row]:
+def verdict(report: CheckReport, hints: Sequence[Hint], width: int) -> list[Row]:
     """What a check said, criterion by criterion; the hints opened so far below the criterion they help with."""
     made: list[Row] = [row()]
     if report.problem:
-        style = "warn" if report.verdict == "broken" else "bad"
+        style = "warn" if report.is_broken else "bad"
         made += [row(" " * MARGIN, (line, style)) for line in _wrapped(report.problem, width)]
     for each in report.criteria:
-        made += _judged(each, width)
-        for hint in hints:
-            if hint.criterion.id == each.id:
-                made += _hint(hint, width)
+        opened = sum(hint.criterion.id == each.id for hint in hints)
+        for line in criterion_lines(each, _room(width), hints=opened):
+            made.append(row(" " * MARGIN, *((span.text, _ROLE_STYLES[span.role]) for span in line)))
     return made
 
 
-def _judged(each: Judged, width: int) -> list[Row]:
-    mark, style = (
-        ("[ok]", "good") if each.passed else ("[--]", "dim") if each.status == "skipped" else ("[no]", "bad")
-    )
-    points = f"{each.points:g} of {each.max_points:g}"
-    first, *rest = textwrap.wrap(each.title, max(20, _room(width) - 7 - len(points))) or [""]
-    made = [
-        row(" " * MARGIN, (mark, style), " ", (first, "" if each.passed else "bold"), "  ", (points, "dim")),
-        *(row(" " * (MARGIN + 5), (line, "" if each.passed else "bold")) for line in rest),
-    ]
-    if each.passed:
-        return made
-    made += _indented(each.said, "", width)
-    if each.expected and each.actual:
-        made += _indented(f"wanted: {each.expected}", "dim", width)
-        made += _indented(f"found:  {each.actual}", "dim", width)
-    return made
-
-
-def _hint(hint: Hint, width: int) -> list[Row]:
-    more = f" ({hint.more} more)" if hint.more else ""
-    return _indented(f"Hint {hint.number}{more}: {hint.text}", "bold", width)
-
-
-def status(report: Report | None, standing: Standing, step: Step, by_hand: bool) -> Row:
+def status(report: CheckReport | None, standing: Standing, step: Step, by_hand: bool) -> Row:
     """One line of where one is with an exercise."""
     assert step.exercise is not None
     begin = (
@@ -183,15 +168,17 @@ def status(report: Report | None, standing: Standing, step: Step, by_hand: bool)
         if passed:
             return row((" Passed before.", "good"), f" {begin}.")
         return row((f" {begin}.", ""), (f" Best so far: {best:.0%} of the points." if best else "", "dim"))
-    if report.verdict == "broken":
+    if report.is_broken:
         return row((" No verdict: the check itself failed. r tries again.", "warn"))
-    points = f"{report.points:g} of {report.max_points:g} points, checked in {report.seconds:.1f} s."
-    if report.passed:
+    points = f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s."
+    if report.is_passed:
         return row((" Passed: ", "good"), points, " n goes on; s shows one way to do it.")
     if not report.criteria:
         return row((" Not checked.", "bad"))
     return row(
-        (" Not yet: ", "bad"), points, " h gives a hint." if any(each.hints for each in report.lost) else ""
+        (" Not yet: ", "bad"),
+        points,
+        " h gives a hint." if any(each.hints for each in report.lost_criteria) else "",
     )
 
 

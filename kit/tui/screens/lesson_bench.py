@@ -91,8 +91,8 @@ class BenchKeys(Screen[None]):
         return {
             "check": True,
             "drive": bench.by_hand,
-            "hint": report is not None and any(each.hints for each in report.lost),
-            "worst": report is not None and (report.replay is not None or bool(_pictures(bench))),
+            "hint": report is not None and any(each.hints for each in report.lost_criteria),
+            "worst": report is not None and (report.recording is not None or bool(_pictures(bench))),
             "printed": bool(_logs(bench)),
             "solution": self.visit.may_see_solution(bench.exercise),
             "begin_again": True,
@@ -213,12 +213,12 @@ class BenchKeys(Screen[None]):
         if bench is None or bench.report is None:
             return
         pictures = [row(line) for line in _pictures(bench)]
-        if bench.report.replay is None:
+        if bench.report.recording is None:
             if pictures:
                 self.app.push_screen(ScrollPage("What went wrong", pictures))
             return
         try:
-            recording, place = await to_thread(_load, bench.report.replay)
+            recording, place = await to_thread(_load, bench.report.recording)
         except Exception as error:  # noqa: BLE001 - a recording, a world or a disk that is not as it should be
             if pictures:
                 self.app.push_screen(ScrollPage("What went wrong", pictures))
@@ -264,8 +264,8 @@ def _logs(bench: Workbench) -> list[str]:
 
 
 def _pictures(bench: Workbench) -> list[str]:
-    lost = bench.report.lost if bench.report is not None else ()
-    picture = next((each.picture for each in lost if each.picture), "")
+    lost = bench.report.lost_criteria if bench.report is not None else ()
+    picture = next((each.replay for each in lost if each.replay), "")
     return picture.splitlines()
 
 
@@ -274,4 +274,4 @@ def _no_hint(bench: Workbench, opened: bool) -> str:
         return " These are all the hints for it."
     if bench.report is None:
         return " First a check (r): a hint is for what was lost."
-    return " Nothing was lost." if bench.report.passed else " There is no hint for this."
+    return " Nothing was lost." if bench.report.is_passed else " There is no hint for this."

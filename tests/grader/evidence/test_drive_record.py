@@ -15,12 +15,12 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.result import Result, Status, Verdict
 from grader.session import Terms, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import Input, Recording, load, save
 from kit.run.scenario import find_place
+from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
 
 SHEET = """
@@ -50,7 +50,7 @@ def recording() -> Recording:
     return driven(find_place("simple"), [ahead(1.2), STILL])
 
 
-def handed_in(assignment: Assignment, data: bytes) -> Result:
+def handed_in(assignment: Assignment, data: bytes) -> GradingResult:
     return grade(assignment, Submission("ada", "drive.npz", {"drive.npz": data}), DESK)
 
 
@@ -59,9 +59,9 @@ def as_bytes(recording: Recording, folder: Path) -> bytes:
     return (folder / "made.npz").read_bytes()
 
 
-def refused(result: Result) -> str:
+def refused(result: GradingResult) -> str:
     """What is said of a file that cannot be taken."""
-    assert result.tests[0].status is Status.STUDENT_ERROR
+    assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     assert result.points == 0
     said = result.tests[0].rationale
     assert "Traceback" not in said
@@ -73,7 +73,7 @@ def test_a_true_drive_earns_what_it_drove(
     assignment: Assignment, recording: Recording, tmp_path: Path
 ) -> None:
     result = handed_in(assignment, as_bytes(recording, tmp_path))
-    assert result.verdict is Verdict.PASS
+    assert result.verdict is GradingVerdict.PASS
     assert result.points == 3
 
 
@@ -90,7 +90,7 @@ def test_poses_that_were_changed_prove_nothing(
 ) -> None:
     poses = recording.poses + np.linspace(0, 1, recording.ticks)[:, None]
     result = handed_in(assignment, as_bytes(replace(recording, poses=poses), tmp_path))
-    assert result.tests[0].status is Status.FAIL
+    assert result.tests[0].status is CriterionStatus.FAIL
     assert result.points == 0
 
 
@@ -202,9 +202,9 @@ NASTY = {
 @pytest.mark.parametrize("name", NASTY)
 def test_a_file_that_is_no_recording_is_refused_and_harms_nobody(assignment: Assignment, name: str) -> None:
     result = handed_in(assignment, NASTY[name])
-    assert result.verdict is Verdict.FAIL
+    assert result.verdict is GradingVerdict.FAIL
     assert result.points == 0
-    assert all(test.status is not Status.GRADER_ERROR for test in result.tests)
+    assert all(test.status is not CriterionStatus.GRADER_ERROR for test in result.tests)
 
 
 def test_a_sheet_without_a_place_is_told_so(tmp_path: Path) -> None:

@@ -42,8 +42,8 @@ def test_a_student_goes_through(
     with visit.check(exercise) as running:
         blank = running.wait()
     visit.take(exercise, blank)
-    assert not blank.passed
-    assert "not answered yet" in blank.lost[0].said
+    assert not blank.is_passed
+    assert "not answered yet" in blank.lost_criteria[0].rationale
     assert visit.solution(exercise) == {}
     said = [hint.text for _ in range(4) if (hint := visit.next_hint(exercise)) is not None]
     assert said == ["Look up.", "It grows on trees.", "It is green."]
@@ -52,7 +52,7 @@ def test_a_student_goes_through(
         visit.take(exercise, running.wait())
     report = visit.report(exercise)
     assert report is not None
-    assert "means stop" in report.lost[0].said
+    assert "means stop" in report.lost_criteria[0].rationale
     file.write_text("colour: green\n")
     with visit.check(exercise) as running:
         visit.take(exercise, running.wait())
@@ -91,7 +91,7 @@ def test_what_cannot_be_checked_says_why(visit: Visit, lesson: Lesson, tmp_path:
     link.unlink()
     link.write_text("colour: green\n")
     broken = check(exercise, link)
-    assert not broken.passed
+    assert not broken.is_passed
     assert broken.problem
 
 

@@ -8,22 +8,32 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
-from kit.school.lessons.checking import Judged, Report
+from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_progress import Standing, standing
 from kit.school.lessons.lesson_session import Hint
 from kit.school.lessons.reading import find_lesson, lesson_names, read
 from kit.school.lessons.records import Lesson
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows as say
 from kit.tui.screens.lesson_keys import Possible, keys
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
 from kit.tui.widgets.text_rows import Row
 from tests.tui.lesson_folder import write_lessons
 
-PASSED = Judged("runs", "It runs", "pass", 1, 1, "", "", "", (), "", "")
-LOST = Judged(
-    "near", "It comes near " * 12, "fail", 0.5, 3, "It stood. " * 20, "0.2 m", "1.7 m", ("Go.",), "", ""
+PASSED = CriterionResult("runs", "It runs", CriterionStatus.PASS, 1, 1)
+LOST = CriterionResult(
+    "near",
+    "It comes near " * 12,
+    CriterionStatus.FAIL,
+    0.5,
+    3,
+    rationale="It stood. " * 20,
+    expected="0.2 m",
+    actual="1.7 m",
+    hints=("Go.", "Look at the wall. " * 9, "Turn."),
 )
-REPORT = Report("fail", 1.5, 4.0, (PASSED, LOST), "digest", 1.25)
+RESULT = GradingResult("near", "v", "digest", "0.1", "public", 1, "linux", (PASSED, LOST))
+REPORT = CheckReport(GradingVerdict.FAIL, RESULT, 1.25)
 
 
 @pytest.fixture
@@ -47,7 +57,7 @@ def widest(rows: list[Row]) -> int:
 @pytest.mark.parametrize("width", [60, 80, 200])
 def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: Standing, width: int) -> None:
     predict, *_, make = lesson.steps
-    hints = (Hint(LOST, 1, "Look at the wall. " * 9, 2),)
+    hints = (Hint(LOST, 1, LOST.hints[0], 2), Hint(LOST, 2, LOST.hints[1], 1))
     assert widest([say.heading(stand, make, width), say.title(make, "12 of 30 s", width)]) <= width
     assert widest(say.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width
     assert widest(say.question(predict, predict.options[0], True, width)) <= width
@@ -83,17 +93,17 @@ def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(written, say.verdict(REPORT, (Hint(LOST, 1, "Go.", 0),), 80)))
-    assert "[ok] It runs  1 of 1" in told
+    told = "\n".join(map(written, say.verdict(REPORT, (Hint(LOST, 1, "Go.", 2),), 80)))
+    assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
-    assert "wanted: 0.2 m" in told
-    assert "found:  1.7 m" in told
-    assert told.index("found:") < told.index("Hint 1: Go.")
+    assert "expected: 0.2 m" in told
+    assert "actual:   1.7 m" in told
+    assert told.index("actual:") < told.index("Hint 1 of 3: Go.")
 
 
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: Standing) -> None:
-    broken = replace(REPORT, verdict="broken", criteria=(), problem="The check broke: no disk")
+    broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
     assert "The check broke: no disk" in "\n".join(map(written, say.verdict(broken, (), 80)))
     assert "No verdict" in written(say.status(broken, stand, lesson.steps[-1], False))
 

@@ -145,7 +145,7 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
         await pilot.press("r", "x", "h")  # a check has the keys for itself
         await seen(pilot, "[no] The colour")
         assert "That one means stop." in text(pilot)
-        assert "wanted:" in text(pilot)
+        assert "expected:" in text(pilot)
         for number, hint in enumerate(("Look up.", "It grows on trees.", "It is green."), 1):
             await pilot.press("h")
             await seen(pilot, f"Hint {number}")

@@ -1,0 +1,224 @@
+"""The result of grading one submission: one record that the grader writes and the screens, the line mode and all
+reports read.
+
+A run of the grader ends in one of three verdicts: the work passes, the work fails, or the grader is broken. A broken
+grader neither gives nor takes points: the run has no grade.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from enum import StrEnum
+from typing import Any, Final
+
+SCHEMA: Final = 1
+
+MAX_LOG_LENGTH: Final = 4000
+"""Characters of a program's output that are kept with a criterion."""
+
+
+class CriterionStatus(StrEnum):
+    """How the judging of one criterion ended."""
+
+    PASS = "pass"
+    PARTIAL = "partial"
+    FAIL = "fail"
+    STUDENT_ERROR = "student_error"
+    TIMEOUT = "timeout"
+    RESOURCE_LIMIT = "resource_limit"
+    PROTOCOL_ERROR = "protocol_error"
+    SKIPPED = "skipped"
+    """Not judged: a criterion that it depends on did not pass, or something that it needs is missing here."""
+    GRADER_ERROR = "grader_error"
+    """An error of the grader, not of the student."""
+
+
+class GradingVerdict(StrEnum):
+    """The verdict on a whole submission."""
+
+    PASS = "pass"
+    FAIL = "fail"
+    BROKEN = "broken"
+
+
+class Visibility(StrEnum):
+    """When a student may see the result of a criterion."""
+
+    VISIBLE = "visible"
+    AFTER_DUE = "after_due"
+    AFTER_PUBLISHED = "after_published"
+    HIDDEN = "hidden"
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeSummary:
+    """One episode that a criterion was judged by."""
+
+    name: str
+    """Identifies the episode without giving a secret away: ``maze, secret seed 2``."""
+    outcome: str
+    steps: int
+    measure: float | None
+    """The value that the criterion measured; None where there was nothing to measure."""
+
+
+@dataclass(frozen=True, slots=True)
+class CriterionResult:
+    """The result of one criterion. ``points`` are clipped to 0 .. ``max_points``; NaN counts as 0."""
+
+    id: str
+    title: str
+    status: CriterionStatus
+    points: float
+    max_points: float
+    visibility: Visibility = Visibility.VISIBLE
+    rationale: str = ""
+    """What was wrong, in one or two sentences."""
+    hints: tuple[str, ...] = ()
+    """Steps of help, from the vaguest to the most specific."""
+    expected: str = ""
+    actual: str = ""
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    episodes: tuple[EpisodeSummary, ...] = ()
+    log: str = ""
+    """What the student's program printed."""
+    depends_on: str | None = None
+    replay: str = ""
+    """The worst episode as a picture in characters; may be empty."""
+
+    def __post_init__(self) -> None:
+        most = self.max_points if math.isfinite(self.max_points) and self.max_points > 0 else 0.0
+        # Not min(max(...)): that lets NaN through.
+        points = self.points if 0.0 <= self.points <= most else (most if self.points > most else 0.0)
+        if not self.is_judged:
+            points = 0.0
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "max_points", most)
+        object.__setattr__(self, "log", self.log[:MAX_LOG_LENGTH])
+
+    @property
+    def is_judged(self) -> bool:
+        return self.status not in (CriterionStatus.SKIPPED, CriterionStatus.GRADER_ERROR)
+
+    @property
+    def is_passed(self) -> bool:
+        return self.status is CriterionStatus.PASS
+
+    def for_student(self) -> CriterionResult:
+        """A copy that a student may see now: a criterion that is not visible keeps its title, status and points."""
+        if self.visibility is Visibility.VISIBLE:
+            return self
+        return replace(
+            self,
+            rationale="This test's outcome is shown later.",
+            hints=(),
+            expected="",
+            actual="",
+            metrics={},
+            episodes=(),
+            log="",
+            replay="",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class GradingTiming:
+    """Start and duration: the only part of a result that differs from run to run."""
+
+    started: str = ""
+    """UTC, ISO 8601."""
+    wall_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class GradingResult:
+    """The result of grading one submission."""
+
+    assignment: str
+    assignment_version: str
+    """A digest of the assignment's folder."""
+    submission: str
+    """A digest of the submitted files."""
+    grader_version: str
+    seeds: str
+    """Which sets of seeds were used: ``public``, or ``public+secret``."""
+    level: int
+    """Confinement level of the student's program, 0 to 3."""
+    platform: str
+    tests: tuple[CriterionResult, ...]
+    """One per criterion, in the assignment's order."""
+    notices: tuple[str, ...] = ()
+    steps: int = 0
+    """Simulated steps, summed over all episodes."""
+    timing: GradingTiming = GradingTiming()
+    schema: int = SCHEMA
+
+    @property
+    def verdict(self) -> GradingVerdict:
+        if any(test.status is CriterionStatus.GRADER_ERROR for test in self.tests):
+            return GradingVerdict.BROKEN
+        judged = [test for test in self.tests if test.status is not CriterionStatus.SKIPPED]
+        withheld = any(
+            test.status is CriterionStatus.SKIPPED and test.depends_on is not None for test in self.tests
+        )
+        has_passed = bool(judged) and all(test.is_passed for test in judged) and not withheld
+        return GradingVerdict.PASS if has_passed else GradingVerdict.FAIL
+
+    @property
+    def points(self) -> float | None:
+        """The sum of the points; None when the grader is broken, since nothing is known then."""
+        if self.verdict is GradingVerdict.BROKEN:
+            return None
+        return round(math.fsum(test.points for test in self.tests), 6)
+
+    @property
+    def max_points(self) -> float:
+        return round(math.fsum(test.max_points for test in self.tests), 6)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The result as JSON-able data, with the verdict and the sums."""
+        content = asdict(self)
+        for test in content["tests"]:
+            test["status"] = test["status"].value
+            test["visibility"] = test["visibility"].value
+        return content | {
+            "verdict": self.verdict.value,
+            "points": self.points,
+            "max_points": self.max_points,
+        }
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> GradingResult:
+        """The result that ``as_dict`` wrote. Raises KeyError, TypeError or ValueError for other data."""
+        if content["schema"] != SCHEMA:
+            raise ValueError(f"a result of schema {content['schema']}; this version reads schema {SCHEMA}")
+        given = {key: content[key] for key in cls.__slots__ if key not in ("tests", "timing", "notices")}
+        return cls(
+            **given,
+            tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
+            notices=tuple(content["notices"]),
+            timing=GradingTiming(**content["timing"]),
+        )
+
+    def for_student(self) -> GradingResult:
+        """A copy that a student may see now."""
+        return replace(self, tests=tuple(test.for_student() for test in self.tests))
+
+
+def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
+    return CriterionResult(
+        **{
+            **content,
+            "status": CriterionStatus(content["status"]),
+            "visibility": Visibility(content["visibility"]),
+            "hints": tuple(content["hints"]),
+            "episodes": tuple(EpisodeSummary(**each) for each in content["episodes"]),
+        }
+    )
+
+
+def format_points(points: float) -> str:
+    """Points with at most two decimals: ``3``, ``2.5``."""
+    return f"{points:.2f}".rstrip("0").rstrip(".")

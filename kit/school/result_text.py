@@ -1,0 +1,141 @@
+"""Renders a grading result as lines of text, for the screens, the line mode and the grader's terminal output.
+
+A line is a sequence of spans with a role each. What a line says never depends on the roles: a screen may show them
+as colours, ``plain`` leaves them out.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from enum import Enum, auto
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+from kit.school.result import CriterionResult, CriterionStatus, GradingVerdict, format_points
+
+INDENT: Final = " " * 5
+MIN_WIDTH: Final = 20
+MAX_RATIONALE: Final = 600
+MAX_VALUE: Final = 300
+"""Characters of an expected or actual value that are shown."""
+
+
+class Role(Enum):
+    """What a span of a line is, so that a screen can colour it."""
+
+    PASSED = auto()
+    LOST = auto()
+    NOT_JUDGED = auto()
+    PLAIN = auto()
+    HEADING = auto()
+    DETAIL = auto()
+    HINT = auto()
+
+
+class Span(NamedTuple):
+    text: str
+    role: Role
+
+
+Line = tuple[Span, ...]
+
+MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
+    {
+        CriterionStatus.PASS: "[ok]",
+        CriterionStatus.PARTIAL: "[part]",
+        CriterionStatus.FAIL: "[no]",
+        CriterionStatus.STUDENT_ERROR: "[error]",
+        CriterionStatus.TIMEOUT: "[timeout]",
+        CriterionStatus.RESOURCE_LIMIT: "[limit]",
+        CriterionStatus.PROTOCOL_ERROR: "[error]",
+        CriterionStatus.SKIPPED: "[--]",
+        CriterionStatus.GRADER_ERROR: "[grader error]",
+    }
+)
+"""Words, not colours: they survive a pipe and a screen reader."""
+
+VERDICTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
+    {
+        GradingVerdict.PASS: "All tests that ran here passed.",
+        GradingVerdict.FAIL: "Not passed yet.",
+        GradingVerdict.BROKEN: "The grader failed: there is no grade, and no points were lost.",
+    }
+)
+
+
+def plain(line: Line) -> str:
+    """The line without its roles."""
+    return "".join(span.text for span in line)
+
+
+def points_text(points: float, max_points: float) -> str:
+    """``2.5 of 4``"""
+    return f"{format_points(points)} of {format_points(max_points)}"
+
+
+def criterion_lines(
+    criterion: CriterionResult, width: int, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
+) -> Iterator[Line]:
+    """The lines of one criterion, at most ``width`` characters each: mark, title and points; of one that is not
+    passed also the rationale, the expected and the actual value, and the next steps.
+
+    ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
+    ``log_lines``: how many of the last lines that a crashed program printed to show.
+    """
+    yield from _heading(criterion, width)
+    if criterion.is_passed:
+        return
+    yield from _paragraph(_shortened(criterion.rationale, MAX_RATIONALE), Role.PLAIN, width)
+    if criterion.actual:
+        if criterion.expected:
+            yield from _paragraph(f"expected: {_shortened(criterion.expected)}", Role.DETAIL, width)
+        yield from _paragraph(f"actual:   {_shortened(criterion.actual)}", Role.DETAIL, width)
+    for number, hint in enumerate(criterion.hints[:hints], 1):
+        yield from _paragraph(f"Hint {number} of {len(criterion.hints)}: {hint}", Role.HINT, width)
+    if more_hints and len(criterion.hints) > hints:
+        yield from _paragraph(more_hints, Role.DETAIL, width)
+    if log_lines and criterion.log:
+        yield (Span(f"{INDENT}what the program printed:", Role.DETAIL),)
+        # A character before each: no line of a report begins with what a student's program printed.
+        for line in criterion.log.splitlines()[-log_lines:]:
+            yield (Span(f"{INDENT}| {line}", Role.DETAIL),)
+
+
+def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
+    """The picture of the first criterion that was lost and has one; empty where none has."""
+    picture = next((each.replay for each in criteria if not each.is_passed and each.replay), "")
+    return picture.rstrip().splitlines()
+
+
+def _heading(criterion: CriterionResult, width: int) -> Iterator[Line]:
+    mark = MARKS[criterion.status]
+    role = Role.PASSED if criterion.is_passed else Role.LOST if criterion.is_judged else Role.NOT_JUDGED
+    title_role = Role.PLAIN if criterion.is_passed else Role.HEADING
+    points = f": {points_text(criterion.points, criterion.max_points)}"
+    title = " ".join(criterion.title.split())
+    # The points stay with the title's last word: they are wrapped as one word, and taken off again.
+    wrapped = textwrap.wrap(
+        title + "\0" * len(points),
+        max(MIN_WIDTH, width),
+        initial_indent=" " * (len(mark) + 1),
+        subsequent_indent=INDENT,
+    )
+    for number, line in enumerate(wrapped):
+        text = line.rstrip("\0")
+        head: Line = (Span(mark, role), Span(" ", Role.PLAIN)) if number == 0 else ()
+        body = Span(text[len(mark) + 1 :] if number == 0 else text, title_role)
+        tail: Line = (Span(points, Role.DETAIL),) if number == len(wrapped) - 1 else ()
+        yield (*head, body, *tail)
+
+
+def _paragraph(text: str, role: Role, width: int) -> Iterator[Line]:
+    for part in text.splitlines():
+        for line in textwrap.wrap(
+            part, max(MIN_WIDTH, width), initial_indent=INDENT, subsequent_indent=INDENT
+        ):
+            yield (Span(line, role),)
+
+
+def _shortened(text: str, limit: int = MAX_VALUE) -> str:
+    return text if len(text) <= limit else f"{text[:limit]} ... (shortened)"
