@@ -245,7 +245,7 @@ def test_check_in_every_way(tmp_path: Path) -> None:
         "check", str(file), "--assignment", str(folder), "--hints", "2", "--replay", str(replay)
     )
     assert code == 1
-    assert "3 of 6 points. Not yet." in text
+    assert "3 of 6 points. Not passed yet." in text
     assert "hint 2 of 3: two" in text
     assert "--hints 3" in text
     assert "kit replay" in text
