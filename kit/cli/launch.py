@@ -146,7 +146,7 @@ def _run_plainly(
     speed: float | None,
 ) -> None:
     from kit.host.failure import GuestError
-    from kit.inspection.server import open_door
+    from kit.inspection.server import open_inspection_server
     from kit.inspection.world_sockets import sockets_folder
     from kit.launch.advice import explained
     from kit.launch.errors import CannotStart
@@ -173,7 +173,7 @@ def _run_plainly(
             seed=seed,
             limit=Limit(steps, until),
             factor=speed,
-            company=lambda graph: open_door(graph, sockets_folder(desk.folder), name),
+            company=lambda graph: open_inspection_server(graph, sockets_folder(desk.folder), name),
             log=lambda record: click.echo(str(record), err=True),
         )
     except GuestError as error:

@@ -13,7 +13,7 @@ import click
 
 from kit.cli.waiting import Intake, Lines
 from kit.controllers import ControllerFile, find, in_folder, shipped
-from kit.inspection.server import Door, open_door
+from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.render.world_text import plain_rows, report
 from kit.ros.log import LogRecord
@@ -55,19 +55,19 @@ class Plain:
         seed: int,
         folder: Path,
         root: Path | None = None,
-        doors: Path | None = None,
+        socket_dir: Path | None = None,
         record: Path | None = None,
         intake: Intake | None = None,
         says_where: bool = True,
     ) -> None:
-        """``root``: the folder that the world files named later may read; by default each its own. ``doors``: where
+        """``root``: the folder that the world files named later may read; by default each its own. ``socket_dir``: where
         other terminals find the world. ``record``: where the drive is kept at the end. ``intake``: of who read lines
         before, and reads on afterwards. ``says_where``: whether to say where the drive is kept."""
         self._seed = seed
         self._folder = folder
         self._root = root
-        self._doors = doors
-        self._door: Door | None = None
+        self._socket_dir = socket_dir
+        self._inspection_server: InspectionServer | None = None
         self._record = record
         self._says_where = says_where
         self._controller = controller
@@ -157,10 +157,12 @@ class Plain:
 
     def _open(self, place: Place) -> Session:
         session = Session(place, seed=self._seed, watched=True, on_message=_say)
-        if self._doors is not None:
-            self._door = open_door(session.graph, self._doors, place.name, self.lines.wake)
-            if self._door is not None:
-                session.runner.participants.append(self._door)
+        if self._socket_dir is not None:
+            self._inspection_server = open_inspection_server(
+                session.graph, self._socket_dir, place.name, self.lines.wake
+            )
+            if self._inspection_server is not None:
+                session.runner.participants.append(self._inspection_server)
         self._recorder: Recorder | None = None
         if self._record is not None:
             case = place.case.name if place.case else None
@@ -170,9 +172,9 @@ class Plain:
         return session
 
     def _leave(self) -> None:
-        if self._door is not None:
-            self._door.close()
-            self._door = None
+        if self._inspection_server is not None:
+            self._inspection_server.close()
+            self._inspection_server = None
         self._session.close()
 
     def _seat(self, session: Session) -> None:

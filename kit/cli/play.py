@@ -65,7 +65,7 @@ def command(
         except OSError as error:
             options.fail(options.reason(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-    doors = sockets_folder(desk.folder)
+    socket_dir = sockets_folder(desk.folder)
     if terminal.plain.value:
         from kit.cli.plain import Plain, play_plainly
         from kit.run.scenario import find_place
@@ -77,7 +77,7 @@ def command(
         except (LookupError, WorldError) as error:
             options.fail(str(error))
         line_by_line = Plain(
-            where, driver, seed=seed, folder=desk.controllers, root=root, doors=doors, record=record
+            where, driver, seed=seed, folder=desk.controllers, root=root, socket_dir=socket_dir, record=record
         )
         try:
             play_plainly(line_by_line)
@@ -98,7 +98,7 @@ def command(
         folder=desk.controllers,
         runs=desk.runs,
         seed=seed,
-        doors=doors,
+        socket_dir=socket_dir,
         records=record is not None,
     )
     app.begin(screen)

@@ -91,10 +91,10 @@ def command(
         options.fail(str(error))
     company: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
-        from kit.inspection.server import Door
+        from kit.inspection.server import InspectionServer
         from kit.inspection.world_sockets import sockets_folder
 
-        company.append(lambda graph: Door(graph, sockets_folder(desk.folder), Path(place).stem))
+        company.append(lambda graph: InspectionServer(graph, sockets_folder(desk.folder), Path(place).stem))
     if bag is not None:
         from kit.ros.bags import BagRecorder
 

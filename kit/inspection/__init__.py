@@ -1,6 +1,6 @@
-"""Floor 4: looking into a running world from another terminal of the same user.
+"""Floor 4: connecting to a running world from another terminal of the same user.
 
-A *door* belongs to the world: a socket in the workspace, and one *visitor* for each terminal that has come in. A
-*visit* is the other end: a graph of its own with the world's nodes mirrored in it, so that whatever is written for
-a graph (listing, listening, asking, publishing, whole programs) works from the second terminal too.
+The world has an ``InspectionServer``: a socket in the workspace, and a ``ClientConnection`` for each terminal that is
+connected. The other end is an ``InspectionClient``: a graph of its own that mirrors the world's nodes, so that whatever
+works on a graph (lists, subscriptions, service calls, publishers, whole programs) works from the second terminal too.
 """

@@ -1,4 +1,4 @@
-"""One connection between a running world and another terminal: frames to and fro, one at a time."""
+"""Sends and receives length-prefixed JSON frames over a Unix socket."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from kit.host.sandbox.limits import MIB
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
 LARGEST_FRAME: Final = 64 * MIB
-"""Bytes. A terminal that has fallen behind gets many messages at once."""
+"""Bytes; large because a terminal that has fallen behind gets many messages at once."""
 
 _CREDENTIALS: Final = struct.Struct("3i")
 
 
-class Line:
+class FramedSocket:
     """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame."""
 
     def __init__(self, connection: socket.socket) -> None:
@@ -25,7 +25,7 @@ class Line:
 
     @property
     def peer_user(self) -> int | None:
-        """The user at the other end, where the system tells (Linux)."""
+        """The user id of the other process; None where the system does not tell (only Linux does)."""
         if sys.platform != "linux":
             return None
         credentials = self._connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
@@ -38,18 +38,18 @@ class Line:
             raise EOFError from problem
 
     def receive(self) -> Json:
-        (length,) = HEADER.unpack(self._exactly(HEADER.size))
+        (length,) = HEADER.unpack(self._receive_exactly(HEADER.size))
         if length > LARGEST_FRAME:
             raise ProtocolError(f"a frame of {length} bytes; {LARGEST_FRAME} are allowed")
-        return decode(self._exactly(length))
+        return decode(self._receive_exactly(length))
 
     def close(self) -> None:
-        """Hangs up; whoever waits at either end gets EOFError."""
+        """Closes the connection; a waiting ``receive`` at either end raises EOFError."""
         with suppress(OSError):  # the other end may have been quicker
             self._connection.shutdown(socket.SHUT_RDWR)
         self._connection.close()
 
-    def _exactly(self, count: int) -> bytes:
+    def _receive_exactly(self, count: int) -> bytes:
         data = bytearray()
         while len(data) < count:
             try:

@@ -1,4 +1,4 @@
-"""The world's door: a socket in the workspace through which other terminals come in."""
+"""The inspection server: a socket in the workspace to which other terminals of the user connect."""
 
 from __future__ import annotations
 
@@ -12,31 +12,34 @@ from types import TracebackType
 from typing import Final, Self
 
 from kit.host.wire import ProtocolError
-from kit.inspection.client_connection import Visitor
-from kit.inspection.framed_socket import Line
+from kit.inspection.client_connection import ClientConnection
+from kit.inspection.framed_socket import FramedSocket
 from kit.inspection.world_sockets import connect, listen
 from kit.ros.graph.graph import Graph
 
-MOST_VISITORS: Final = 32
-NAME: Final = "door"
+MAX_CLIENTS: Final = 32
+LOGGER_NAME: Final = "inspection"
 
 
-def open_door(
+def open_inspection_server(
     graph: Graph, folder: Path, world: str, wake: Callable[[], object] = lambda: None
-) -> Door | None:
-    """A door, or a line in the graph's log that says why there can be none: a world runs without one too."""
+) -> InspectionServer | None:
+    """Opens a server; if that fails, logs why and returns None: the world runs without one too."""
     try:
-        return Door(graph, folder, world, wake=wake)
+        return InspectionServer(graph, folder, world, wake=wake)
     except OSError as problem:
-        graph.log.warning(NAME, f"other terminals cannot look in: {folder}: {problem.strerror or problem}")
+        graph.log.warning(
+            LOGGER_NAME,
+            f"other terminals cannot connect to this world: {folder}: {problem.strerror or problem}",
+        )
         return None
 
 
-class Door:
-    """Lets visitors into a graph. A guest of whoever ticks: its ``exchange`` is called in each tick.
+class InspectionServer:
+    """Accepts clients of a graph. A participant of the lock-step: ``exchange`` is called in each tick.
 
-    ``wake`` is called, in other threads, when a visitor has said something: for a world that stands still. Opening
-    raises OSError when the folder cannot hold a socket. Close it, or use it as a context manager.
+    ``wake`` is called, in other threads, when a client has sent something: a paused world needs it. Opening raises
+    OSError if the folder cannot hold a socket. Close it, or use it as a context manager.
     """
 
     def __init__(
@@ -45,11 +48,11 @@ class Door:
         self._graph = graph
         self._wake = wake
         self._world = world
-        self._coming: SimpleQueue[Line] = SimpleQueue()
-        self._visitors: list[Visitor] = []
+        self._accepted: SimpleQueue[FramedSocket] = SimpleQueue()
+        self._clients: list[ClientConnection] = []
         self._is_closed = False
         self._listener, self.path = listen(folder, world)
-        threading.Thread(target=self._receive, name="door", daemon=True).start()
+        threading.Thread(target=self._receive, name="inspection-server", daemon=True).start()
 
     def __enter__(self) -> Self:
         return self
@@ -60,67 +63,70 @@ class Door:
         self.close()
 
     @property
-    def visitors(self) -> int:
-        """How many are in."""
-        return len(self._visitors)
+    def client_count(self) -> int:
+        """The number of connected clients."""
+        return len(self._clients)
 
     def exchange(self) -> bool:
-        """Lets in who has come, and talks with everybody without waiting; whether anything was said."""
-        if not self._visitors and self._coming.empty():
+        """Adds new clients and exchanges messages with all of them, without waiting. True if any client sent
+        something."""
+        if not self._clients and self._accepted.empty():
             return False
-        while not self._coming.empty():
-            self._let_in(self._coming.get())
-        said = False
-        for visitor in self._visitors:
+        while not self._accepted.empty():
+            self._add_client(self._accepted.get())
+        has_sent = False
+        for client in self._clients:
             try:
-                said |= visitor.exchange()
+                has_sent |= client.exchange()
             except ProtocolError as problem:
-                self._graph.log.warning(NAME, f"a visitor was shown out, who said {problem}")
-                visitor.close()
-        self._visitors = [visitor for visitor in self._visitors if not visitor.is_gone]
-        return said
+                self._graph.log.warning(LOGGER_NAME, f"a terminal was disconnected because it sent {problem}")
+                client.close()
+        self._clients = [client for client in self._clients if not client.is_closed]
+        return has_sent
 
     def close(self) -> None:
-        """Shows everybody out; the socket is gone. May be called twice."""
+        """Disconnects all clients and removes the socket. May be called twice."""
         if self._is_closed:
             return
         self._is_closed = True
         with suppress(OSError):
-            connect(self.path).close()  # wakes the thread that waits for visitors
+            connect(self.path).close()  # wakes the thread that accepts connections
         with suppress(FileNotFoundError):
             self.path.unlink()
-        for visitor in self._visitors:
-            visitor.close()
-        self._visitors = []
-        self._turn_away()
+        for client in self._clients:
+            client.close()
+        self._clients = []
+        self._close_accepted()
 
-    def _turn_away(self) -> None:
-        """Who has knocked and was not let in."""
-        while not self._coming.empty():
-            self._coming.get().close()
+    def _close_accepted(self) -> None:
+        """Closes the connections that were accepted and not yet added."""
+        while not self._accepted.empty():
+            self._accepted.get().close()
 
-    def _let_in(self, line: Line) -> None:
-        if len(self._visitors) >= MOST_VISITORS:
-            self._graph.log.warning(NAME, f"{MOST_VISITORS} visitors are in; one more has to wait outside")
-            line.close()
+    def _add_client(self, connection: FramedSocket) -> None:
+        if len(self._clients) >= MAX_CLIENTS:
+            self._graph.log.warning(
+                LOGGER_NAME, f"{MAX_CLIENTS} terminals are connected already; one more was refused"
+            )
+            connection.close()
             return
-        self._visitors.append(Visitor(line, self._graph, self._world, self._wake))
+        self._clients.append(ClientConnection(connection, self._graph, self._world, self._wake))
 
     def _receive(self) -> None:
-        """In the door's own thread: waits for visitors."""
+        """Accepts connections, in the server's own thread."""
         while True:
             try:
-                connection, _ = self._listener.accept()
+                accepted, _ = self._listener.accept()
             except OSError:
                 break
-            line = Line(connection)
+            connection = FramedSocket(accepted)
             if self._is_closed:
-                line.close()
+                connection.close()
                 break
-            if line.peer_user not in (None, 0, os.getuid()):  # the folder's mode forbids it already
-                line.close()
+            if connection.peer_user not in (None, 0, os.getuid()):  # the folder's mode forbids it already
+                connection.close()
                 continue
-            self._coming.put(line)
+            self._accepted.put(connection)
             self._wake()
         self._listener.close()
-        self._turn_away()
+        self._close_accepted()

@@ -1,7 +1,7 @@
-"""Where the running worlds of a user are found: one socket each, in a folder of the workspace.
+"""Finds the running worlds of a user: one socket each, in a folder of the workspace.
 
-The folder is the owner's alone, and so is each socket. A workspace may lie on a disk that several machines share,
-so each machine has a folder of its own. What a killed world left behind is cleared away by whoever finds it.
+Only the owner can open the folder and the sockets. A workspace may lie on a disk that several machines share, so
+each machine has a folder of its own. The socket of a killed world is deleted by the next search.
 """
 
 from __future__ import annotations
@@ -15,25 +15,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-LONGEST_PATH: Final = 100
-"""Bytes of a socket's path that every system takes."""
+MAX_SOCKET_PATH: Final = 100
+"""Bytes of a socket's path that every system accepts."""
 
 SUFFIX: Final = ".sock"
 
 WORLD_VARIABLE: Final = "KIT_WORLD"
-"""Environment variable with the name of the world that is meant if none is named."""
+"""Environment variable with the name of the world to connect to if the command names none."""
 
 
-class NoWorld(LookupError):
-    """No world is running that could be meant; the message says what there is, or how to start one."""
+class WorldNotFound(LookupError):
+    """No running world matches; the message lists those there are, or says how to start one."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunningWorld:
-    """A world that another terminal can look into."""
+    """A world that other terminals can connect to."""
 
     path: Path
-    since: float
+    started_s: float
     """When it was started [seconds since the epoch]."""
 
     @property
@@ -49,7 +49,7 @@ def sockets_folder(workspace: Path) -> Path:
 
 
 def listen(folder: Path, name: str) -> tuple[socket.socket, Path]:
-    """A new socket for a world called ``name``, and where it lies. Raises OSError."""
+    """Opens a listening socket for a world called ``name``; returns it and its path. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     folder.chmod(0o700)
     stem = f"{re.sub(r'[^A-Za-z0-9_.]', '_', name)[:24] or 'world'}-{os.getpid()}"
@@ -68,7 +68,7 @@ def _bind(listener: socket.socket, folder: Path, stem: str) -> Path:
     for number in range(1, 1000):
         path = folder / f"{stem}{'' if number == 1 else f'.{number}'}{SUFFIX}"
         try:
-            with _short(path) as name:
+            with _short_name(path) as name:
                 listener.bind(name)
         except OSError:
             if not path.exists():
@@ -79,10 +79,10 @@ def _bind(listener: socket.socket, folder: Path, stem: str) -> Path:
 
 
 def connect(path: Path) -> socket.socket:
-    """A connection to the world behind a socket. Raises OSError when nobody is there."""
+    """Connects to the world that listens at ``path``. Raises OSError if none does."""
     connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
-        with _short(path) as name:
+        with _short_name(path) as name:
             connection.connect(name)
     except BaseException:
         connection.close()
@@ -91,7 +91,7 @@ def connect(path: Path) -> socket.socket:
 
 
 def running_worlds(folder: Path) -> list[RunningWorld]:
-    """The worlds that run now, the newest first. Clears away sockets behind which nobody is."""
+    """The running worlds, the newest first. Deletes sockets that no process listens at."""
     worlds = []
     for path in folder.glob(f"*{SUFFIX}"):
         try:
@@ -104,29 +104,29 @@ def running_worlds(folder: Path) -> list[RunningWorld]:
         else:
             with suppress(FileNotFoundError):
                 worlds.append(RunningWorld(path, path.stat().st_mtime))
-    return sorted(worlds, key=lambda world: (-world.since, world.name))
+    return sorted(worlds, key=lambda world: (-world.started_s, world.name))
 
 
 def find_world(folder: Path, name: str | None = None) -> RunningWorld:
-    """The newest world, or the newest one whose name is or begins with ``name``. Raises NoWorld."""
+    """The newest world, or the newest one whose name is or begins with ``name``. Raises WorldNotFound."""
     worlds = running_worlds(folder)
     if not worlds:
-        raise NoWorld(
+        raise WorldNotFound(
             "No world is running in this workspace. Start one in another terminal: kit play maze, "
             "kit launch FOLDER, or kit run maze --serve."
         )
     for world in worlds:
         if name is None or world.name == name or world.name.rpartition("-")[0] == name:
             return world
-    raise NoWorld(
+    raise WorldNotFound(
         f"No running world is called {name}; there are: {', '.join(world.name for world in worlds)}."
     )
 
 
 @contextmanager
-def _short(path: Path) -> Iterator[str]:
-    """A name for the path that the system takes, however deep the folder lies (Linux)."""
-    if len(os.fsencode(path)) <= LONGEST_PATH:
+def _short_name(path: Path) -> Iterator[str]:
+    """A name for the path that is short enough for the system, however deep the folder lies (Linux)."""
+    if len(os.fsencode(path)) <= MAX_SOCKET_PATH:
         yield str(path)
         return
     folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
-from kit.inspection.client import Visit
-from kit.inspection.server import Door
+from kit.inspection.client import InspectionClient
+from kit.inspection.server import InspectionServer
 from kit.launch.errors import CannotStart
 from kit.launch.graph_only import Worldless
 from kit.launch.processes import Ended, Printed, Process
@@ -25,9 +25,9 @@ class Single:
     def __init__(self, request: Start, search: tuple[Path, ...], *, seed: int, workspace: Path) -> None:
         self._request, self._search, self._seed, self._workspace = request, search, seed, workspace
 
-    def run_beside(self, visit: Visit, say: Say) -> Ended:
-        """Until it ends, in the time of the world visited. Raises CannotStart, WorldGone."""
-        process, graph = self._started(visit.graph), visit.graph
+    def run_beside(self, client: InspectionClient, say: Say) -> Ended:
+        """Until it ends, in the time of the world visited. Raises CannotStart, WorldDisconnected."""
+        process, graph = self._started(client.graph), client.graph
         try:
             while (ended := self._look(process, say)) is None:
                 seen = graph.change_count
@@ -41,11 +41,11 @@ class Single:
             process.close()
 
     def run_alone(self, sockets: Path, say: Say) -> Ended:
-        """Until it ends, in real time, with a door for other terminals. Raises CannotStart, OSError."""
+        """Until it ends, in real time, with a socket for other terminals. Raises CannotStart, OSError."""
         worldless = Worldless(Graph())
-        with Door(worldless.graph, sockets, self._request.title) as door:
+        with InspectionServer(worldless.graph, sockets, self._request.title) as server:
             process = self._started(worldless.graph)
-            worldless.participants += [process, door]
+            worldless.participants += [process, server]
             pace = Pace(worldless.step_size)
             try:
                 while (ended := self._look(process, say)) is None:

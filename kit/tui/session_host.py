@@ -18,7 +18,7 @@ from kit.run.view import Showing, View
 if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
     from pathlib import Path
 
-    from kit.inspection.server import Door
+    from kit.inspection.server import InspectionServer
     from kit.run.recording import Recorder, Recording
     from kit.run.runner import Runner
     from kit.run.scenario import Place
@@ -40,18 +40,18 @@ class Running:
         on_view: Callable[[View], None],
         on_trouble: Callable[[str], None],
         seed: int = 0,
-        doors: Path | None = None,
+        socket_dir: Path | None = None,
         records: bool = False,
     ) -> None:
-        """``doors``: the folder of sockets through which other terminals look in; None: none does. ``records``:
+        """``socket_dir``: the folder of sockets through which other terminals look in; None: none does. ``records``:
         whether the drive is recorded."""
         self._on_view = on_view
         self._on_trouble = on_trouble
         self._seed = seed
-        self._doors = doors
+        self._socket_dir = socket_dir
         self._records = records
         self._recorder: Recorder | None = None
-        self._door: Door | None = None
+        self._inspection_server: InspectionServer | None = None
         self._session: Session | None = None
         self._live: LiveRun | None = None
         self._showing: Showing | None = None
@@ -175,8 +175,8 @@ class Running:
         self._session, self._showing = session, Showing(session)
         self._live = live = LiveRun(runner, factor=factor, on_change=self._changed)
         runner.on_rate = lambda rate: self.set_factor(rate * runner.simulation.step_size)
-        if self._doors is not None:
-            from kit.inspection.server import open_door
+        if self._socket_dir is not None:
+            from kit.inspection.server import open_inspection_server
 
             name = (
                 session.place.title if session.place.name.endswith((".yaml", ".yml")) else session.place.name
@@ -186,22 +186,22 @@ class Running:
                 if runner.paused:  # nobody ticks: a visitor's words have to be looked at
                     live.post(_nothing)
 
-            self._door = open_door(session.graph, self._doors, name, wake)
-            if self._door is not None:
-                runner.participants.append(self._door)
+            self._inspection_server = open_inspection_server(session.graph, self._socket_dir, name, wake)
+            if self._inspection_server is not None:
+                runner.participants.append(self._inspection_server)
         live.__enter__()
         if runner.paused:  # nobody ticks, and yet it is to be seen
             live.post(_nothing)
 
     def _drop(self) -> None:
-        live, session, door = self._live, self._session, self._door
-        self._live = self._session = self._showing = self._door = None
+        live, session, server = self._live, self._session, self._inspection_server
+        self._live = self._session = self._showing = self._inspection_server = None
         if session is not None:
             session.hang_up()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()
-        if door is not None:
-            door.close()
+        if server is not None:
+            server.close()
         if session is not None:
             session.close()
 

@@ -1,4 +1,4 @@
-"""A world that runs in a thread, with a door, and the kit's command line to look into it."""
+"""A world that runs in a thread, with a server, and the kit's command line to look into it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.inspection.server import Door
+from kit.inspection.server import InspectionServer
 from kit.inspection.world_sockets import sockets_folder
 from kit.msg.geometry_msgs import PointStamped
 from kit.msg.rcl_interfaces import IntegerRange, ParameterDescriptor
@@ -65,8 +65,8 @@ class Stage:
         self.graph = self.session.graph
         self.talker = Talker(self.graph)
         self.live = LiveRun(self.session.runner, factor=SPEED, on_change=lambda runner: None)
-        self.door = Door(self.graph, sockets_folder(workspace), "simple", wake=self._wake)
-        self.session.runner.participants.append(self.door)
+        self.server = InspectionServer(self.graph, sockets_folder(workspace), "simple", wake=self._wake)
+        self.session.runner.participants.append(self.server)
 
     def _wake(self) -> None:
         if self.session.runner.paused:
@@ -78,7 +78,7 @@ class Stage:
 
     def __exit__(self, *_: object) -> None:
         self.live.stop()
-        self.door.close()
+        self.server.close()
         self.session.close()
 
 

@@ -1,4 +1,4 @@
-"""The door of a running world: who may come in, what they see, and that they cannot harm it."""
+"""The server of a running world: who may come in, what they see, and that they cannot harm it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 
 from kit.host.wire import encode
-from kit.inspection import client_connection as visitor_module
-from kit.inspection.client import NoAnswer, Visit, WorldGone
-from kit.inspection.framed_socket import Line
-from kit.inspection.server import Door, open_door
-from kit.inspection.world_sockets import NoWorld, connect, find_world, running_worlds, sockets_folder
+from kit.inspection import client_connection as client_connection_module
+from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
+from kit.inspection.framed_socket import FramedSocket
+from kit.inspection.server import InspectionServer, open_inspection_server
+from kit.inspection.world_sockets import WorldNotFound, connect, find_world, running_worlds, sockets_folder
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
@@ -29,13 +29,13 @@ TICK_NS = 10_000_000
 
 
 class Ticking:
-    """A graph with a door, ticked in a thread."""
+    """A graph with a server, ticked in a thread."""
 
     def __init__(self, folder: Path, name: str = "world") -> None:
         self.log: list[LogRecord] = []
         self.graph = Graph(log_sink=self.log.append)
         self.node = self.graph.create_node("inside")
-        self.door = Door(self.graph, sockets_folder(folder), name)
+        self.server = InspectionServer(self.graph, sockets_folder(folder), name)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -44,14 +44,14 @@ class Ticking:
         while not self._stop.wait(0.0005):
             for _ in range(100):
                 self.graph.run_due()
-                if not self.door.exchange():
+                if not self.server.exchange():
                     break
             self.graph.advance(self.graph.now_ns + TICK_NS)
 
     def close(self) -> None:
         self._stop.set()
         self._thread.join()
-        self.door.close()
+        self.server.close()
 
 
 @pytest.fixture
@@ -69,31 +69,31 @@ def begin(tmp_path: Path) -> Iterator[Callable[..., Ticking]]:
 
 def test_only_the_owner_can_see_and_use_the_socket(begin: Callable[..., Ticking]) -> None:
     world = begin()
-    assert stat.S_IMODE(world.door.path.stat().st_mode) == 0o600
-    assert stat.S_IMODE(world.door.path.parent.stat().st_mode) == 0o700
-    line = Line(connect(world.door.path))
+    assert stat.S_IMODE(world.server.path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(world.server.path.parent.stat().st_mode) == 0o700
+    line = FramedSocket(connect(world.server.path))
     assert line.peer_user in (None, os.getuid())
     line.close()
 
 
 def test_the_newest_world_is_meant_unless_one_is_named(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     folder = sockets_folder(tmp_path)
-    with pytest.raises(NoWorld, match="kit play"):
+    with pytest.raises(WorldNotFound, match="kit play"):
         find_world(folder)
     old = begin("maze")
-    os.utime(old.door.path, (1, 1))
+    os.utime(old.server.path, (1, 1))
     new = begin("house")
-    assert find_world(folder).path == new.door.path
-    assert find_world(folder, "maze").path == old.door.path
-    assert find_world(folder, find_world(folder, "maze").name).path == old.door.path
-    with pytest.raises(NoWorld, match=r"house-\d+, maze-\d+"):
+    assert find_world(folder).path == new.server.path
+    assert find_world(folder, "maze").path == old.server.path
+    assert find_world(folder, find_world(folder, "maze").name).path == old.server.path
+    with pytest.raises(WorldNotFound, match=r"house-\d+, maze-\d+"):
         find_world(folder, "office")
     new.close()
-    assert find_world(folder).path == old.door.path
+    assert find_world(folder).path == old.server.path
 
 
-def test_two_worlds_of_one_name_both_have_a_door(begin: Callable[..., Ticking], tmp_path: Path) -> None:
-    assert begin().door.path != begin().door.path
+def test_two_worlds_of_one_name_both_have_a_server(begin: Callable[..., Ticking], tmp_path: Path) -> None:
+    assert begin().server.path != begin().server.path
     assert len(running_worlds(sockets_folder(tmp_path))) == 2
 
 
@@ -105,38 +105,41 @@ def test_what_a_killed_world_left_behind_is_cleared_away(
     dead = socket.socket(socket.AF_UNIX)
     dead.bind(str(left))
     dead.close()
-    assert [each.path for each in running_worlds(sockets_folder(tmp_path))] == [world.door.path]
+    assert [each.path for each in running_worlds(sockets_folder(tmp_path))] == [world.server.path]
     assert not left.exists()
 
 
-def test_a_deep_workspace_has_a_door_too(begin: Callable[..., Ticking], tmp_path: Path) -> None:
+def test_a_deep_workspace_has_a_server_too(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     deep = tmp_path / ("deep" * 20) / ("deeper" * 10)
     world = begin(folder=deep)
-    assert len(os.fsencode(world.door.path)) > 108
-    with Visit(find_world(sockets_folder(deep))) as visit:
-        assert [handle.full_name for handle in visit.graph.directory.nodes] == ["/inside"]
+    assert len(os.fsencode(world.server.path)) > 108
+    with InspectionClient(find_world(sockets_folder(deep))) as client:
+        assert [handle.full_name for handle in client.graph.directory.nodes] == ["/inside"]
 
 
-def test_a_world_without_a_place_for_a_door_runs_without(tmp_path: Path) -> None:
+def test_a_world_without_a_place_for_a_server_runs_without(tmp_path: Path) -> None:
     (tmp_path / ".running").write_text("no folder")
     log: list[LogRecord] = []
-    assert open_door(Graph(log_sink=log.append), sockets_folder(tmp_path), "maze", lambda: None) is None
-    assert "cannot look in" in log[0].text
+    assert (
+        open_inspection_server(Graph(log_sink=log.append), sockets_folder(tmp_path), "maze", lambda: None)
+        is None
+    )
+    assert "cannot connect" in log[0].text
 
 
-def test_a_visitor_is_a_node_like_any_other(begin: Callable[..., Ticking], tmp_path: Path) -> None:
+def test_a_client_is_a_node_like_any_other(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     world = begin()
     heard: list[str] = []
     world.node.create_subscription(String, "/to_inside", lambda message: heard.append(message.data), 10)
-    with Visit(find_world(sockets_folder(tmp_path))) as visit:
-        node = visit.make_node("outside")
+    with InspectionClient(find_world(sockets_folder(tmp_path))) as client:
+        node = client.create_node("outside")
         said: list[str] = []
         node.create_subscription(String, "/to_outside", lambda message: said.append(message.data), 10)
         node.create_service(Trigger, "/ask_outside", lambda request, response: _answered(response))
         publisher = node.create_publisher(String, "/to_inside", 10)
         publisher.publish(String(data="in"))
-        threading.Thread(target=_converse, args=(world, visit), daemon=True).start()
-        visit.spin(node, lambda: said)
+        threading.Thread(target=_converse, args=(world, client), daemon=True).start()
+        client.spin(node, lambda: said)
         assert said == ["answer from outside"]
         assert "/outside" in [handle.full_name for handle in world.graph.directory.nodes]
     until(lambda: "/outside" not in [handle.full_name for handle in world.graph.directory.nodes])
@@ -148,8 +151,8 @@ def _answered(response: Trigger.Response) -> Trigger.Response:
     return response
 
 
-def _converse(world: Ticking, visit: Visit) -> None:
-    """Asks the visitor as soon as it serves, and says aloud what it answered."""
+def _converse(world: Ticking, client: InspectionClient) -> None:
+    """Asks the client as soon as it serves, and says aloud what it answered."""
     client = world.node.create_client(Trigger, "/ask_outside")
     publisher = world.node.create_publisher(String, "/to_outside", 10)
     until(client.service_is_ready)
@@ -166,13 +169,13 @@ def test_messages_come_with_the_time_at_which_they_were_said(
     world = begin()
     publisher = world.node.create_publisher(String, "/time", 10)
     world.node.create_timer(0.1, lambda: publisher.publish(String(data=str(world.graph.now_ns))))
-    with Visit(find_world(sockets_folder(tmp_path))) as visit:
+    with InspectionClient(find_world(sockets_folder(tmp_path))) as client:
         heard: list[tuple[int, int]] = []
-        visit.node.create_subscription(
-            String, "/time", lambda message: heard.append((int(message.data), visit.graph.now_ns)), 100
+        client.node.create_subscription(
+            String, "/time", lambda message: heard.append((int(message.data), client.graph.now_ns)), 100
         )
         time.sleep(0.05)  # it falls behind
-        visit.spin(visit.node, lambda: len(heard) >= 20)
+        client.spin(client.node, lambda: len(heard) >= 20)
     assert all(said == seen for said, seen in heard)
     assert [heard[i + 1][0] - heard[i][0] for i in range(19)] == [100_000_000] * 19
 
@@ -189,57 +192,59 @@ def test_messages_come_with_the_time_at_which_they_were_said(
     ],
     ids=["too much", "no JSON", "bad name", "no question", "no publisher", "another frame"],
 )
-def test_a_visitor_that_talks_nonsense_is_shown_out(nonsense: bytes, begin: Callable[..., Ticking]) -> None:
+def test_a_client_that_sends_nonsense_is_disconnected(nonsense: bytes, begin: Callable[..., Ticking]) -> None:
     world = begin()
-    connection = connect(world.door.path)
+    connection = connect(world.server.path)
     connection.sendall(nonsense)
     connection.settimeout(30)
     with suppress(ConnectionResetError):  # it need not have read all we said
         while connection.recv(1 << 16):
             pass
     connection.close()
-    until(lambda: world.log)  # the line may be closed before the world knows of the visitor
-    assert "shown out" in world.log[-1].text
-    until(lambda: world.door.visitors == 0)
+    until(lambda: world.log)  # the line may be closed before the world knows of the client
+    assert "was disconnected" in world.log[-1].text
+    until(lambda: world.server.client_count == 0)
     assert [handle.full_name for handle in world.graph.directory.nodes] == ["/inside"]
 
 
-def test_a_visitor_that_vanishes_takes_its_nodes_along(begin: Callable[..., Ticking], tmp_path: Path) -> None:
+def test_the_nodes_of_a_client_that_vanishes_are_removed(
+    begin: Callable[..., Ticking], tmp_path: Path
+) -> None:
     world = begin()
-    visit = Visit(find_world(sockets_folder(tmp_path)))
-    visit.make_node("ghost").create_service(Trigger, "/haunt", lambda request, response: response)
-    visit.catch_up()
+    client = InspectionClient(find_world(sockets_folder(tmp_path)))
+    client.create_node("ghost").create_service(Trigger, "/haunt", lambda request, response: response)
+    client.wait_for_tick()
     until(lambda: "/haunt" in world.graph.directory.services)
-    visit._talk.hang_up()
+    client._connection.close()
     until(lambda: "/haunt" not in world.graph.directory.services)
-    assert world.door.visitors == 0
+    assert world.server.client_count == 0
 
 
-def test_a_visitor_that_stops_listening_is_let_go(
+def test_a_client_that_stops_reading_is_disconnected(
     begin: Callable[..., Ticking], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(visitor_module, "FARTHEST_BEHIND", 50)
+    monkeypatch.setattr(client_connection_module, "MAX_BACKLOG", 50)
     world = begin()
     publisher = world.node.create_publisher(String, "/much", 10)
-    visit = Visit(find_world(sockets_folder(tmp_path)))
-    visit.node.create_subscription(String, "/much", lambda message: None, 10)
-    visit.catch_up()
+    client = InspectionClient(find_world(sockets_folder(tmp_path)))
+    client.node.create_subscription(String, "/much", lambda message: None, 10)
+    client.wait_for_tick()
     for i in range(60):
         publisher.publish(String(data=str(i)))
-    until(lambda: world.door.visitors == 0)
+    until(lambda: world.server.client_count == 0)
     assert "50 messages behind" in world.log[-1].text
-    visit.close()
+    client.close()
 
 
 def test_the_end_of_the_world_is_told(begin: Callable[..., Ticking], tmp_path: Path) -> None:
     world = begin()
-    visit = Visit(find_world(sockets_folder(tmp_path)))
+    client = InspectionClient(find_world(sockets_folder(tmp_path)))
     threading.Timer(0.1, world.close).start()
-    with pytest.raises(WorldGone):
-        visit.spin(visit.node)
-    visit.close()
-    assert not world.door.path.exists()
-    with pytest.raises(NoWorld):
+    with pytest.raises(WorldDisconnected):
+        client.spin(client.node)
+    client.close()
+    assert not world.server.path.exists()
+    with pytest.raises(WorldNotFound):
         find_world(sockets_folder(tmp_path))
 
 
@@ -247,5 +252,8 @@ def test_a_service_that_never_answers_is_not_waited_for_for_ever(
     begin: Callable[..., Ticking], tmp_path: Path
 ) -> None:
     begin()
-    with Visit(find_world(sockets_folder(tmp_path))) as visit, pytest.raises(NoAnswer, match="/silent"):
-        visit.call(Trigger, "/silent", Trigger.Request(), patience_s=0.1)
+    with (
+        InspectionClient(find_world(sockets_folder(tmp_path))) as client,
+        pytest.raises(ServiceTimeout, match="/silent"),
+    ):
+        client.call(Trigger, "/silent", Trigger.Request(), patience_s=0.1)

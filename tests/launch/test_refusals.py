@@ -239,5 +239,5 @@ def test_a_workspace_without_a_place_for_a_socket_is_no_hindrance(
     (tmp_path / "workspace" / ".running").write_text("no folder")
     out, err, code = launch(workshop.package("small", "LogInfo(msg='goes on'),"), "--plain")
     assert "goes on" in out
-    assert "other terminals cannot look in" in err
+    assert "other terminals cannot connect" in err
     assert code == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from pathlib import Path
 
-from kit.inspection.client import Visit
+from kit.inspection.client import InspectionClient
 from kit.inspection.world_sockets import running_worlds, sockets_folder
 from tests.inspection.conftest import until
 from tests.launch.conftest import Workshop, kit
@@ -51,7 +51,7 @@ def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
         with kit(workspace, "ros", "run", tmp_path / "hear.py") as second:
             assert second.stdout is not None
             assert [second.stdout.readline() for _ in range(3)] == ["heard bonjour True\n"] * 3
-            with Visit(running_worlds(sockets_folder(workspace))[0]) as visit:
+            with InspectionClient(running_worlds(sockets_folder(workspace))[0]) as visit:
                 names = {handle.full_name for handle in visit.graph.directory.nodes}
             assert {"/hello", "/hear"} <= names
             second.send_signal(signal.SIGINT)

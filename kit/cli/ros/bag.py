@@ -11,8 +11,8 @@ import click
 
 from kit.cli import options
 from kit.cli.options import Storage
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 
 if TYPE_CHECKING:
     from kit.ros.bags import Bag
@@ -35,8 +35,10 @@ def command() -> None:
     help="The new folder; by default rosbag2_ and the date and time.",
 )
 @options.storage
-@visiting
-def record(visit: Visit, topics: Sequence[str], every: bool, output: Path | None, storage: Storage) -> None:
+@with_world_client
+def record(
+    client: InspectionClient, topics: Sequence[str], every: bool, output: Path | None, storage: Storage
+) -> None:
     """Record topics of the running world, until Ctrl-C.
 
     \b
@@ -46,16 +48,16 @@ def record(visit: Visit, topics: Sequence[str], every: bool, output: Path | None
     from kit.ros.bags import RECORDER, BagError, BagRecorder
 
     if every == bool(topics):
-        refuse("Name the topics to record, or all of them with -a.")
+        exit_with_error("Name the topics to record, or all of them with -a.")
     options.explain_storage(storage)
     folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
     chosen = None if every else [name if name.startswith("/") else f"/{name}" for name in topics]
-    node = visit.make_node(RECORDER)
+    node = client.create_node(RECORDER)
     say = node.get_logger().info
     known: set[str] = set()
 
     try:
-        recorder = BagRecorder(visit.graph, folder, topics=chosen, storage=storage, node=node)
+        recorder = BagRecorder(client.graph, folder, topics=chosen, storage=storage, node=node)
 
         def has_stopped() -> bool:
             recorder.exchange()
@@ -70,11 +72,11 @@ def record(visit: Visit, topics: Sequence[str], every: bool, output: Path | None
                 say(f"Nobody publishes '{name}' yet; waiting for it")
             say("Recording... Ctrl-C ends it")
             try:
-                visit.graph.wait(has_stopped)
+                client.graph.wait(has_stopped)
             finally:
                 say(f"{recorder.count} messages in {folder}")
     except BagError as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))
 
 
 @command.command()
@@ -97,9 +99,9 @@ def info(folder: Path, verbose: bool) -> None:
 @click.option("--topics", multiple=True, help="Only this topic; may be given several times.")
 @click.option("-m", "--remap", multiple=True, metavar="FROM:=TO", help="Another name for a topic.")
 @click.option("--clock", type=float, is_flag=False, flag_value=40.0, hidden=True)
-@visiting
+@with_world_client
 def play(
-    visit: Visit,
+    client: InspectionClient,
     folder: Path,
     rate: float,
     loop: bool,
@@ -118,14 +120,14 @@ def play(
     bag = _read(folder)
     names = dict(entry.split(":=", 1) for entry in remap if ":=" in entry)
     if len(names) != len(remap):
-        refuse("--remap needs FROM:=TO, such as --remap /cmd_vel:=/left/cmd_vel")
+        exit_with_error("--remap needs FROM:=TO, such as --remap /cmd_vel:=/left/cmd_vel")
     if clock is not None:
         click.echo(
             "--clock is not heeded: the world has its own clock, and everybody in it goes by that.", err=True
         )
     if loop and bag.duration_ns == 0:
-        refuse(f"{folder}: nothing to repeat: all its messages are of one instant")
-    node, graph = visit.make_node("rosbag2_player"), visit.graph
+        exit_with_error(f"{folder}: nothing to repeat: all its messages are of one instant")
+    node, graph = client.create_node("rosbag2_player"), client.graph
     say = node.get_logger().info
     publishers = _publishers(node, bag, topics, names)
     if start_paused:
@@ -137,7 +139,7 @@ def play(
 
     try:
         while True:
-            visit.catch_up()
+            client.wait_for_tick()
             began_ns = graph.now_ns
             for time_ns, topic, message in read_messages(folder, topics or None, skipped=skipped):
                 graph.wait(lambda: False, began_ns + int((time_ns - bag.start_ns) / rate))
@@ -146,7 +148,7 @@ def play(
                 return
             graph.wait(lambda: False, began_ns + int(bag.duration_ns / rate))
     except BagError as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))
 
 
 def _read(folder: Path) -> Bag:
@@ -155,7 +157,7 @@ def _read(folder: Path) -> Bag:
     try:
         return read_bag(folder)
     except BagError as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))
 
 
 def _publishers(
@@ -165,7 +167,7 @@ def _publishers(
 
     strange = sorted(set(topics) - {topic.name for topic in bag.topics})
     if strange:
-        refuse(
+        exit_with_error(
             f"{bag.folder}: there is no {', '.join(strange)} in it; there are: {', '.join(t.name for t in bag.topics)}"
         )
     made = {}

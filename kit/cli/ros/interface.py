@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros.values import interface_named
-from kit.cli.ros.visiting import refuse
+from kit.cli.ros.world_client import exit_with_error
 from kit.inspection.graph_text import definition_text
 from kit.inspection.message_text import Style, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, interfaces
@@ -65,7 +65,7 @@ def proto(name: str, no_quotes: bool) -> None:
 def package(name: str) -> None:
     """The types of one package."""
     if name not in PACKAGES:
-        refuse(f"Unknown package '{name}'; there are: {', '.join(PACKAGES)}")
+        exit_with_error(f"Unknown package '{name}'; there are: {', '.join(PACKAGES)}")
     for cls in interfaces(name):
         click.echo(cls.__ros_type__)
 

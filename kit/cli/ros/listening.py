@@ -10,8 +10,8 @@ import click
 
 from kit.cli.ros.quality import Wishes, quality_options
 from kit.cli.ros.values import interface_named
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute
 from kit.inspection.message_text import LONGEST, NoSuchField, Style, pick, to_csv, to_yaml
 from kit.inspection.meters import NARROW_WINDOW, WIDE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
@@ -55,9 +55,9 @@ def window(usual: int) -> Callable[..., Any]:
     help="Of arrays and texts.",
 )
 @quality_options
-@visiting
+@with_world_client
 def echo(
-    visit: Visit,
+    client: InspectionClient,
     topic: str,
     type_name: str | None,
     once: bool,
@@ -77,7 +77,7 @@ def echo(
     kit ros topic echo /odom --field pose.pose.position
     """
     style = Style(None if full_length else truncate_length, not no_arr, not no_str, flow_style)
-    cls = _message_class(visit, topic, type_name)
+    cls = _message_class(client, topic, type_name)
     count = 0
 
     def show(message: Message) -> None:
@@ -91,11 +91,11 @@ def echo(
         else:
             click.echo(f"{found}\n---")
 
-    _listen(visit, cls, topic, show, wishes)
+    _listen(client, cls, topic, show, wishes)
     try:
-        visit.spin(visit.node, lambda: once and count)
+        client.spin(client.node, lambda: once and count)
     except NoSuchField as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))
 
 
 @click.command()
@@ -103,8 +103,8 @@ def echo(
 @window(WIDE_WINDOW)
 @click.option("--wall-time", is_flag=True, help="By this machine's clock instead of the world's.")
 @quality_options
-@visiting
-def hz(visit: Visit, topic: str, window: int, wall_time: bool, wishes: Wishes) -> None:
+@with_world_client
+def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, wishes: Wishes) -> None:
     """How often something is said on a topic, once a second, until Ctrl-C.
 
     In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
@@ -115,7 +115,7 @@ def hz(visit: Visit, topic: str, window: int, wall_time: bool, wishes: Wishes) -
     def note(_: Message) -> None:
         nonlocal heard
         heard += 1
-        meter.heard(time.monotonic_ns() if wall_time else visit.graph.now_ns)
+        meter.heard(time.monotonic_ns() if wall_time else client.graph.now_ns)
 
     def report() -> None:
         nonlocal heard
@@ -124,82 +124,84 @@ def hz(visit: Visit, topic: str, window: int, wall_time: bool, wishes: Wishes) -
             click.echo(text)
         heard = 0
 
-    _listen(visit, _message_class(visit, topic, wait=True), topic, note, wishes)
-    visit.node.create_timer(REPORT_S, report)
-    visit.spin(visit.node)
+    _listen(client, _message_class(client, topic, wait=True), topic, note, wishes)
+    client.node.create_timer(REPORT_S, report)
+    client.spin(client.node)
 
 
 @click.command()
 @click.argument("topic")
 @window(NARROW_WINDOW)
 @quality_options
-@visiting
-def bw(visit: Visit, topic: str, window: int, wishes: Wishes) -> None:
+@with_world_client
+def bw(client: InspectionClient, topic: str, window: int, wishes: Wishes) -> None:
     """How many bytes a second a topic carries, once a second, until Ctrl-C."""
     from kit.ros.serialization import Serializer  # only now: it takes rosbags
 
     meter, serializer = BandwidthMeter(window), Serializer()
 
     def note(message: Message) -> None:
-        meter.heard(visit.graph.now_ns, len(serializer.serialize(message)))
+        meter.heard(client.graph.now_ns, len(serializer.serialize(message)))
 
     def report() -> None:
-        text = meter.text(visit.graph.now_ns)
+        text = meter.text(client.graph.now_ns)
         if text is not None:
             click.echo(text)
 
-    _listen(visit, _message_class(visit, topic, wait=True), topic, note, wishes)
+    _listen(client, _message_class(client, topic, wait=True), topic, note, wishes)
     click.echo(f"Subscribed to [{topic}]")
-    visit.node.create_timer(REPORT_S, report)
-    visit.spin(visit.node)
+    client.node.create_timer(REPORT_S, report)
+    client.spin(client.node)
 
 
 @click.command()
 @click.argument("topic")
 @window(WIDE_WINDOW)
 @quality_options
-@visiting
-def delay(visit: Visit, topic: str, window: int, wishes: Wishes) -> None:
+@with_world_client
+def delay(client: InspectionClient, topic: str, window: int, wishes: Wishes) -> None:
     """How old a topic's messages are by the time in their header, once a second, until Ctrl-C."""
-    cls = _message_class(visit, topic, wait=True)
+    cls = _message_class(client, topic, wait=True)
     if "header" not in cls.get_fields_and_field_types():
-        refuse("msg does not have header")
+        exit_with_error("msg does not have header")
     meter = DelayMeter(window)
 
     def note(message: Any) -> None:
-        meter.heard(visit.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
+        meter.heard(client.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
 
     def report() -> None:
         text = meter.text()
         if text is not None:
             click.echo(text)
 
-    _listen(visit, cls, topic, note, wishes)
-    visit.node.create_timer(REPORT_S, report)
-    visit.spin(visit.node)
+    _listen(client, cls, topic, note, wishes)
+    client.node.create_timer(REPORT_S, report)
+    client.spin(client.node)
 
 
 def _message_class(
-    visit: Visit, topic: str, type_name: str | None = None, *, wait: bool = False
+    client: InspectionClient, topic: str, type_name: str | None = None, *, wait: bool = False
 ) -> type[Message]:
     """The class of a topic's messages, or the end of the verb; ``wait``: as soon as anybody uses the topic."""
     if type_name is not None:
         return interface_named(find_message, type_name)
-    known = visit.graph.directory.topics
+    known = client.graph.directory.topics
     name = absolute(topic)
     if name not in known:
         click.echo(f"WARNING: topic [{topic}] does not appear to be published yet", err=True)
         if not wait:
-            refuse("Could not determine the type for the passed topic")
-        visit.graph.wait(lambda: name in known)
+            exit_with_error("Could not determine the type for the passed topic")
+        client.graph.wait(lambda: name in known)
     types = known[name].type_names
     if len(types) > 1:
-        refuse(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]")
+        exit_with_error(
+            f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]"
+        )
     return find_message(types[0])
 
 
 def _listen(
-    visit: Visit, cls: type[Message], topic: str, callback: Callable[[Any], None], wishes: Wishes
+    client: InspectionClient, cls: type[Message], topic: str, callback: Callable[[Any], None], wishes: Wishes
 ) -> None:
     name = absolute(topic)
-    visit.node.create_subscription(cls, name, callback, wishes.on(fitting_qos(visit.graph, name)))
+    client.node.create_subscription(cls, name, callback, wishes.on(fitting_qos(client.graph, name)))

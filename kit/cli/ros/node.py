@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute, node_info, node_names
 
 
@@ -17,10 +17,10 @@ def command() -> None:
 @command.command("list")
 @click.option("-a", "--all", "hidden", is_flag=True, help="Hidden ones too, such as this command's own.")
 @click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many.")
-@visiting
-def list_nodes(visit: Visit, hidden: bool, count: bool) -> None:
+@with_world_client
+def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
     """The full names of all nodes."""
-    names = node_names(visit.graph, hidden=hidden)
+    names = node_names(client.graph, hidden=hidden)
     if len(set(names)) < len(names):
         click.echo(
             "WARNING: Be aware that there are nodes in the graph that share an exact name, "
@@ -37,16 +37,16 @@ def list_nodes(visit: Visit, hidden: bool, count: bool) -> None:
 @command.command()
 @click.argument("name", metavar="NODE")
 @click.option("--include-hidden", "hidden", is_flag=True, help="Hidden topics and services too.")
-@visiting
-def info(visit: Visit, name: str, hidden: bool) -> None:
+@with_world_client
+def info(client: InspectionClient, name: str, hidden: bool) -> None:
     """What a node subscribes to, publishes, serves and asks.
 
     \b
     kit ros node info /flatland_server
     """
-    handles = [handle for handle in visit.graph.directory.nodes if handle.full_name == absolute(name)]
+    handles = [handle for handle in client.graph.directory.nodes if handle.full_name == absolute(name)]
     if not handles:
-        refuse(f"Unable to find node '{name}'")
+        exit_with_error(f"Unable to find node '{name}'")
     if len(handles) > 1:
         click.echo(
             f'There are {len(handles)} nodes in the graph with the exact name "{name}". '

@@ -10,8 +10,8 @@ from typing import Any, Final
 import click
 import yaml
 
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute, node_names
 from kit.inspection.parameter_text import description, nested, type_text, value_text
 from kit.msg.message import Message, Service
@@ -47,9 +47,9 @@ def command() -> None:
 @click.option("--param-type", is_flag=True, help="With their types.")
 @click.option("--param-prefixes", multiple=True, help="Only those below this name.")
 @click.option("--filter", "pattern", help="Only those that this regular expression finds.")
-@visiting
+@with_world_client
 def list_parameters(
-    visit: Visit,
+    client: InspectionClient,
     name: str | None,
     hidden: bool,
     param_type: bool,
@@ -57,18 +57,18 @@ def list_parameters(
     pattern: str | None,
 ) -> None:
     """The names of all parameters, or of one node's."""
-    nodes = [_existing(visit, name, hidden=hidden)] if name else node_names(visit.graph, hidden=hidden)
+    nodes = [_existing(client, name, hidden=hidden)] if name else node_names(client.graph, hidden=hidden)
     for node in dict.fromkeys(nodes):
-        if f"{node}/list_parameters" not in visit.graph.directory.services:
+        if f"{node}/list_parameters" not in client.graph.directory.services:
             continue
         if not name:
             click.echo(f"{node}:")
         names = [
-            each for each in _names(visit, node, param_prefixes) if not pattern or re.search(pattern, each)
+            each for each in _names(client, node, param_prefixes) if not pattern or re.search(pattern, each)
         ]
         types = {}
         if param_type:
-            types = {each.name: type_text(each.type) for each in _describe(visit, node, names)}
+            types = {each.name: type_text(each.type) for each in _describe(client, node, names)}
         for each in names:
             click.echo(f"  {each} (type: {types[each]})" if param_type else f"  {each}")
 
@@ -78,18 +78,18 @@ def list_parameters(
 @click.argument("parameter")
 @click.option("--hide-type", is_flag=True, help="Only the value.")
 @hidden_nodes
-@visiting
-def get(visit: Visit, name: str, parameter: str, hide_type: bool, hidden: bool) -> None:
+@with_world_client
+def get(client: InspectionClient, name: str, parameter: str, hide_type: bool, hidden: bool) -> None:
     """A parameter's value.
 
     \b
     kit ros param get /random_walk speed
     """
-    node = _existing(visit, name, hidden=hidden)
+    node = _existing(client, name, hidden=hidden)
     request = GetParameters.Request(names=[parameter])
-    values = _ask(visit, GetParameters, node, "get_parameters", request).values
+    values = _ask(client, GetParameters, node, "get_parameters", request).values
     if not values:
-        refuse("Parameter not set")
+        exit_with_error("Parameter not set")
     click.echo(value_text(values[0], hide_type=hide_type))
 
 
@@ -97,24 +97,24 @@ def get(visit: Visit, name: str, parameter: str, hide_type: bool, hidden: bool) 
 @click.argument("name", metavar="NODE")
 @click.argument("pairs", nargs=-1, required=True, metavar="PARAMETER VALUE [PARAMETER VALUE ...]")
 @hidden_nodes
-@visiting
-def set_parameters(visit: Visit, name: str, pairs: Sequence[str], hidden: bool) -> None:
+@with_world_client
+def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hidden: bool) -> None:
     """Change a parameter, or several.
 
     \b
     kit ros param set /random_walk speed 0.3
     """
     if len(pairs) % 2:
-        refuse(
+        exit_with_error(
             "Parameters must be provided as name/value pairs: name value [name value ...]. "
             f"Got {len(pairs)} argument(s)."
         )
-    node = _existing(visit, name, hidden=hidden)
+    node = _existing(client, name, hidden=hidden)
     wanted = [
         Parameter(name=each, value=get_parameter_value(value))
         for each, value in zip(pairs[::2], pairs[1::2], strict=True)
     ]
-    results = _set(visit, node, wanted)
+    results = _set(client, node, wanted)
     for parameter, result in zip(wanted, results, strict=True):
         prefix = f"{parameter.name}: " if len(wanted) > 1 else ""
         _say(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
@@ -125,10 +125,10 @@ def set_parameters(visit: Visit, name: str, pairs: Sequence[str], hidden: bool) 
 @click.argument("name", metavar="NODE")
 @click.argument("parameters", nargs=-1, required=True)
 @hidden_nodes
-@visiting
-def describe(visit: Visit, name: str, parameters: Sequence[str], hidden: bool) -> None:
+@with_world_client
+def describe(client: InspectionClient, name: str, parameters: Sequence[str], hidden: bool) -> None:
     """What a parameter is for, and what it may be."""
-    for descriptor in _describe(visit, _existing(visit, name, hidden=hidden), parameters):
+    for descriptor in _describe(client, _existing(client, name, hidden=hidden), parameters):
         for line in description(descriptor):
             click.echo(line)
 
@@ -136,12 +136,12 @@ def describe(visit: Visit, name: str, parameters: Sequence[str], hidden: bool) -
 @command.command()
 @click.argument("name", metavar="NODE")
 @hidden_nodes
-@visiting
-def dump(visit: Visit, name: str, hidden: bool) -> None:
+@with_world_client
+def dump(client: InspectionClient, name: str, hidden: bool) -> None:
     """All parameters of a node, as a file that `load` and `--params-file` take."""
-    node = _existing(visit, name, hidden=hidden)
-    names = _names(visit, node)
-    values = _ask(visit, GetParameters, node, "get_parameters", GetParameters.Request(names=names)).values
+    node = _existing(client, name, hidden=hidden)
+    names = _names(client, node)
+    values = _ask(client, GetParameters, node, "get_parameters", GetParameters.Request(names=names)).values
     tree = nested(zip(names, map(parameter_value_to_python, values), strict=True))
     click.echo(yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False))
 
@@ -150,18 +150,18 @@ def dump(visit: Visit, name: str, hidden: bool) -> None:
 @click.argument("name", metavar="NODE")
 @click.argument("file", type=click.Path(path_type=Path))
 @hidden_nodes
-@visiting
-def load(visit: Visit, name: str, file: Path, hidden: bool) -> None:
+@with_world_client
+def load(client: InspectionClient, name: str, file: Path, hidden: bool) -> None:
     """Set a node's parameters from a file."""
-    node = _existing(visit, name, hidden=hidden)
+    node = _existing(client, name, hidden=hidden)
     try:
         given = [entry for entry in read_parameter_file(str(file)) if entry.node in (node, "/**")]
     except InvalidRosArguments as problem:
-        refuse(str(problem).removeprefix("--params-file "))
+        exit_with_error(str(problem).removeprefix("--params-file "))
     if not given:
-        refuse(f"Param file does not contain parameters for {node}, only for other nodes: {file}")
+        exit_with_error(f"Param file does not contain parameters for {node}, only for other nodes: {file}")
     wanted = [TypedParameter.to_parameter_msg(each) for entry in given for each in entry.parameters]
-    results = _set(visit, node, wanted)
+    results = _set(client, node, wanted)
     for parameter, result in zip(wanted, results, strict=True):
         text = f"Set parameter {parameter.name}"
         _say(result, f"{text} successful", f"{text} failed")
@@ -172,43 +172,43 @@ def load(visit: Visit, name: str, file: Path, hidden: bool) -> None:
 @click.argument("name", metavar="NODE")
 @click.argument("parameter")
 @hidden_nodes
-@visiting
-def delete(visit: Visit, name: str, parameter: str, hidden: bool) -> None:
+@with_world_client
+def delete(client: InspectionClient, name: str, parameter: str, hidden: bool) -> None:
     """Take a parameter away."""
-    node = _existing(visit, name, hidden=hidden)
-    results = _set(visit, node, [Parameter(name=parameter, value=ParameterValue())])
+    node = _existing(client, name, hidden=hidden)
+    results = _set(client, node, [Parameter(name=parameter, value=ParameterValue())])
     _say(results[0], "Deleted parameter successfully", "Deleting parameter failed")
     _end(results)
 
 
-def _existing(visit: Visit, name: str, *, hidden: bool) -> str:
+def _existing(client: InspectionClient, name: str, *, hidden: bool) -> str:
     """The full name of a node that is there, or the end of the verb."""
     node = absolute(name)
-    if node not in node_names(visit.graph, hidden=hidden):
-        refuse("Node not found")
-    if f"{node}/get_parameters" not in visit.graph.directory.services:
-        refuse(f"The node {node} offers no parameters")
+    if node not in node_names(client.graph, hidden=hidden):
+        exit_with_error("Node not found")
+    if f"{node}/get_parameters" not in client.graph.directory.services:
+        exit_with_error(f"The node {node} offers no parameters")
     validate_full_topic_name(node)
     return node
 
 
-def _ask(visit: Visit, cls: type[Service], node: str, service: str, request: Message) -> Any:
-    return visit.call(cls, f"{node}/{service}", request, patience_s=PATIENCE_S)
+def _ask(client: InspectionClient, cls: type[Service], node: str, service: str, request: Message) -> Any:
+    return client.call(cls, f"{node}/{service}", request, patience_s=PATIENCE_S)
 
 
-def _names(visit: Visit, node: str, prefixes: Sequence[str] = ()) -> list[str]:
+def _names(client: InspectionClient, node: str, prefixes: Sequence[str] = ()) -> list[str]:
     request = ListParameters.Request(prefixes=list(prefixes))
-    return sorted(_ask(visit, ListParameters, node, "list_parameters", request).result.names)
+    return sorted(_ask(client, ListParameters, node, "list_parameters", request).result.names)
 
 
-def _describe(visit: Visit, node: str, names: Sequence[str]) -> list[Any]:
+def _describe(client: InspectionClient, node: str, names: Sequence[str]) -> list[Any]:
     request = DescribeParameters.Request(names=list(names))
-    return list(_ask(visit, DescribeParameters, node, "describe_parameters", request).descriptors)
+    return list(_ask(client, DescribeParameters, node, "describe_parameters", request).descriptors)
 
 
-def _set(visit: Visit, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
+def _set(client: InspectionClient, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
     request = SetParameters.Request(parameters=list(wanted))
-    return list(_ask(visit, SetParameters, node, "set_parameters", request).results)
+    return list(_ask(client, SetParameters, node, "set_parameters", request).results)
 
 
 def _say(result: SetParametersResult, done: str, failed: str) -> None:

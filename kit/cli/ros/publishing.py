@@ -6,9 +6,9 @@ import click
 
 from kit.cli.ros.quality import Wishes, quality_options
 from kit.cli.ros.values import filled, interface_named, read_values
-from kit.cli.ros.visiting import refuse, visiting
+from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.host.codec import NotFiniteError
-from kit.inspection.client import Visit
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute
 from kit.msg.interfaces import find_message
 from kit.ros.exceptions import NameValidationException
@@ -41,9 +41,9 @@ from kit.ros.node.qos import QoSProfile
 )
 @click.option("-n", "--node-name", help="What this command's node is called.")
 @quality_options
-@visiting
+@with_world_client
 def pub(
-    visit: Visit,
+    client: InspectionClient,
     topic: str,
     type_name: str,
     values: str,
@@ -62,27 +62,27 @@ def pub(
     kit ros topic pub -r 10 /chatter std_msgs/msg/String "data: hello"
     """
     if once and times:
-        refuse("--once and --times say two different things; give one of them")
+        exit_with_error("--once and --times say two different things; give one of them")
     most = 1 if once else times
     cls = interface_named(find_message, type_name)
     content = read_values(values)
     filled(cls, content, 0)
     try:
-        node = visit.make_node(node_name) if node_name else visit.node
+        node = client.create_node(node_name) if node_name else client.node
         publisher = node.create_publisher(cls, absolute(topic), wishes.on(QoSProfile(depth=10)))
     except NameValidationException as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))
     least = wanted if wanted is not None else bool(most)
     if publisher.get_subscription_count() < least:
         click.echo(f"Waiting for at least {least:d} matching subscription(s)...")
-        visit.graph.wait(lambda: publisher.get_subscription_count() >= least)
+        client.graph.wait(lambda: publisher.get_subscription_count() >= least)
     click.echo("publisher: beginning loop")
     count = 0
 
     def publish() -> None:
         nonlocal count
         count += 1
-        message = filled(cls, content, visit.graph.now_ns)
+        message = filled(cls, content, client.graph.now_ns)
         if every and count % every == 0:
             click.echo(f"publishing #{count}: {message!r}\n")
         publisher.publish(message)
@@ -91,6 +91,6 @@ def pub(
         publish()
         if most != 1:
             node.create_timer(1 / rate, publish)
-            visit.spin(node, lambda: most and count >= most)
+            client.spin(node, lambda: most and count >= most)
     except (NotFiniteError, ValueError) as problem:
-        refuse(str(problem))
+        exit_with_error(str(problem))

@@ -9,9 +9,9 @@ from pathlib import Path
 import click
 
 from kit.cli import options
-from kit.cli.ros.visiting import INTERRUPTED, refuse
-from kit.inspection.client import Visit, WorldGone
-from kit.inspection.world_sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
+from kit.cli.ros.world_client import INTERRUPTED, exit_with_error
+from kit.inspection.client import InspectionClient, WorldDisconnected
+from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -58,19 +58,19 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     try:
         try:
             found = find_world(sockets, world)
-        except NoWorld:
+        except WorldNotFound:
             if world is not None:
                 raise
             ended = single.run_alone(sockets, say)
         else:
-            with Visit(found) as visit:
-                ended = single.run_beside(visit, say)
-    except (CannotStart, NoWorld) as problem:
+            with InspectionClient(found) as client:
+                ended = single.run_beside(client, say)
+    except (CannotStart, WorldNotFound) as problem:
         options.fail(str(problem))
     except OSError as problem:
         options.fail(options.reason(problem))
-    except WorldGone as problem:
-        refuse(str(problem))
+    except WorldDisconnected as problem:
+        exit_with_error(str(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
     if ended.reason:

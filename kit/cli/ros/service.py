@@ -5,8 +5,8 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros.values import filled, interface_named, read_values
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import service_info, services
 from kit.msg.interfaces import find_service
 
@@ -20,10 +20,10 @@ def command() -> None:
 @click.option("-t", "--show-types", is_flag=True, help="With their types.")
 @click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
 @click.option("-a", "--all", "--include-hidden-services", "hidden", is_flag=True, help="Hidden ones too.")
-@visiting
-def list_services(visit: Visit, show_types: bool, count: bool, hidden: bool) -> None:
+@with_world_client
+def list_services(client: InspectionClient, show_types: bool, count: bool, hidden: bool) -> None:
     """The names of all services."""
-    found = services(visit.graph, hidden=hidden)
+    found = services(client.graph, hidden=hidden)
     if count:
         click.echo(len(found))
         return
@@ -33,22 +33,22 @@ def list_services(visit: Visit, show_types: bool, count: bool, hidden: bool) -> 
 
 @command.command()
 @click.argument("name", metavar="SERVICE")
-@visiting
-def info(visit: Visit, name: str) -> None:
+@with_world_client
+def info(client: InspectionClient, name: str) -> None:
     """A service's type, and how many serve and ask it."""
-    types = dict(services(visit.graph, hidden=True)).get(name)
+    types = dict(services(client.graph, hidden=True)).get(name)
     if types is None:
-        refuse(f"Unknown service '{name}'")
-    for line in service_info(visit.graph, name, types):
+        exit_with_error(f"Unknown service '{name}'")
+    for line in service_info(client.graph, name, types):
         click.echo(line)
 
 
 @command.command("type")
 @click.argument("name", metavar="SERVICE")
-@visiting
-def type_of(visit: Visit, name: str) -> None:
+@with_world_client
+def type_of(client: InspectionClient, name: str) -> None:
     """A service's type."""
-    types = dict(services(visit.graph, hidden=True)).get(name)
+    types = dict(services(client.graph, hidden=True)).get(name)
     if types is None:
         raise SystemExit(1)
     for each in types:
@@ -58,10 +58,10 @@ def type_of(visit: Visit, name: str) -> None:
 @command.command()
 @click.argument("type_name", metavar="TYPE")
 @click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
-@visiting
-def find(visit: Visit, type_name: str, count: bool) -> None:
+@with_world_client
+def find(client: InspectionClient, type_name: str, count: bool) -> None:
     """The services of a type."""
-    names = [name for name, types in services(visit.graph, hidden=True) if type_name in types]
+    names = [name for name, types in services(client.graph, hidden=True) if type_name in types]
     if count:
         click.echo(len(names))
         return
@@ -76,8 +76,8 @@ def find(visit: Visit, type_name: str, count: bool) -> None:
 @click.option(
     "-r", "--rate", type=click.FloatRange(0, min_open=True), help="Again and again, so many times a second."
 )
-@visiting
-def call(visit: Visit, name: str, type_name: str, values: str, rate: float | None) -> None:
+@with_world_client
+def call(client: InspectionClient, name: str, type_name: str, values: str, rate: float | None) -> None:
     """Ask a service, and print its response.
 
     \b
@@ -86,16 +86,16 @@ def call(visit: Visit, name: str, type_name: str, values: str, rate: float | Non
     """
     cls = interface_named(find_service, type_name)
     content = read_values(values)
-    graph = visit.graph
-    client = visit.node.create_client(cls, name)
-    if not client.service_is_ready():
+    graph = client.graph
+    service_client = client.node.create_client(cls, name)
+    if not service_client.service_is_ready():
         click.echo("waiting for service to become available...")
-        client.wait_for_service()
+        service_client.wait_for_service()
     while True:
         request = filled(cls.Request, content, graph.now_ns)
         click.echo(f"requester: making request: {request!r}\n")
         asked_ns = graph.now_ns
-        response = visit.call(cls, name, request)
+        response = client.call(cls, name, request)
         click.echo(f"response:\n{response!r}\n")
         if rate is None:
             return

@@ -5,8 +5,8 @@ from __future__ import annotations
 import click
 
 from kit.cli.ros import listening, publishing
-from kit.cli.ros.visiting import refuse, visiting
-from kit.inspection.client import Visit
+from kit.cli.ros.world_client import exit_with_error, with_world_client
+from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import topic_info, topic_summary, topics
 
 
@@ -20,14 +20,14 @@ def command() -> None:
 @click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
 @click.option("-a", "--all", "--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
 @click.option("-v", "--verbose", is_flag=True, help="With how many publish and subscribe.")
-@visiting
-def list_topics(visit: Visit, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
+@with_world_client
+def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
     """The names of all topics."""
-    found = topics(visit.graph, hidden=hidden)
+    found = topics(client.graph, hidden=hidden)
     if count:
         click.echo(len(found))
     elif verbose:
-        for line in topic_summary(visit.graph, found):
+        for line in topic_summary(client.graph, found):
             click.echo(line)
     else:
         for name, types in found:
@@ -37,26 +37,26 @@ def list_topics(visit: Visit, show_types: bool, count: bool, hidden: bool, verbo
 @command.command()
 @click.argument("name", metavar="TOPIC")
 @click.option("-v", "--verbose", is_flag=True, help="With every end: its node, its quality of service.")
-@visiting
-def info(visit: Visit, name: str, verbose: bool) -> None:
+@with_world_client
+def info(client: InspectionClient, name: str, verbose: bool) -> None:
     """A topic's type, and how many publish and subscribe.
 
     \b
     kit ros topic info /static_laser -v
     """
-    types = dict(topics(visit.graph, hidden=True)).get(name)
+    types = dict(topics(client.graph, hidden=True)).get(name)
     if types is None:
-        refuse(f"Unknown topic '{name}'")
-    for line in topic_info(visit.graph, name, types, verbose=verbose):
+        exit_with_error(f"Unknown topic '{name}'")
+    for line in topic_info(client.graph, name, types, verbose=verbose):
         click.echo(line)
 
 
 @command.command("type")
 @click.argument("name", metavar="TOPIC")
-@visiting
-def type_of(visit: Visit, name: str) -> None:
+@with_world_client
+def type_of(client: InspectionClient, name: str) -> None:
     """A topic's type."""
-    types = dict(topics(visit.graph, hidden=True)).get(name)
+    types = dict(topics(client.graph, hidden=True)).get(name)
     if types is None:
         raise SystemExit(1)
     for each in types:
@@ -67,10 +67,10 @@ def type_of(visit: Visit, name: str) -> None:
 @click.argument("type_name", metavar="TYPE")
 @click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
 @click.option("--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
-@visiting
-def find(visit: Visit, type_name: str, count: bool, hidden: bool) -> None:
+@with_world_client
+def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) -> None:
     """The topics of a type."""
-    names = [name for name, types in topics(visit.graph, hidden=hidden) if type_name in types]
+    names = [name for name, types in topics(client.graph, hidden=hidden) if type_name in types]
     if count:
         click.echo(len(names))
         return

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import yaml
 
-from kit.cli.ros.visiting import refuse
+from kit.cli.ros.world_client import exit_with_error
 from kit.msg.builtin_interfaces import Time
 from kit.msg.conversion import ConversionError, from_dict
 from kit.msg.fields import Nested
@@ -33,7 +33,7 @@ def interface_named(find: Callable[[str], T], name: str) -> T:
     try:
         return find(name)
     except UnknownInterface as problem:
-        refuse(f"The passed type is invalid: {problem}")
+        exit_with_error(f"The passed type is invalid: {problem}")
 
 
 def read_values(text: str) -> Mapping[str, Any]:
@@ -41,11 +41,13 @@ def read_values(text: str) -> Mapping[str, Any]:
     try:
         content = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as problem:
-        refuse(f"The passed value is no YAML: {' '.join(str(problem).split())}")
+        exit_with_error(f"The passed value is no YAML: {' '.join(str(problem).split())}")
     if content in (None, ""):
         return {}
     if not isinstance(content, dict):
-        refuse("The passed value needs to be a dictionary in YAML format, such as '{linear: {x: 0.5}}'")
+        exit_with_error(
+            "The passed value needs to be a dictionary in YAML format, such as '{linear: {x: 0.5}}'"
+        )
     return content
 
 
@@ -54,7 +56,7 @@ def filled(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> Any:
     try:
         return from_dict(cls, _dated(cls, content, now_ns))
     except ConversionError as problem:
-        refuse(f"Failed to populate field: {problem}")
+        exit_with_error(f"Failed to populate field: {problem}")
 
 
 def _dated(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> dict[str, Any]:

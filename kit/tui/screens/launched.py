@@ -48,7 +48,7 @@ class LaunchScreen(WatchScreen):
         speed: float | None = None,
     ) -> None:
         self._name = target.name
-        super().__init__(look, self._name, seed=seed, doors=sockets_folder(desk.folder))
+        super().__init__(look, self._name, seed=seed, socket_dir=sockets_folder(desk.folder))
         self._look = look
         self._target, self._arguments, self._desk, self._speed = target, arguments, desk, speed
         self._launch: Launch | None = None

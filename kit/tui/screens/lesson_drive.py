@@ -67,7 +67,7 @@ class HandDrive(WatchScreen):
             look,
             scene.case or scene.place,
             seed=scene.seed,
-            doors=sockets_folder(desk.folder),
+            socket_dir=sockets_folder(desk.folder),
             records=True,
         )
         self._scene = scene

@@ -97,7 +97,7 @@ class LevelDrive(WatchScreen):
     def __init__(
         self, look: Look, level: Level, ghosts: Sequence[Ghost], progress: Progress, desk: Workspace
     ) -> None:
-        super().__init__(look, level.title, seed=SEED, doors=sockets_folder(desk.folder), records=True)
+        super().__init__(look, level.title, seed=SEED, socket_dir=sockets_folder(desk.folder), records=True)
         self._level = level
         self._ghosts = tuple(ghosts)
         self._ways = tuple(way for ghost in self._ghosts for way in _ways(ghost))

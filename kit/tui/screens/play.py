@@ -54,10 +54,10 @@ class PlayScreen(WatchScreen):
         folder: Path,
         runs: Path,
         seed: int = 0,
-        doors: Path | None = None,
+        socket_dir: Path | None = None,
         records: bool = False,
     ) -> None:
-        super().__init__(look, case or place, seed=seed, doors=doors, records=records)
+        super().__init__(look, case or place, seed=seed, socket_dir=socket_dir, records=records)
         self._look = look
         self._runs = runs
         self._folder = folder

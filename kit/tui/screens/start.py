@@ -51,9 +51,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     def __init__(self, look: Look, school: School, *, seed: int = 0) -> None:
         desk = school.desk
-        doors = sockets_folder(desk.folder)
+        socket_dir = sockets_folder(desk.folder)
         super().__init__(
-            look, PLACE, CONTROLLER, folder=desk.controllers, runs=desk.runs, seed=seed, doors=doors
+            look, PLACE, CONTROLLER, folder=desk.controllers, runs=desk.runs, seed=seed, socket_dir=socket_dir
         )
         self._school = school
         self._overview: Overview | None = None
@@ -182,7 +182,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
                 CONTROLLER,
                 folder=desk.controllers,
                 runs=desk.runs,
-                doors=sockets_folder(desk.folder),
+                socket_dir=sockets_folder(desk.folder),
             )
         )
 

@@ -85,9 +85,15 @@ class WatchScreen(StillScreen[None], DriveScreen):
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
     def __init__(
-        self, look: Look, place_name: str, *, seed: int = 0, doors: Path | None = None, records: bool = False
+        self,
+        look: Look,
+        place_name: str,
+        *,
+        seed: int = 0,
+        socket_dir: Path | None = None,
+        records: bool = False,
     ) -> None:
-        """``doors``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
+        """``socket_dir``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
         super().__init__(look.terminal)
         self.place_name = place_name
         self.world = WorldView(look.encoder, look.palette)
@@ -96,7 +102,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
         self._announced = False
         self._beams = False
         self._seed = seed
-        self._doors = doors
+        self._socket_dir = socket_dir
         self._records = records
 
     def compose(self) -> ComposeResult:
@@ -119,7 +125,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
             on_view=self._view_arrived,
             on_trouble=self._trouble_arrived,
             seed=self._seed,
-            doors=self._doors,
+            socket_dir=self._socket_dir,
             records=self._records,
         )
         self.open_world()

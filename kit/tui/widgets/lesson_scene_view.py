@@ -26,7 +26,7 @@ TELEOP: Final = "teleop"
 
 
 class SceneView(WorldView):
-    """Shows one scene at a time. ``folder``: the student's controllers; ``doors``: where other terminals look in."""
+    """Shows one scene at a time. ``folder``: the student's controllers; ``socket_dir``: where other terminals look in."""
 
     class Moved(Message):
         """There is a newer view."""
@@ -40,7 +40,7 @@ class SceneView(WorldView):
 
     DEFAULT_CSS = "SceneView { width: 1fr; height: 1fr; }"
 
-    def __init__(self, look: Look, folder: Path, doors: Path | None = None) -> None:
+    def __init__(self, look: Look, folder: Path, socket_dir: Path | None = None) -> None:
         super().__init__(look.encoder, look.palette, id="scene")
         self.view: View | None = None
         """The newest; None before the first of a scene."""
@@ -48,7 +48,9 @@ class SceneView(WorldView):
         self._folder = folder
         self._picture: Picture | None = None
         self._announced = self._opening = False
-        self._behind = Running(on_view=self._view_arrived, on_trouble=self._trouble_arrived, doors=doors)
+        self._behind = Running(
+            on_view=self._view_arrived, on_trouble=self._trouble_arrived, socket_dir=socket_dir
+        )
 
     @property
     def by_hand(self) -> bool:

@@ -1,4 +1,4 @@
-"""What all verbs share that look into a running world: how it is found, and how a visit ends."""
+"""Connects a verb to the running world, and turns the end of the connection into an exit code."""
 
 from __future__ import annotations
 
@@ -12,35 +12,35 @@ from typing import Any, NoReturn
 import click
 
 from kit.cli import options
-from kit.inspection.client import NoAnswer, Visit, WorldGone
-from kit.inspection.world_sockets import WORLD_VARIABLE, NoWorld, find_world, sockets_folder
+from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
+from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 
 NOT_DONE = 1
 INTERRUPTED = 128 + signal.SIGINT
 
 
-def refuse(message: str) -> NoReturn:
+def exit_with_error(message: str) -> NoReturn:
     """Ends the verb as ROS 2's commands do when what was asked for cannot be done."""
     click.echo(message, err=True)
     raise SystemExit(NOT_DONE)
 
 
 @contextmanager
-def visit_world(world: str | None, workspace: Path | None) -> Iterator[Visit]:
-    """A visit; when the world ends, or Ctrl-C is pressed, one line and the exit code say so."""
+def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[InspectionClient]:
+    """Connects to a world; if it ends or Ctrl-C is pressed, the verb ends with one line and an exit code."""
     try:
-        with Visit(find_world(sockets_folder(options.desk(workspace).folder), world)) as visit:
-            yield visit
-    except NoWorld as problem:
+        with InspectionClient(find_world(sockets_folder(options.desk(workspace).folder), world)) as client:
+            yield client
+    except WorldNotFound as problem:
         options.fail(str(problem))
-    except (WorldGone, NoAnswer) as problem:
-        refuse(str(problem))
+    except (WorldDisconnected, ServiceTimeout) as problem:
+        exit_with_error(str(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
 
 
-def visiting(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Makes a verb of a function whose first argument is a visit."""
+def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: adds the options that choose a world, and passes the connected client as first argument."""
 
     @click.option(
         "--world",
@@ -63,7 +63,7 @@ def visiting(function: Callable[..., Any]) -> Callable[..., Any]:
         **rest: Any,
     ) -> None:
         # The last three are for whoever types them by habit: here they mean what is so anyway.
-        with visit_world(world, workspace) as visit:
-            function(visit, *arguments, **rest)
+        with connect_to_world(world, workspace) as client:
+            function(client, *arguments, **rest)
 
     return verb
