@@ -336,7 +336,7 @@ def test_shapes_go_with_their_bodies() -> None:
 def test_warm_compiles_all_that_a_world_calls() -> None:
     """After it, a run compiles nothing: that would stall the screen for seconds."""
     code = (
-        "from kit import kernels; kernels.warm();"
+        "from kit.kernels import kernels; kernels.warm();"
         "jitted = {n: f for n, f in vars(kernels).items() if hasattr(f, 'signatures')};"
         "before = {n: list(f.signatures) for n, f in jitted.items()};"
         "import sys; from pathlib import Path; from kit.sim.loading import load;"

@@ -347,7 +347,7 @@ def test_without_rights_the_ladder_ends_where_they_are_needed(student: Student) 
     """As nobody: Landlock and seccomp still hold; a user for each run cannot be had, and why."""
     attack = student("def f(path):\n    try: return len(open(path).read())\n    except OSError: return 0")
     script = f"""
-        import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r})
+        import sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r})
         from pathlib import Path
         from kit.host.student_functions import StudentFunctions
         from kit.host.sandbox.confinement import Level
@@ -404,7 +404,7 @@ def test_a_shielded_grader_keeps_its_secrets_even_without_a_cage(student: Studen
     for folder in above(file):
         folder.chmod(0o755)
     python = "/usr/bin/python3"
-    code = SHIELD.format(root=str(Path(__file__).parents[2]), file=str(file))
+    code = SHIELD.format(root=str(Path(__file__).parents[3]), file=str(file))
     for expected, script in (("[0.0]", code), ("[3.0]", code.replace("\nshield_this_process()", ""))):
         run = subprocess.run(
             [python, "-B", "-c", script],
