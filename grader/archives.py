@@ -14,12 +14,12 @@ import zlib
 from collections.abc import Iterator
 from typing import IO, Final
 
-MOST_FILES: Final = 200
-MOST_BYTES: Final = 8 * 1024 * 1024
+MAX_FILES: Final = 200
+MAX_BYTES: Final = 8 * 1024 * 1024
 """Of all files together, unpacked."""
-DEEPEST: Final = 6
+MAX_DEPTH: Final = 6
 """Folders in folders."""
-HIGHEST_RATIO: Final = 200
+MAX_COMPRESSION_RATIO: Final = 200
 """Unpacked to packed bytes: text packs to a tenth, a bomb to a thousandth."""
 
 _PLAIN: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. +\-()]{0,99}")
@@ -27,7 +27,7 @@ _ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
 _IGNORED: Final = ("__MACOSX", "__pycache__", ".DS_Store", ".git")
 
 
-class Refused(Exception):
+class SubmissionRefused(Exception):
     """What was handed in cannot be taken; the message is for the student."""
 
 
@@ -35,7 +35,7 @@ def is_archive(name: str) -> bool:
     return name.lower().endswith(_ENDINGS)
 
 
-def unpacked(content: bytes, name: str) -> dict[str, bytes]:
+def unpack_archive(content: bytes, name: str) -> dict[str, bytes]:
     """The plain files of an archive. Raises Refused."""
     try:
         pairs = _zip(content) if name.lower().endswith(".zip") else _tar(content)
@@ -46,45 +46,47 @@ def unpacked(content: bytes, name: str) -> dict[str, bytes]:
                 continue
             check_name(path)
             if path.lower() in lower:
-                raise Refused(f"The archive holds {path!r} twice.")
+                raise SubmissionRefused(f"The archive holds {path!r} twice.")
             lower.add(path.lower())
             files[path] = data
     except (
         zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError, ValueError, OSError,
         NotImplementedError, RuntimeError,
     ):  # fmt: skip
-        raise Refused("The archive is damaged, locked or of a kind that is not read here.") from None
+        raise SubmissionRefused(
+            "The archive is damaged, locked or of a kind that is not read here."
+        ) from None
     return files
 
 
 def check_name(path: str) -> None:
     """Refuses names that lead elsewhere, or that look like something else than they are."""
     parts = path.split("/")
-    if len(parts) > DEEPEST:
-        raise Refused(f"The folders are more than {DEEPEST} deep.")
+    if len(parts) > MAX_DEPTH:
+        raise SubmissionRefused(f"The folders are more than {MAX_DEPTH} deep.")
     for part in parts:
         if not _PLAIN.fullmatch(part) or part.endswith((".", " ")):
             shown = ascii(path[:80])
-            raise Refused(f"{shown} is no name for a file here: letters, digits, and _ . - + ( ).")
+            raise SubmissionRefused(f"{shown} is no name for a file here: letters, digits, and _ . - + ( ).")
 
 
 class _Budget:
     def __init__(self, packed: int) -> None:
-        self._bytes = min(MOST_BYTES, max(65536, packed * HIGHEST_RATIO))
-        self._files = MOST_FILES
+        self._bytes = min(MAX_BYTES, max(65536, packed * MAX_COMPRESSION_RATIO))
+        self._files = MAX_FILES
 
     def read(self, stream: IO[bytes]) -> bytes:
         """One file; what an archive says of its size is not believed."""
         data = stream.read(self._bytes + 1)
         self._bytes -= len(data)
         if self._bytes < 0:
-            raise Refused(f"The archive unpacks to more than {MOST_BYTES >> 20} MiB, or is a bomb.")
+            raise SubmissionRefused(f"The archive unpacks to more than {MAX_BYTES >> 20} MiB, or is a bomb.")
         return data
 
     def count(self) -> None:
         self._files -= 1
         if self._files < 0:
-            raise Refused(f"The archive holds more than {MOST_FILES} entries.")
+            raise SubmissionRefused(f"The archive holds more than {MAX_FILES} entries.")
 
 
 def _zip(content: bytes) -> Iterator[tuple[str, bytes]]:
@@ -96,7 +98,7 @@ def _zip(content: bytes) -> Iterator[tuple[str, bytes]]:
                 continue
             mode = entry.external_attr >> 16
             if mode & 0o170000 not in (0, 0o100000):
-                raise Refused(f"{entry.filename[:80]!a} is a link or a device; hand in files only.")
+                raise SubmissionRefused(f"{entry.filename[:80]!a} is a link or a device; hand in files only.")
             with archive.open(entry) as stream:
                 yield entry.filename, budget.read(stream)
 
@@ -109,7 +111,7 @@ def _tar(content: bytes) -> Iterator[tuple[str, bytes]]:
             if entry.isdir():
                 continue
             if not entry.isreg():
-                raise Refused(f"{entry.name[:80]!a} is a link or a device; hand in files only.")
+                raise SubmissionRefused(f"{entry.name[:80]!a} is a link or a device; hand in files only.")
             stream = archive.extractfile(entry)
             assert stream is not None  # a regular file
             yield entry.name.removeprefix("./"), budget.read(stream)

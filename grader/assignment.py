@@ -7,9 +7,9 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from grader.evidence.service_calls import Call
+from grader.evidence.service_calls import ServiceCall
 from grader.scoring import Anchors
-from grader.teacher_tests import OwnTest
+from grader.teacher_tests import TeacherTest
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
@@ -17,7 +17,7 @@ from kit.run.scenario import Place
 from kit.school.result import Visibility
 
 
-class Seeds(Enum):
+class SeedSet(Enum):
     """Which seeds a criterion is judged on."""
 
     PUBLIC = "public"
@@ -55,7 +55,7 @@ class Trial:
     """Which of the world's services the program may change it with. ``move_model`` only ever sends the robot home."""
     parameters: tuple[str, ...] = ()
     """Each ``name:=value``, as one gives them on a command line."""
-    calls: tuple[Call, ...] = ()
+    calls: tuple[ServiceCall, ...] = ()
     """What the program is asked meanwhile, in services of its own."""
 
     def home(self) -> Pose:
@@ -76,7 +76,7 @@ class Criterion:
     params: Any
     """The record that the check declares; whatever the check measures with."""
     trials: tuple[str, ...]
-    seeds: Seeds
+    seeds: SeedSet
     need: float | None
     """The share of episodes that must earn everything; None: the mean of what each earns counts."""
     after: str | None
@@ -118,18 +118,18 @@ class Assignment:
     version: str
     """A digest of the folder's files: any change makes another one."""
     has_secrets: bool
-    own_tests: tuple[OwnTest, ...] = ()
+    teacher_tests: tuple[TeacherTest, ...] = ()
     """The teacher's, in the order of their files."""
-    own_files: tuple[Path, ...] = ()
+    teacher_test_files: tuple[Path, ...] = ()
 
     @property
     def max_points(self) -> float:
         return sum(each.points for each in self.tests)
 
     @property
-    def tests(self) -> tuple[Criterion | OwnTest, ...]:
+    def tests(self) -> tuple[Criterion | TeacherTest, ...]:
         """Everything that earns points, in the order in which it is judged."""
-        return (*self.criteria, *self.own_tests)
+        return (*self.criteria, *self.teacher_tests)
 
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)

@@ -103,7 +103,7 @@ WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class GitSource:
     """Where the kit's source is kept."""
 
     address: str
@@ -112,7 +112,7 @@ class Source:
     """A branch or a tag; empty: the newest."""
 
     @classmethod
-    def read(cls, text: str) -> Source:
+    def read(cls, text: str) -> GitSource:
         """``https://HOST/PATH`` or ``https://HOST/PATH@VERSION``. Raises ValueError: it will stand in a shell."""
         found = _ADDRESS.fullmatch(text)
         if found is None:
@@ -130,6 +130,6 @@ _ADDRESS: Final = re.compile(
 )
 
 
-def workflow(service: str, *, submit: str, assignment: str, kit: Source) -> str:
+def workflow(service: str, *, submit: str, assignment: str, kit: GitSource) -> str:
     """The workflow file of a service. Names must be plain: they stand in a shell's double quotes."""
     return WORKFLOWS[service][1].format(submit=submit, assignment=assignment, clone=kit.clone)

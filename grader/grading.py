@@ -12,16 +12,16 @@ from datetime import UTC, datetime
 from types import MappingProxyType
 from typing import Any, Final, Protocol
 
-from grader.assignment import Assignment, Criterion, Seeds
-from grader.kinds.contract import sort_of
+from grader.assignment import Assignment, Criterion, SeedSet
+from grader.kinds.contract import find_kind
 from grader.submission import Submission
-from grader.teacher_tests import judged
+from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
 
-STATUS_OF: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
+STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
     {
         FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
         FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
@@ -32,13 +32,13 @@ STATUS_OF: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
 )
 """What a failure of the program means for a test; any other kind is the student's error."""
 
-FROM_OUTSIDE: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
+OUTSIDE_SIGNALS: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
 """What a signal does to a program: perhaps one that was meant for everything that runs here."""
-LAST_WORD_S: Final = 0.5
+SHUTDOWN_WAIT_S: Final = 0.5
 """How long to wait then before saying so: whoever shuts a machine down ends the grader too, a moment later, and what a
 program lost by that is not its author's fault."""
 
-COARSE: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
+COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
         CriterionStatus.TIMEOUT: "Your program took too long",
         CriterionStatus.RESOURCE_LIMIT: "Your program used too much memory",
@@ -64,14 +64,14 @@ class Evidence(Protocol):
     def steps(self) -> int: ...
     @property
     def printed(self) -> tuple[str, ...]: ...
-    def remark(self, check: str, params: Any) -> str:
+    def explain(self, check: str, params: Any) -> str:
         """What else there is to say of it in the light of a check, in a sentence; may be empty."""
 
     def picture(self, check: str = "") -> str:
         """It in plain characters, in the light of a check; may be empty."""
 
 
-class Gatherer(Protocol):
+class EvidenceCollector(Protocol):
     """Runs a submission and returns what was seen."""
 
     level: Level
@@ -83,7 +83,7 @@ class Gatherer(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class _ScoredEvidence:
     """One piece of evidence and what it earned."""
 
     evidence: Evidence
@@ -95,14 +95,14 @@ class Grading:
     """Judges criteria one by one, in any order; the plugin and the command line share this."""
 
     def __init__(
-        self, assignment: Assignment, submission: Submission, gatherer: Gatherer, *, secret: bool
+        self, assignment: Assignment, submission: Submission, collector: EvidenceCollector, *, secret: bool
     ) -> None:
         self.assignment = assignment
         self.submission = submission
-        self._gatherer = gatherer
+        self._collector = collector
         self._secret = secret
-        self._checks = sort_of(assignment.kind).checks
-        self._looks: dict[str, tuple[_Look, ...]] = {}
+        self._checks = find_kind(assignment.kind).checks
+        self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._began = time.perf_counter()
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
@@ -120,41 +120,41 @@ class Grading:
     def result(self) -> GradingResult:
         """All criteria judged."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
-        tests += judged(self, self.assignment.own_tests, self.assignment.own_files)
-        seen = self._gatherer.all()
-        if any(each.failure is not None and each.failure.kind in FROM_OUTSIDE for each in seen):
-            time.sleep(LAST_WORD_S)
+        tests += run_teacher_tests(self, self.assignment.teacher_tests, self.assignment.teacher_test_files)
+        collected = self._collector.all()
+        if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
+            time.sleep(SHUTDOWN_WAIT_S)
         return GradingResult(
             assignment=self.assignment.id,
             assignment_version=self.assignment.version,
             submission=self.submission.digest,
             grader_version=grader_version(),
             seeds="public+secret" if self._secret else "public",
-            level=int(self._gatherer.level),
+            level=int(self._collector.level),
             platform=_platform(),
             tests=tests,
             notices=tuple(self._notices(tests)),
-            steps=sum(each.steps for each in seen),
+            steps=sum(each.steps for each in collected),
             timing=GradingTiming(self._started, round(time.perf_counter() - self._began, 3)),
         )
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
         """What a criterion is judged on: for a teacher's own tests."""
-        return self._gatherer.evidence(self._by_id(criterion_id))
+        return self._collector.evidence(self._criterion(criterion_id))
 
-    def worst(self) -> Evidence | None:
+    def worst_evidence(self) -> Evidence | None:
         """The public episode that earned least of all; None if all earned everything."""
         shares: dict[int, tuple[float, Evidence]] = {}
-        for looks in self._looks.values():
-            for look in looks:
-                if not look.evidence.secret:
-                    before = shares.get(id(look.evidence), (0.0, look.evidence))[0]
-                    shares[id(look.evidence)] = before + 1.0 - look.share, look.evidence
+        for scored in self._scored.values():
+            for each in scored:
+                if not each.evidence.secret:
+                    before = shares.get(id(each.evidence), (0.0, each.evidence))[0]
+                    shares[id(each.evidence)] = before + 1.0 - each.share, each.evidence
         lost, evidence = max(shares.values(), key=lambda each: each[0], default=(0.0, None))
         return evidence if lost > 0 else None
 
     def _judge(self, criterion: Criterion) -> CriterionResult:
-        looks = self._look(criterion)
+        scored = self._score(criterion)
         blank = CriterionResult(
             criterion.id,
             criterion.title,
@@ -163,20 +163,20 @@ class Grading:
             criterion.points,
             criterion.visibility,
         )
-        if not looks:
+        if not scored:
             return replace(blank, rationale="Judged with secret seeds when you hand in.")
         broken = next(
-            (look for look in looks if _status(look.evidence.failure) is CriterionStatus.GRADER_ERROR), None
+            (each for each in scored if _status(each.evidence.failure) is CriterionStatus.GRADER_ERROR), None
         )
         if broken is not None:
             return self._broken(criterion, str(broken.evidence.failure))
         if criterion.after is not None and not any(
-            look.share == 1.0 for look in self._look(self._by_id(criterion.after))
+            each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
-            title = self._by_id(criterion.after).title
+            title = self._criterion(criterion.after).title
             return replace(blank, rationale=f"Not judged: first comes “{title}”.", depends_on=criterion.after)
-        share = _share(criterion, [look.share for look in looks])
-        worst = min(looks, key=lambda look: look.share)
+        share = _share(criterion, [each.share for each in scored])
+        worst = min(scored, key=lambda each: each.share)
         full = share == 1.0
         status = (
             CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
@@ -188,67 +188,69 @@ class Grading:
             blank,
             status=status,
             points=round(criterion.points * share, 6),
-            rationale="" if full else self._rationale(criterion, looks, worst),
+            rationale="" if full else self._rationale(criterion, scored, worst),
             hints=() if full else criterion.hints,
-            expected=check.said(criterion.anchors.full),
-            actual="" if worst.measure is None else check.said(worst.measure),
+            expected=check.format(criterion.anchors.full),
+            actual="" if worst.measure is None else check.format(worst.measure),
             metrics={"share": round(share, 6)},
             episodes=tuple(
                 EpisodeSummary(
-                    look.evidence.label,
-                    look.evidence.outcome,
-                    look.evidence.steps,
-                    None if look.measure is None else _finite(look.measure),
+                    each.evidence.label,
+                    each.evidence.outcome,
+                    each.evidence.steps,
+                    None if each.measure is None else _finite(each.measure),
                 )
-                for look in looks
+                for each in scored
             ),
             log="" if worst.evidence.secret else "\n".join(worst.evidence.printed),
             replay="" if full or worst.evidence.secret else worst.evidence.picture(criterion.check),
         )
 
-    def _look(self, criterion: Criterion) -> tuple[_Look, ...]:
+    def _score(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
         """Each piece of evidence for a criterion, measured and marked."""
-        if criterion.id in self._looks:
-            return self._looks[criterion.id]
+        if criterion.id in self._scored:
+            return self._scored[criterion.id]
         check = self._checks[criterion.check]
         ready = self._ready(criterion)
-        looks = []
-        for evidence in self._gatherer.evidence(criterion):
+        scored = []
+        for evidence in self._collector.evidence(criterion):
             if evidence.failure is not None or not ready(evidence):
-                looks.append(_Look(evidence, None, 0.0))
+                scored.append(_ScoredEvidence(evidence, None, 0.0))
                 continue
             measure = float(check.measure(evidence, criterion.params))
-            looks.append(_Look(evidence, measure, criterion.anchors.share(measure)))
-        self._looks[criterion.id] = tuple(looks)
-        return self._looks[criterion.id]
+            scored.append(_ScoredEvidence(evidence, measure, criterion.anchors.share(measure)))
+        self._scored[criterion.id] = tuple(scored)
+        return self._scored[criterion.id]
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Whether a piece of evidence earned everything in the criterion that comes first."""
         if criterion.after is None:
             return lambda evidence: True
-        before = self._look(self._by_id(criterion.after))
-        fine = {id(look.evidence) for look in before if look.share == 1.0}
-        known = {id(look.evidence) for look in before}
-        return lambda evidence: id(evidence) in fine or id(evidence) not in known
+        before = self._score(self._criterion(criterion.after))
+        full = {id(each.evidence) for each in before if each.share == 1.0}
+        scored_ids = {id(each.evidence) for each in before}
+        return lambda evidence: id(evidence) in full or id(evidence) not in scored_ids
 
-    def _rationale(self, criterion: Criterion, looks: Sequence[_Look], worst: _Look) -> str:
+    def _rationale(
+        self, criterion: Criterion, scored: Sequence[_ScoredEvidence], worst: _ScoredEvidence
+    ) -> str:
         evidence = worst.evidence
         if evidence.failure is not None:
             if evidence.secret:
-                return f"{COARSE[_status(evidence.failure)]} ({evidence.label})."
+                return f"{COARSE_RATIONALES[_status(evidence.failure)]} ({evidence.label})."
             return f"{evidence.failure} ({evidence.label})"
         check = self._checks[criterion.check]
         if worst.measure is None:
-            title = self._by_id(criterion.after or criterion.id).title
+            title = self._criterion(criterion.after or criterion.id).title
             return f"{evidence.label} does not count here: “{title}” comes first."
-        said = criterion.feedback.format(
-            actual=check.said(worst.measure),
-            full=check.said(criterion.anchors.full),
+        text = criterion.feedback.format(
+            actual=check.format(worst.measure),
+            full=check.format(criterion.anchors.full),
             where=evidence.label,
-            passed=sum(look.share == 1.0 for look in looks),
-            count=len(looks),
+            passed=sum(each.share == 1.0 for each in scored),
+            count=len(scored),
         )
-        return f"{said} {evidence.remark(criterion.check, criterion.params)}".strip()
+        return f"{text} {evidence.explain(criterion.check, criterion.params)}".strip()
 
     def _broken(self, criterion: Criterion, log: str) -> CriterionResult:
         return CriterionResult(
@@ -264,20 +266,20 @@ class Grading:
 
     def _notices(self, tests: Sequence[CriterionResult]) -> Sequence[str]:
         later = [test for test in tests if test.status is CriterionStatus.SKIPPED and test.depends_on is None]
-        seeds = any(criterion.seeds is not Seeds.PUBLIC for criterion in self.assignment.criteria)
+        seeds = any(criterion.seeds is not SeedSet.PUBLIC for criterion in self.assignment.criteria)
         notices = []
         if later:
             notices.append(f"{len(later)} more tests run when you hand in.")
         if not self._secret and self.assignment.trials and seeds:
             notices.append("These are the practice seeds; the grade uses others.")
-        if not self._secret and self._gatherer.level < self.assignment.level:
+        if not self._secret and self._collector.level < self.assignment.level:
             notices.append(
-                f"Confinement level {int(self._gatherer.level)} was reached; the grade is given at "
+                f"Confinement level {int(self._collector.level)} was reached; the grade is given at "
                 f"{int(self.assignment.level)} or higher."
             )
         return notices
 
-    def _by_id(self, identity: str) -> Criterion:
+    def _criterion(self, identity: str) -> Criterion:
         return next(each for each in self.assignment.criteria if each.id == identity)
 
 
@@ -293,7 +295,7 @@ def _status(failure: Failure | None) -> CriterionStatus:
     return (
         CriterionStatus.FAIL
         if failure is None
-        else STATUS_OF.get(failure.kind, CriterionStatus.STUDENT_ERROR)
+        else STATUS_BY_FAILURE.get(failure.kind, CriterionStatus.STUDENT_ERROR)
     )
 
 

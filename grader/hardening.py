@@ -10,7 +10,7 @@ from typing import Final
 _PR_SET_DUMPABLE: Final = 4
 
 
-def hide() -> None:
+def hide_process() -> None:
     """From here on, a process of the same user cannot look into this one through /proc. Linux; else nothing.
 
     Level 0 has no more than this; root sees through it. From level 1 on a program does not see /proc at all.

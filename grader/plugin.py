@@ -17,13 +17,13 @@ from typing import Any
 
 import pytest
 
-from grader.archives import Refused
+from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
 from grader.grading import Grading
-from grader.reading import SHEET, read
+from grader.reading import ASSIGNMENT_FILE, read
 from grader.reports.cleaning import plain
-from grader.session import LevelTooLow, Terms, opened
-from grader.submission import take
+from grader.session import GradingOptions, LevelTooLow, open_grading
+from grader.submission import read_submission
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, format_points
@@ -37,7 +37,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--secret-seeds", action="store_true", help="use the secret seeds too: for the grade")
 
 
-class NotPassed(Exception):
+class CriterionFailed(Exception):
     """A criterion is not met; the message is for the student."""
 
 
@@ -46,10 +46,10 @@ class GraderBroken(Exception):
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> AssignmentFile | None:
-    if file_path.name != SHEET or parent.config.getoption("--submission") is None:
+    if file_path.name != ASSIGNMENT_FILE or parent.config.getoption("--submission") is None:
         return None
-    made: AssignmentFile = AssignmentFile.from_parent(parent, path=file_path)
-    return made
+    file: AssignmentFile = AssignmentFile.from_parent(parent, path=file_path)
+    return file
 
 
 class AssignmentFile(pytest.File):
@@ -69,13 +69,13 @@ class AssignmentFile(pytest.File):
 class CriterionItem(pytest.Item):
     """One criterion, judged on the recordings that the session shares."""
 
-    def __init__(self, *, assignment: Assignment, criterion: Criterion, **more: Any) -> None:
-        super().__init__(**more)
+    def __init__(self, *, assignment: Assignment, criterion: Criterion, **keywords: Any) -> None:
+        super().__init__(**keywords)
         self._assignment = assignment
         self._criterion = criterion
 
     def runtest(self) -> None:
-        test = self.config.stash[GRADINGS].open(self._assignment).judge(self._criterion)
+        test = self.config.stash[GRADINGS_KEY].open(self._assignment).judge(self._criterion)
         self.user_properties += [
             ("points", format_points(test.points)),
             ("max_points", format_points(test.max_points)),
@@ -86,7 +86,7 @@ class CriterionItem(pytest.Item):
         if test.status is CriterionStatus.GRADER_ERROR:
             raise GraderBroken(plain(f"{test.rationale}\n{test.log}"))
         if test.status is not CriterionStatus.PASS:
-            raise NotPassed(_feedback(test))
+            raise CriterionFailed(_feedback(test))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
         """What was wrong, not where in the grader it was noticed."""
@@ -106,7 +106,7 @@ def _feedback(test: CriterionResult) -> str:
     return plain("\n".join(part for part in parts if part))
 
 
-class Gradings:
+class GradingSession:
     """The gradings of one session: each assignment's episodes are run once."""
 
     def __init__(self, config: pytest.Config) -> None:
@@ -118,31 +118,33 @@ class Gradings:
         key = str(assignment.folder)
         if key not in self._open:
             level = self._config.getoption("--grading-level")
-            terms = Terms(
+            terms = GradingOptions(
                 None if level is None else Level(level), secret=bool(self._config.getoption("--secret-seeds"))
             )
             try:
-                submission = take(Path(str(self._config.getoption("--submission"))), assignment.submit)
-                self._open[key] = self._stack.enter_context(opened(assignment, submission, terms))
-            except (Refused, LevelTooLow) as error:
-                raise NotPassed(str(error)) from None
+                submission = read_submission(
+                    Path(str(self._config.getoption("--submission"))), assignment.submit
+                )
+                self._open[key] = self._stack.enter_context(open_grading(assignment, submission, terms))
+            except (SubmissionRefused, LevelTooLow) as error:
+                raise CriterionFailed(str(error)) from None
         return self._open[key]
 
     def close(self) -> None:
         self._stack.close()
 
 
-GRADINGS = pytest.StashKey[Gradings]()
+GRADINGS_KEY = pytest.StashKey[GradingSession]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", MARK_HELP)
-    config.stash[GRADINGS] = Gradings(config)
+    config.stash[GRADINGS_KEY] = GradingSession(config)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    if GRADINGS in config.stash:
-        config.stash[GRADINGS].close()
+    if GRADINGS_KEY in config.stash:
+        config.stash[GRADINGS_KEY].close()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -173,4 +175,4 @@ def grading(request: pytest.FixtureRequest) -> Grading:
     folder = request.config.rootpath
     if request.config.getoption("--submission") is None:
         pytest.skip("nothing was handed in: say --submission FILE")
-    return request.config.stash[GRADINGS].open(read(folder))
+    return request.config.stash[GRADINGS_KEY].open(read(folder))

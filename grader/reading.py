@@ -12,11 +12,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final
 
-from grader.assignment import HINT_STEPS, Assignment, Criterion, Seeds, Trial
+from grader.assignment import HINT_STEPS, Assignment, Criterion, SeedSet, Trial
 from grader.checks.contract import Check
-from grader.kinds.contract import Sheet, kinds, sort_of
+from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import Anchors
-from grader.teacher_tests import OwnTest, declared
+from grader.teacher_tests import TeacherTest, read_declared
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER, MIB, Limits
 from kit.school.result import Visibility
@@ -26,74 +26,74 @@ from kit.world.problems import Problems, quoted, suggestion
 from kit.world.records import Place
 from kit.world.yaml_section import Section
 
-SHEET: Final = "assignment.yaml"
-SECRET: Final = "secret.yaml"
+ASSIGNMENT_FILE: Final = "assignment.yaml"
+SECRET_FILE: Final = "secret.yaml"
 
 
 def read(folder: Path) -> Assignment:
     """The assignment in ``folder``. Raises WorldError with all its mistakes."""
     problems = Problems()
-    sheet = folder / SHEET
+    sheet = folder / ASSIGNMENT_FILE
     documents = Documents(Enclosure.of(folder), {}, problems)
     section = documents.section(sheet, Place(sheet))
-    secret_file = folder / SECRET
+    secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, Place(secret_file)) if secret_file.is_file() else None
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
-    made = _assignment(section, secrets, folder)
+    parsed = _assignment(section, secrets, folder)
     problems.raise_if_any()
-    assert made is not None  # likewise
-    return made
+    assert parsed is not None  # likewise
+    return parsed
 
 
-def digest(folder: Path) -> str:
+def folder_digest(folder: Path) -> str:
     """What everything in the folder that grading depends on says, in short."""
-    made = hashlib.sha256()
+    parsed = hashlib.sha256()
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
-        if Path(name.parts[0]).stem in NOT_GRADING or any(
+        if Path(name.parts[0]).stem in IGNORED_STEMS or any(
             part.startswith((".", "__")) for part in name.parts
         ):
             continue
-        made.update(repr((name.as_posix(), file.stat().st_size)).encode())
-        made.update(file.read_bytes())
-    return made.hexdigest()[:16]
+        parsed.update(repr((name.as_posix(), file.stat().st_size)).encode())
+        parsed.update(file.read_bytes())
+    return parsed.hexdigest()[:16]
 
 
-NOT_GRADING: Final = ("README", "starter", "solution", "wrong")
+IGNORED_STEMS: Final = ("README", "starter", "solution", "wrong")
 """What may change without making another assignment of it, whatever its ending."""
 
 
 def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment | None:
-    kind = section.text("kind", "controller", choices=kinds())
-    if kind not in kinds():
+    kind = section.text("kind", "controller", choices=kind_names())
+    if kind not in kind_names():
         return None  # what the rest should say depends on the kind
-    sort = sort_of(kind)
-    own_files = tuple(_own_files(section, folder))
-    task = sort.read(Sheet(folder, section, secrets))
-    made = Assignment(
+    kind_record = find_kind(kind)
+    teacher_test_files = tuple(_teacher_test_files(section, folder))
+    task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
+    parsed = Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
         kind=kind,
-        submit=_file_name(section, sort.endings),
+        submit=_file_name(section, kind_record.endings),
         level=Level(section.integer("level", int(Level.FILTERED), minimum=0, maximum=max(Level))),
         limits=_limits(section.section("budget", None)),
         trials=task.trials,
-        criteria=tuple(_criteria(section, sort.checks, task.trials)),
-        task=task.content,
-        version=digest(folder),
+        criteria=tuple(_criteria(section, kind_record.checks, task.trials)),
+        task=task.task,
+        version=folder_digest(folder),
         has_secrets=secrets is not None,
-        own_tests=tuple(_own_tests(section, own_files)),
-        own_files=own_files,
+        teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),
+        teacher_test_files=teacher_test_files,
     )
     section.finish()
     if secrets is not None:
         secrets.finish()
-    return made
+    return parsed
 
 
-def _own_files(section: Section, folder: Path) -> Iterator[Path]:
+def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:
     """The files with the teacher's own tests."""
     for name in section.texts("tests", ()):
         if "/" in name or not name.startswith("test_") or not (folder / name).is_file():
@@ -102,11 +102,11 @@ def _own_files(section: Section, folder: Path) -> Iterator[Path]:
             yield folder / name
 
 
-def _own_tests(section: Section, files: tuple[Path, ...]) -> Iterator[OwnTest]:
+def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[TeacherTest]:
     known: set[str] = set()
     for file in files:
         try:
-            found = tuple(declared(file))
+            found = tuple(read_declared(file))
         except (ValueError, OSError, SyntaxError) as error:
             section.error(str(error), "tests")
             continue
@@ -130,7 +130,7 @@ def _file_name(section: Section, endings: tuple[str, ...]) -> str:
 def _limits(section: Section | None) -> Limits:
     if section is None:
         return GRADER
-    made = replace(
+    parsed = replace(
         GRADER,
         start_s=section.number("start", GRADER.start_s, above=0, maximum=120),
         reply_s=section.number("reply", GRADER.reply_s, above=0, maximum=60),
@@ -139,7 +139,7 @@ def _limits(section: Section | None) -> Limits:
         memory=MIB * section.integer("memory", GRADER.memory // MIB, minimum=256, maximum=64 * 1024),
     )
     section.finish()
-    return made
+    return parsed
 
 
 def _criteria(
@@ -165,7 +165,7 @@ def _criteria(
         for trial in on:
             if trial not in {known_trial.name for known_trial in trials}:
                 each.error(f"no trial {quoted(trial)}: {suggestion(trial, [t.name for t in trials])}", "on")
-        made = Criterion(
+        parsed = Criterion(
             id=identity,
             title=each.name("title", identity),
             check=name,
@@ -173,7 +173,7 @@ def _criteria(
             anchors=_anchors(each, check),
             params=_params(each.section("with", None), check),
             trials=on,
-            seeds=each.choice("seeds", {one.value: one for one in Seeds}, Seeds.ALL.value),
+            seeds=each.choice("seeds", {one.value: one for one in SeedSet}, SeedSet.ALL.value),
             need=each.number("need", above=0, maximum=1) if each.has("need") else None,
             after=after,
             visibility=each.choice(
@@ -183,16 +183,16 @@ def _criteria(
             feedback=check.feedback,
         )
         each.finish()
-        yield made
+        yield parsed
 
 
 def _anchors(section: Section, check: Check) -> Anchors:
     given = section.section("share", None)
     if given is None:
         return check.anchors
-    made = Anchors(given.number("none", check.anchors.none), given.number("full", check.anchors.full))
+    parsed = Anchors(given.number("none", check.anchors.none), given.number("full", check.anchors.full))
     given.finish()
-    return made
+    return parsed
 
 
 def _params(section: Section | None, check: Check) -> Any:

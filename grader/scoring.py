@@ -27,12 +27,12 @@ class Anchors:
         return (self.none - measure) / (self.none - self.full) if measure < self.none else 0.0
 
 
-def least_passes(count: int, need: float) -> int:
+def required_passes(count: int, need: float) -> int:
     """How many of ``count`` episodes must pass for a share ``need`` of them."""
     return min(count, max(0, math.ceil(need * count - 1e-9)))
 
 
-def unfair_fail(success: float, count: int, passes: int) -> float:
+def unfair_fail_probability(success: float, count: int, passes: int) -> float:
     """The odds that a work which succeeds with probability ``success`` passes fewer than ``passes`` of ``count``.
 
     The exact binomial sum.
@@ -43,7 +43,7 @@ def unfair_fail(success: float, count: int, passes: int) -> float:
     )
 
 
-def wilson(passes: int, count: int, z: float = 1.959963984540054) -> tuple[float, float]:
+def wilson_interval(passes: int, count: int, z: float = 1.959963984540054) -> tuple[float, float]:
     """Wilson's interval for a success probability of which ``passes`` of ``count`` were seen (95 %)."""
     if count == 0:
         return 0.0, 1.0

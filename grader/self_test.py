@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from grader.archives import Refused
-from grader.assignment import Assignment, Seeds
-from grader.scoring import least_passes, unfair_fail
-from grader.session import Terms, grade
-from grader.submission import take
+from grader.archives import SubmissionRefused
+from grader.assignment import Assignment, SeedSet
+from grader.scoring import required_passes, unfair_fail_probability
+from grader.session import GradingOptions, grade
+from grader.submission import read_submission
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
 STARTER: Final = "starter"
@@ -28,7 +28,7 @@ SUCCESSES: Final = (0.9, 0.95, 0.99)
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class WorkReport:
     """One thing that was tried out."""
 
     name: str
@@ -38,7 +38,7 @@ class Proof:
 
 
 @dataclass(frozen=True, slots=True)
-class Odds:
+class UnfairFailOdds:
     """How likely a good work fails a criterion by bad luck."""
 
     criterion: str
@@ -49,7 +49,9 @@ class Odds:
     """For each of ``SUCCESSES``."""
 
 
-def prove(assignment: Assignment, terms: Terms, solutions: Path | None = None) -> Iterator[Proof]:
+def try_works(
+    assignment: Assignment, terms: GradingOptions, solutions: Path | None = None
+) -> Iterator[WorkReport]:
     """Tries the folder's works one after the other; ``solutions``: where the right and the wrong ones lie, if not in
     the assignment's folder. Raises LevelTooLow."""
     solutions = assignment.folder if solutions is None else solutions
@@ -62,26 +64,26 @@ def prove(assignment: Assignment, terms: Terms, solutions: Path | None = None) -
         if each.name != "__pycache__" and (each.is_dir() or each.suffix == ending)
     )
     if not wrong:
-        yield Proof(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
+        yield WorkReport(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
     for file in wrong:
         yield _wrong(assignment, file, terms)
 
 
-def odds(assignment: Assignment, *, secret: bool) -> Iterator[Odds]:
+def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:
     """For every criterion that is a matter of succeeding or not, in several episodes."""
     for criterion in assignment.criteria:
         count = 0
         for name in criterion.trials:
             trial = assignment.trial(name)
-            count += len(trial.seeds) if criterion.seeds is not Seeds.SECRET else 0
-            count += len(trial.secret_seeds) if secret and criterion.seeds is not Seeds.PUBLIC else 0
+            count += len(trial.seeds) if criterion.seeds is not SeedSet.SECRET else 0
+            count += len(trial.secret_seeds) if secret and criterion.seeds is not SeedSet.PUBLIC else 0
         if count:
-            passes = least_passes(count, criterion.need if criterion.need is not None else 1.0)
-            yield Odds(
+            passes = required_passes(count, criterion.need if criterion.need is not None else 1.0)
+            yield UnfairFailOdds(
                 criterion.id,
                 count,
                 passes,
-                tuple(unfair_fail(success, count, passes) for success in SUCCESSES),
+                tuple(unfair_fail_probability(success, count, passes) for success in SUCCESSES),
             )
 
 
@@ -91,30 +93,30 @@ def _work(folder: Path, stem: str, assignment: Assignment) -> Path:
     return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
 
 
-def _starter(assignment: Assignment, file: Path, terms: Terms) -> Proof:
-    result = _graded(assignment, file, terms)
+def _starter(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
+    result = _grade(assignment, file, terms)
     if isinstance(result, str):
-        return Proof(file.name, (result,), "")
-    problems = _broken(result)
+        return WorkReport(file.name, (result,), "")
+    problems = _grader_errors(result)
     if result.verdict is GradingVerdict.PASS:
         problems.append("it passes: there is nothing left to do")
-    rude = {
+    stopped = {
         CriterionStatus.STUDENT_ERROR,
         CriterionStatus.TIMEOUT,
         CriterionStatus.RESOURCE_LIMIT,
         CriterionStatus.PROTOCOL_ERROR,
     }
     problems += [
-        f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in rude
+        f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in stopped
     ]
-    return Proof(file.name, tuple(problems), _summary(result))
+    return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _solution(assignment: Assignment, file: Path, terms: Terms) -> Proof:
-    result = _graded(assignment, file, terms)
+def _solution(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
+    result = _grade(assignment, file, terms)
     if isinstance(result, str):
-        return Proof(file.name, (result,), "")
-    problems = _broken(result)
+        return WorkReport(file.name, (result,), "")
+    problems = _grader_errors(result)
     problems += [
         f"{test.id}: {test.status.value}, {format_points(test.points)} of {format_points(test.max_points)} points: {test.rationale}"
         for test in result.tests
@@ -125,53 +127,53 @@ def _solution(assignment: Assignment, file: Path, terms: Terms) -> Proof:
         for test in result.tests
         if test.status is CriterionStatus.SKIPPED
     ]
-    again = _graded(assignment, file, terms)
+    again = _grade(assignment, file, terms)
     if isinstance(again, GradingResult) and again.tests != result.tests:
         problems.append(
             "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
         )
-    return Proof(file.name, tuple(problems), _summary(result))
+    return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _wrong(assignment: Assignment, file: Path, terms: Terms) -> Proof:
+def _wrong(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
     name = f"{WRONG}/{file.name}"
-    meant = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
+    named = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
     known = {each.id for each in assignment.tests}
-    if not meant <= known:
-        return Proof(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
-    result = _graded(assignment, file, terms)
+    if not named <= known:
+        return WorkReport(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
+    result = _grade(assignment, file, terms)
     if isinstance(result, str):
-        return Proof(name, (result,), "")
+        return WorkReport(name, (result,), "")
     lost = {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
     depending = {
-        criterion.id for criterion in assignment.criteria if _depends(assignment, criterion.id, meant)
+        criterion.id for criterion in assignment.criteria if _depends(assignment, criterion.id, named)
     }
-    problems = _broken(result)
-    problems += [f"it should lose {each}, and does not" for each in sorted(meant - lost)]
-    problems += [f"it loses {each}, which it should not" for each in sorted(lost - meant - depending)]
-    return Proof(name, tuple(problems), _summary(result))
+    problems = _grader_errors(result)
+    problems += [f"it should lose {each}, and does not" for each in sorted(named - lost)]
+    problems += [f"it loses {each}, which it should not" for each in sorted(lost - named - depending)]
+    return WorkReport(name, tuple(problems), _summary(result))
 
 
-def _depends(assignment: Assignment, identity: str, meant: set[str]) -> bool:
+def _depends(assignment: Assignment, identity: str, named: set[str]) -> bool:
     after = {criterion.id: criterion.after for criterion in assignment.criteria}
     at: str | None = identity
     while at is not None:
-        if at in meant:
+        if at in named:
             return True
         at = after[at]
     return False
 
 
-def _graded(assignment: Assignment, file: Path, terms: Terms) -> GradingResult | str:
+def _grade(assignment: Assignment, file: Path, terms: GradingOptions) -> GradingResult | str:
     if not file.exists():
         return "it is missing"
     try:
-        return grade(assignment, take(file, assignment.submit), terms)
-    except Refused as error:
+        return grade(assignment, read_submission(file, assignment.submit), terms)
+    except SubmissionRefused as error:
         return str(error)
 
 
-def _broken(result: GradingResult) -> list[str]:
+def _grader_errors(result: GradingResult) -> list[str]:
     return [
         f"{test.id}: the grader broke: {(test.log.strip().splitlines() or ['?'])[-1]}"
         for test in result.tests

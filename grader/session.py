@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from grader.assignment import Assignment
 from grader.grading import Grading
-from grader.hardening import hide
-from grader.kinds.contract import Conditions, sort_of
+from grader.hardening import hide_process
+from grader.kinds.contract import EvidenceOptions, find_kind
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import GradingResult
@@ -20,7 +20,7 @@ class LevelTooLow(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Terms:
+class GradingOptions:
     """How to grade."""
 
     level: Level | None = None
@@ -32,7 +32,7 @@ class Terms:
 
 
 @contextmanager
-def opened(assignment: Assignment, submission: Submission, terms: Terms) -> Iterator[Grading]:
+def open_grading(assignment: Assignment, submission: Submission, terms: GradingOptions) -> Iterator[Grading]:
     """A grading, ready to judge. Raises LevelTooLow."""
     level = assignment.level if terms.level is None else terms.level
     if terms.secret and level < assignment.level:
@@ -40,14 +40,14 @@ def opened(assignment: Assignment, submission: Submission, terms: Terms) -> Iter
             f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
             f"not at {int(level)}. `kit doctor` says what this machine can do."
         )
-    hide()
-    with submission.laid_out() as file:
-        conditions = Conditions(level, terms.secret, terms.may_fall and terms.level is None)
-        with sort_of(assignment.kind).gather(assignment, file, conditions) as gatherer:
-            yield Grading(assignment, submission, gatherer, secret=terms.secret)
+    hide_process()
+    with submission.in_temporary_folder() as file:
+        options = EvidenceOptions(level, terms.secret, terms.may_fall and terms.level is None)
+        with find_kind(assignment.kind).collect(assignment, file, options) as collector:
+            yield Grading(assignment, submission, collector, secret=terms.secret)
 
 
-def grade(assignment: Assignment, submission: Submission, terms: Terms) -> GradingResult:
+def grade(assignment: Assignment, submission: Submission, terms: GradingOptions) -> GradingResult:
     """The result of one submission. Raises LevelTooLow."""
-    with opened(assignment, submission, terms) as grading:
+    with open_grading(assignment, submission, terms) as grading:
         return grading.result()

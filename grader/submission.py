@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from grader.archives import MOST_BYTES, MOST_FILES, Refused, check_name, is_archive, unpacked
+from grader.archives import MAX_BYTES, MAX_FILES, SubmissionRefused, check_name, is_archive, unpack_archive
 
-WORTHLESS: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
+IGNORED_NAMES: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
 """What people hand in without meaning to."""
 
 
@@ -40,7 +40,7 @@ class Submission:
         return made.hexdigest()[:32]
 
     @contextmanager
-    def laid_out(self) -> Iterator[Path]:
+    def in_temporary_folder(self) -> Iterator[Path]:
         """The files in a folder of their own, not to be written to; where the main one lies."""
         with tempfile.TemporaryDirectory(prefix="work-") as folder:
             for name, content in self.files.items():
@@ -53,18 +53,18 @@ class Submission:
             yield Path(folder, self.main)
 
 
-def take(path: Path, wanted: str) -> Submission:
+def read_submission(path: Path, wanted: str) -> Submission:
     """The submission at ``path``: the file itself, or a folder or an archive that holds the file ``wanted``.
 
     Raises Refused, whose message a student understands.
     """
     if path.is_symlink():
-        raise Refused(f"{path.name} is a link; hand in the file itself.")
+        raise SubmissionRefused(f"{path.name} is a link; hand in the file itself.")
     if path.is_dir():
         return _of(path.name, dict(_folder(path)), wanted)
     content = _plain(path)
     if is_archive(path.name):
-        return _of(_stem(path), unpacked(content, path.name), wanted)
+        return _of(_stem(path), unpack_archive(content, path.name), wanted)
     return Submission(path.stem, wanted, {wanted: content})
 
 
@@ -75,10 +75,10 @@ def _of(name: str, files: Mapping[str, bytes], wanted: str) -> Submission:
         key=lambda each: each.count("/"),
     )
     if not places:
-        listed = ", ".join(sorted(files)[:5]) or "nothing"
-        raise Refused(f"{wanted} is missing. What was handed in: {listed}.")
+        join_faults = ", ".join(sorted(files)[:5]) or "nothing"
+        raise SubmissionRefused(f"{wanted} is missing. What was handed in: {join_faults}.")
     if len(places) > 1 and places[0].count("/") == places[1].count("/"):
-        raise Refused(f"{wanted} is there more than once: {', '.join(places[:3])}.")
+        raise SubmissionRefused(f"{wanted} is there more than once: {', '.join(places[:3])}.")
     top = places[0].removesuffix(wanted)
     return Submission(
         name,
@@ -91,21 +91,21 @@ def _folder(folder: Path) -> Iterator[tuple[str, bytes]]:
     """The plain files below a folder."""
     total = count = 0
     for place, folders, names in os.walk(folder, followlinks=False):
-        folders[:] = sorted(each for each in folders if each not in WORTHLESS)
+        folders[:] = sorted(each for each in folders if each not in IGNORED_NAMES)
         for link in folders:
             if Path(place, link).is_symlink():
-                raise Refused(f"{link} is a link; hand in files only.")
+                raise SubmissionRefused(f"{link} is a link; hand in files only.")
         for name in sorted(names):
             path = Path(place, name)
             relative = path.relative_to(folder).as_posix()
-            if name in WORTHLESS:
+            if name in IGNORED_NAMES:
                 continue
             check_name(relative)
             content = _plain(path)
             total, count = total + len(content), count + 1
-            if total > MOST_BYTES or count > MOST_FILES:
-                raise Refused(
-                    f"More than {MOST_FILES} files or {MOST_BYTES >> 20} MiB; hand in your program alone."
+            if total > MAX_BYTES or count > MAX_FILES:
+                raise SubmissionRefused(
+                    f"More than {MAX_FILES} files or {MAX_BYTES >> 20} MiB; hand in your program alone."
                 )
             yield relative, content
 
@@ -116,14 +116,14 @@ def _plain(path: Path) -> bytes:
         handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
         reason = "it is a link" if path.is_symlink() else error.strerror
-        raise Refused(f"{path.name} cannot be read: {reason}.") from None
+        raise SubmissionRefused(f"{path.name} cannot be read: {reason}.") from None
     with os.fdopen(handle, "rb") as file:
         status = os.fstat(handle)
         if not stat.S_ISREG(status.st_mode):
-            raise Refused(f"{path.name} is not a plain file.")
-        content = file.read(MOST_BYTES + 1)
-    if len(content) > MOST_BYTES:
-        raise Refused(f"{path.name} is larger than {MOST_BYTES >> 20} MiB.")
+            raise SubmissionRefused(f"{path.name} is not a plain file.")
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise SubmissionRefused(f"{path.name} is larger than {MAX_BYTES >> 20} MiB.")
     return content
 
 

@@ -33,7 +33,7 @@ MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teac
 
 
 @dataclass(frozen=True, slots=True)
-class OwnTest:
+class TeacherTest:
     """One test function, as its file declares it."""
 
     id: str
@@ -44,43 +44,43 @@ class OwnTest:
 
     @property
     def title(self) -> str:
-        words = self.id.removeprefix("test_").replace("_", " ").strip()
-        return words[:1].upper() + words[1:]
+        message = self.id.removeprefix("test_").replace("_", " ").strip()
+        return message[:1].upper() + message[1:]
 
 
-def declared(file: Path) -> Iterator[OwnTest]:
+def read_declared(file: Path) -> Iterator[TeacherTest]:
     """The tests of a file, which is read and not run. Raises ValueError, OSError, SyntaxError."""
     for node in ast.parse(file.read_text(encoding="utf-8"), file.name).body:
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
             marks = [each for each in node.decorator_list if isinstance(each, ast.Call) and _is_mark(each)]
-            yield _declared(node, marks[0] if marks else None, file)
+            yield _read_test(node, marks[0] if marks else None, file)
 
 
 def _is_mark(call: ast.Call) -> bool:
     return isinstance(call.func, ast.Attribute) and call.func.attr == MARK
 
 
-def _declared(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> OwnTest:
-    said = " ".join((ast.get_docstring(node) or "").split())
+def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> TeacherTest:
+    text = " ".join((ast.get_docstring(node) or "").split())
     if mark is None:
-        return OwnTest(node.name, 0.0, said)
+        return TeacherTest(node.name, 0.0, text)
     try:
         (points,) = map(ast.literal_eval, mark.args)
-        more = {word.arg: ast.literal_eval(word.value) for word in mark.keywords}
-        made = OwnTest(
+        keywords = {word.arg: ast.literal_eval(word.value) for word in mark.keywords}
+        test = TeacherTest(
             node.name,
             float(points),
-            said,
-            Visibility(more.pop("visibility", Visibility.VISIBLE.value)),
-            tuple(map(str, more.pop("hints", ()))),
+            text,
+            Visibility(keywords.pop("visibility", Visibility.VISIBLE.value)),
+            tuple(map(str, keywords.pop("hints", ()))),
         )
     except (ValueError, TypeError):
-        more = {"?": None}
-    if more or not 0.0 <= made.points <= 1e6:
+        keywords = {"?": None}
+    if keywords or not 0.0 <= test.points <= 1e6:
         raise ValueError(
             f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, a visibility and hints"
         )
-    return made
+    return test
 
 
 @dataclass(eq=False)
@@ -90,18 +90,20 @@ class _Session:
     grading: Grading
     outcomes: dict[str, list[tuple[CriterionStatus, str]]] = field(default_factory=dict)
 
-    def note(self, item: Any, status: CriterionStatus, said: str) -> None:
+    def note(self, item: Any, status: CriterionStatus, text: str) -> None:
         name = getattr(item, "originalname", None) or item.name
-        self.outcomes.setdefault(name, []).append((status, said))
+        self.outcomes.setdefault(name, []).append((status, text))
 
 
-def judged(grading: Grading, tests: Sequence[OwnTest], files: Sequence[Path]) -> tuple[CriterionResult, ...]:
+def run_teacher_tests(
+    grading: Grading, tests: Sequence[TeacherTest], files: Sequence[Path]
+) -> tuple[CriterionResult, ...]:
     """Runs the tests in this process. What breaks in them is the teacher's and costs no student a point."""
     if not tests:
         return ()
     session = _Session(grading)
     folder = grading.assignment.folder
-    with _alone():
+    with _isolated_environment():
         import pytest
 
         pytest.main(
@@ -115,7 +117,7 @@ def judged(grading: Grading, tests: Sequence[OwnTest], files: Sequence[Path]) ->
 
 
 @contextmanager
-def _alone() -> Iterator[None]:
+def _isolated_environment() -> Iterator[None]:
     """No plugin but pytest's own, whatever is installed or asked for elsewhere."""
     before = dict(os.environ)
     for name in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
@@ -132,7 +134,7 @@ def _plugin(session: _Session) -> object:
     """Made when it is needed: a grader that runs no such test imports no pytest."""
     import pytest
 
-    class Plugin:
+    class GradingPlugin:
         def pytest_configure(self, config: pytest.Config) -> None:
             config.addinivalue_line("markers", MARK_HELP)
 
@@ -151,42 +153,42 @@ def _plugin(session: _Session) -> object:
             elif call.excinfo.errisinstance(pytest.skip.Exception):
                 session.note(item, CriterionStatus.SKIPPED, str(call.excinfo.value))
             elif call.when == "call" and call.excinfo.errisinstance((AssertionError, pytest.fail.Exception)):
-                session.note(item, CriterionStatus.FAIL, _own_words(str(call.excinfo.value)))
+                session.note(item, CriterionStatus.FAIL, _assertion_message(str(call.excinfo.value)))
             else:
                 session.note(item, CriterionStatus.GRADER_ERROR, str(report.longrepr))
             return report
 
-    return Plugin()
+    return GradingPlugin()
 
 
-def _own_words(message: str) -> str:
+def _assertion_message(message: str) -> str:
     """An assertion's own message, without what pytest adds: that is the test's source."""
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(own: OwnTest, outcomes: Sequence[tuple[CriterionStatus, str]]) -> CriterionResult:
+def _test(test: TeacherTest, outcomes: Sequence[tuple[CriterionStatus, str]]) -> CriterionResult:
     """Several outcomes are those of several parameters: each is worth its share."""
     statuses = [status for status, _ in outcomes]
-    blank = CriterionResult(own.id, own.title, CriterionStatus.SKIPPED, 0.0, own.points, own.visibility)
+    blank = CriterionResult(test.id, test.title, CriterionStatus.SKIPPED, 0.0, test.points, test.visibility)
     if not outcomes or CriterionStatus.GRADER_ERROR in statuses:
         log = next(
-            (said for status, said in outcomes if status is CriterionStatus.GRADER_ERROR), "It did not run."
+            (text for status, text in outcomes if status is CriterionStatus.GRADER_ERROR), "It did not run."
         )
         broken = "The grader broke here; that is not your fault and costs no points. Your teacher is told."
         return replace(blank, status=CriterionStatus.GRADER_ERROR, rationale=broken, log=log)
     if set(statuses) == {CriterionStatus.SKIPPED}:
         return replace(blank, rationale=outcomes[0][1])
-    judged = [each for each in statuses if each is not CriterionStatus.SKIPPED]
-    share = judged.count(CriterionStatus.PASS) / len(judged)
+    run_teacher_tests = [each for each in statuses if each is not CriterionStatus.SKIPPED]
+    share = run_teacher_tests.count(CriterionStatus.PASS) / len(run_teacher_tests)
     if share == 1.0:
-        return replace(blank, status=CriterionStatus.PASS, points=own.points)
-    said = next(
-        (words for status, words in outcomes if status is CriterionStatus.FAIL and words), own.feedback
+        return replace(blank, status=CriterionStatus.PASS, points=test.points)
+    text = next(
+        (message for status, message in outcomes if status is CriterionStatus.FAIL and message), test.feedback
     )
     return replace(
         blank,
         status=CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL,
-        points=round(own.points * share, 6),
-        rationale=said or f"“{own.title}” does not hold.",
-        hints=own.hints,
+        points=round(test.points * share, 6),
+        rationale=text or f"“{test.title}” does not hold.",
+        hints=test.hints,
     )

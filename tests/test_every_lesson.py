@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read as read_assignment
-from grader.self_test import STARTER, prove
-from grader.session import Terms
+from grader.self_test import STARTER, try_works
+from grader.session import GradingOptions
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.school.lessons.checking import check
@@ -52,11 +52,11 @@ def test_there_are_at_least_thirteen_in_order() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_it_leads_from_prediction_to_making(name: str) -> None:
     lesson = lesson_of(name)
-    kinds = [step.kind for step in lesson.steps]
-    assert kinds[0] is StepKind.PREDICT
-    assert StepKind.EXPLAIN in kinds
+    kind_names = [step.kind for step in lesson.steps]
+    assert kind_names[0] is StepKind.PREDICT
+    assert StepKind.EXPLAIN in kind_names
     # A prediction with a scene is run as soon as it is made.
-    assert StepKind.RUN in kinds or any(step.commands or step.scene for step in lesson.steps)
+    assert StepKind.RUN in kind_names or any(step.commands or step.scene for step in lesson.steps)
     assert 2 <= len(lesson.exercises) <= 4
     assert sum(exercise.seconds for exercise in lesson.exercises) <= lesson.minutes * 60
 
@@ -130,7 +130,7 @@ def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> N
     _, task = exercise_of(name, exercise)
     assignment = read_assignment(task.folder)
     solutions = solutions_folder() / name / exercise
-    proofs = list(prove(assignment, Terms(Level.LIMITED, secret=True), solutions))
+    proofs = list(try_works(assignment, GradingOptions(Level.LIMITED, secret=True), solutions))
     by_hand = task.file.endswith(".npz")  # a drive has no starter
     wrong = {
         each.name: each.problems
@@ -144,10 +144,10 @@ def test_every_work_loses_what_it_was_written_for(name: str, exercise: str) -> N
 @pytest.mark.parametrize("name", NAMES)
 def test_every_command_in_a_text_stands_among_its_commands(name: str) -> None:
     lesson = lesson_of(name)
-    listed = {command.line for step in lesson.steps for command in step.commands}
+    join_faults = {command.line for step in lesson.steps for command in step.commands}
     for step in lesson.steps:
         for line in (*IN_TEXT.findall(step.text), *GREETING.findall(step.text)):
-            assert line in listed or _is_a_verb(line), f"step {step.number}: {line}"
+            assert line in join_faults or _is_a_verb(line), f"step {step.number}: {line}"
 
 
 def _is_a_verb(line: str) -> bool:

@@ -36,7 +36,7 @@ class Check:
     words: tuple[str, str] | None
     """For a yes or no: what 0 and 1 mean."""
 
-    def said(self, measure: float) -> str:
+    def format(self, measure: float) -> str:
         """A measure in words, or with its unit."""
         if self.words is not None:
             return self.words[measure >= 1.0]

@@ -11,34 +11,34 @@ from typing import Final
 import numpy as np
 
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.drive_record import LOOK_EVERY, Drive, Floats
+from grader.evidence.drive_record import CLEARANCE_INTERVAL, DriveRecord, Floats
 from kit.geometry import Pose
 from kit.run.recording import ACCEPT
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
+class TopicRateParams:
     topic: str = "/cmd_vel"
     rate: float = 10.0
     """Messages per second that are wanted."""
 
 
 @dataclass(frozen=True, slots=True)
-class Topics:
+class TopicsParams:
     topics: tuple[str, ...] = ("/cmd_vel geometry_msgs/msg/Twist",)
     """Each a name, perhaps with the type of its messages after a space, and after another the only node that may
     publish it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Band:
+class DistanceBandParams:
     low: float = 0.3
     high: float = 0.5
     """m"""
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class WaypointParams:
     places: tuple[str, ...] = ("1 0",)
     """In the order in which the robot should come by: x and y [m], seen from its start."""
     within: float = 0.15
@@ -46,7 +46,7 @@ class Places:
 
 
 @dataclass(frozen=True, slots=True)
-class Speeds:
+class SpeedParams:
     speeds: tuple[str, ...] = ("0.5",)
     """m/s, forward."""
     within: float = 0.02
@@ -54,7 +54,7 @@ class Speeds:
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class SpeedSpanParams:
     begin: float = 0.0
     end: float = 1e9
     """s of the episode."""
@@ -64,7 +64,7 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class AnswerParams:
     call: str = ""
     """Its name in the trial."""
     holds: str = ""
@@ -72,7 +72,7 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class PrintedTextParams:
     text: str = ""
     """What a printed line should hold."""
     seconds: float = 1.0
@@ -80,7 +80,7 @@ class Words:
 
 
 @dataclass(frozen=True, slots=True)
-class Ring:
+class CircleParams:
     radius: float = 0.5
     """m"""
     after: float = 1.0
@@ -88,26 +88,26 @@ class Ring:
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
-def runs(drive: Drive, params: NoParams) -> float:
+def runs(drive: DriveRecord, params: NoParams) -> float:
     """Your program stopped before the episode was over ({where}). {passed} of {count} episodes ran through."""
     return 1.0 if drive.failure is None else 0.0
 
 
 @check(none=0, full=1, words=("not reached", "reached"))
-def reached(drive: Drive, params: NoParams) -> float:
+def reached(drive: DriveRecord, params: NoParams) -> float:
     """The robot reached its target in {passed} of {count} episodes. Look at {where}."""
     return 1.0 if drive.score.reached_s is not None else 0.0
 
 
 @check(none=60, full=30, unit="s")
-def in_time(drive: Drive, params: NoParams) -> float:
+def in_time(drive: DriveRecord, params: NoParams) -> float:
     """The slowest episode ({where}) took {actual} to the target; {full} earn all points. An episode that never gets
     there counts as endless."""
     return math.inf if drive.score.reached_s is None else drive.score.reached_s
 
 
 @check(none=0, full=0.9, unit="%")
-def approach(drive: Drive, params: NoParams) -> float:
+def approach(drive: DriveRecord, params: NoParams) -> float:
     """In the worst episode ({where}) the robot closed {actual} of the distance to its target; {full} earns all
     points."""
     case = drive.place.case
@@ -120,19 +120,19 @@ def approach(drive: Drive, params: NoParams) -> float:
 
 
 @check(none=3, full=0, unit="bumps")
-def bumps(drive: Drive, params: NoParams) -> float:
+def bumps(drive: DriveRecord, params: NoParams) -> float:
     """The robot touched something: {actual} in the worst episode ({where}); {full} are allowed for all points."""
     return float(drive.score.bumps)
 
 
 @check(none=0.02, full=0.1, unit="m")
-def clearance(drive: Drive, params: NoParams) -> float:
+def clearance(drive: DriveRecord, params: NoParams) -> float:
     """The robot came within {actual} of a wall ({where}); at least {full} are wanted all the way."""
     return float(drive.clearances.min())
 
 
-@check(none=0.3, full=0.9, unit="%", params=Band)
-def keeps_distance(drive: Drive, params: Band) -> float:
+@check(none=0.3, full=0.9, unit="%", params=DistanceBandParams)
+def keeps_distance(drive: DriveRecord, params: DistanceBandParams) -> float:
     """The robot kept the asked distance to the wall for {actual} of its time in the worst episode
     ({where}); {full} earns all points."""
     near = drive.clearances
@@ -140,7 +140,7 @@ def keeps_distance(drive: Drive, params: Band) -> float:
 
 
 @check(none=4, full=1, unit="rad/s of change per second")
-def smooth(drive: Drive, params: NoParams) -> float:
+def smooth(drive: DriveRecord, params: NoParams) -> float:
     """The robot jerks: its turning command changed by {actual} ({where}); {full} or less is smooth."""
     commands = drive.commands
     if len(commands) < 2 or drive.seconds == 0.0:
@@ -149,30 +149,30 @@ def smooth(drive: Drive, params: NoParams) -> float:
 
 
 @check(none=0.5, full=3, unit="m")
-def moves(drive: Drive, params: NoParams) -> float:
+def moves(drive: DriveRecord, params: NoParams) -> float:
     """The robot drove only {actual} ({where}); {full} are wanted."""
     return drive.score.distance_m
 
 
 @check(none=2, full=1, unit="m/s")
-def top_speed(drive: Drive, params: NoParams) -> float:
+def top_speed(drive: DriveRecord, params: NoParams) -> float:
     """The robot was told to drive as no robot can: it went up to {actual} ({where}); {full} is the limit."""
     speeds = _speeds(drive)
     return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
 
 
-def _speeds(drive: Drive) -> Floats:
+def _speeds(drive: DriveRecord) -> Floats:
     """(ticks - 1,) m/s; NaN where the robot was sent home: it is elsewhere at once, and has not driven there."""
     if drive.steps < 2:
         return np.empty(0)
     speeds: Floats = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
-    sent = [told.tick - 1 for told in drive.recording.inputs if told.kind != ACCEPT]
+    sent = [entry.tick - 1 for entry in drive.recording.inputs if entry.kind != ACCEPT]
     speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
     return speeds
 
 
 @check(none=2.0, full=1.2)
-def short_way(drive: Drive, params: NoParams) -> float:
+def short_way(drive: DriveRecord, params: NoParams) -> float:
     """The way was {actual} times as long as the straight line to the target ({where}); {full} or less earns all
     points."""
     case = drive.place.case
@@ -182,44 +182,44 @@ def short_way(drive: Drive, params: NoParams) -> float:
     return drive.score.distance_m / max(straight - case.target_radius, 1e-9)
 
 
-@check(none=0.5, full=0.1, unit="%", params=Topic)
-def rate(drive: Drive, params: Topic) -> float:
+@check(none=0.5, full=0.1, unit="%", params=TopicRateParams)
+def rate(drive: DriveRecord, params: TopicRateParams) -> float:
     """The program's messages do not come at the asked rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, not a sleep."""
-    talk = drive.talk.get(params.topic)
-    if talk is None or drive.seconds == 0.0 or params.rate <= 0.0:
+    traffic = drive.traffic.get(params.topic)
+    if traffic is None or drive.seconds == 0.0 or params.rate <= 0.0:
         return math.inf
-    return abs(talk.count / drive.seconds - params.rate) / params.rate
+    return abs(traffic.count / drive.seconds - params.rate) / params.rate
 
 
-@check(none=0, full=1, unit="%", params=Topics)
-def topics(drive: Drive, params: Topics) -> float:
+@check(none=0, full=1, unit="%", params=TopicsParams)
+def topics(drive: DriveRecord, params: TopicsParams) -> float:
     """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
     what the task says: `kit ros topic list` shows what there is, `kit ros node info` who publishes."""
     heard = [_is_heard(drive, *each.split()) for each in params.topics]
     return sum(heard) / len(heard) if heard else math.nan
 
 
-def _is_heard(drive: Drive, name: str, kind: str = "", node: str = "") -> bool:
-    talk = drive.talk.get(name)
-    return talk is not None and kind in ("", talk.kind) and (not node or talk.nodes == (node,))
+def _is_heard(drive: DriveRecord, name: str, kind: str = "", node: str = "") -> bool:
+    traffic = drive.traffic.get(name)
+    return traffic is not None and kind in ("", traffic.kind) and (not node or traffic.nodes == (node,))
 
 
 @check(none=1, full=0, unit="changes")
-def obeys(drive: Drive, params: NoParams) -> float:
+def obeys(drive: DriveRecord, params: NoParams) -> float:
     """The program tried to change the world instead of driving in it: {actual} ({where}). Only what the task allows
     works here."""
     return float(len(drive.refused))
 
 
-@check(none=0, full=1, unit="%", params=Places)
-def comes_by(drive: Drive, params: Places) -> float:
+@check(none=0, full=1, unit="%", params=WaypointParams)
+def comes_by(drive: DriveRecord, params: WaypointParams) -> float:
     """Of the asked places the robot came by {actual}, in their order, in the worst episode ({where}). Compare its way
     in the picture with what was asked."""
     if not len(drive.track):
         return 0.0
     start, passed = Pose(*drive.track[0].tolist()), 0
-    way = drive.track[::LOOK_EVERY, :2]
+    way = drive.track[::CLEARANCE_INTERVAL, :2]
     for place in params.places:
         x, y = (float(number) for number in place.split())
         near = np.flatnonzero(np.hypot(*(way - start.point(x, y)).T) <= params.within)
@@ -230,25 +230,25 @@ def comes_by(drive: Drive, params: Places) -> float:
 
 
 @check(none=1, full=0.15, unit="m")
-def comes_back(drive: Drive, params: NoParams) -> float:
+def comes_back(drive: DriveRecord, params: NoParams) -> float:
     """At its end the robot stands {actual} from where it began ({where}); at most {full} earns all points."""
     if not len(drive.track):
         return math.nan
     return float(math.dist(drive.track[0, :2], drive.track[-1, :2]))
 
 
-@check(none=0, full=1, unit="%", params=Speeds)
-def drives_at(drive: Drive, params: Speeds) -> float:
+@check(none=0, full=1, unit="%", params=SpeedParams)
+def drives_at(drive: DriveRecord, params: SpeedParams) -> float:
     """Of the speeds that were asked for, the robot was ever told {actual} ({where}). Compare the numbers you publish,
     and when, with the task's."""
-    told = drive.commands[:, 1]
+    entry = drive.commands[:, 1]
     return float(
-        np.mean([bool(np.any(np.abs(told - float(each)) <= params.within)) for each in params.speeds])
+        np.mean([bool(np.any(np.abs(entry - float(each)) <= params.within)) for each in params.speeds])
     )
 
 
-@check(none=0.5, full=0.95, unit="%", params=Span)
-def keeps_speed(drive: Drive, params: Span) -> float:
+@check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams)
+def keeps_speed(drive: DriveRecord, params: SpeedSpanParams) -> float:
     """The robot kept to the asked speed for {actual} of the time that counts here ({where}); {full} earns all points."""
     step = drive.recording.step_size
     first, after = round(params.begin / step), round(min(params.end, drive.seconds) / step)
@@ -257,24 +257,28 @@ def keeps_speed(drive: Drive, params: Span) -> float:
     return float(np.mean((speeds >= params.low) & (speeds <= params.high))) if len(speeds) else math.nan
 
 
-@check(none=0, full=1, words=("not as asked", "as asked"), params=Answer)
-def answered(drive: Drive, params: Answer) -> float:
+@check(none=0, full=1, words=("not as asked", "as asked"), params=AnswerParams)
+def answered(drive: DriveRecord, params: AnswerParams) -> float:
     """The program was called while it drove, and did not answer as asked ({where})."""
     return float(params.holds in drive.answers.get(params.call, ""))
 
 
 @check(none=0, full=1, unit="%")
-def goes_home(drive: Drive, params: NoParams) -> float:
+def goes_home(drive: DriveRecord, params: NoParams) -> float:
     """After {actual} of its bumps the robot was sent home within a second ({where}). A bump is a message on
     collisions; going home is a request to the service /move_model."""
-    told = [each.tick for each in drive.recording.inputs if each.kind == "move_model"]
-    bumped = drive.bumped
+    entry = [each.tick for each in drive.recording.inputs if each.kind == "move_model"]
+    bump_ticks = drive.bump_ticks
     soon = 1.0 / drive.recording.step_size
-    return sum(any(0 <= tick - at <= soon for tick in told) for at in bumped) / len(bumped) if bumped else 0.0
+    return (
+        sum(any(0 <= tick - at <= soon for tick in entry) for at in bump_ticks) / len(bump_ticks)
+        if bump_ticks
+        else 0.0
+    )
 
 
-@check(none=0.5, full=0.1, unit="%", params=Words)
-def says(drive: Drive, params: Words) -> float:
+@check(none=0.5, full=0.1, unit="%", params=PrintedTextParams)
+def says(drive: DriveRecord, params: PrintedTextParams) -> float:
     """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, and `self.get_logger().info(...)` says it."""
     heard = sum(params.text.casefold() in line.casefold() for line in drive.printed)
@@ -283,8 +287,8 @@ def says(drive: Drive, params: Words) -> float:
     return abs(heard * params.seconds / drive.seconds - 1.0)
 
 
-@check(none=0.5, full=0.1, unit="%", params=Ring)
-def circle(drive: Drive, params: Ring) -> float:
+@check(none=0.5, full=0.1, unit="%", params=CircleParams)
+def circle(drive: DriveRecord, params: CircleParams) -> float:
     """The robot's way should be a circle of the asked radius; its points are off by {actual} of that ({where}); {full}
     is allowed. A circle's radius is the speed divided by the rate of turning."""
     way = drive.track[round(params.after / drive.recording.step_size) :, :2]

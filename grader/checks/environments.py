@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.environment import Episode, Visit, sectors
-from grader.kinds.contract import Look
+from grader.evidence.environment import EnvironmentEpisode, EnvironmentRecord, sector_minima
+from grader.kinds.contract import EvidenceRecord
 from kit.geometry import Pose
 
 SECTORS: Final = 9
@@ -30,10 +30,10 @@ def _share(facts: list[str]) -> float:
     return sum(not fact for fact in facts) / len(facts) if facts else 0.0
 
 
-def spaces_facts(seen: Visit) -> Iterator[str]:
+def spaces_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Both spaces, each fine or not."""
-    action, observation = (seen.about.get(each, {}) for each in ("action_space", "observation_space"))
-    wanted = len(seen.wish.moves)
+    action, observation = (record.description.get(each, {}) for each in ("action_space", "observation_space"))
+    wanted = len(record.task.moves)
     yield (
         ""
         if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", wanted, 0)
@@ -42,8 +42,8 @@ def spaces_facts(seen: Visit) -> Iterator[str]:
     fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
     if not fits:
         yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space(observation)}."
-    elif observation.get("low") != 0.0 or observation.get("high") != seen.wish.clip:
-        yield f"observation_space should reach from 0 to {seen.wish.clip:g}, and is {_space(observation)}."
+    elif observation.get("low") != 0.0 or observation.get("high") != record.task.clip:
+        yield f"observation_space should reach from 0 to {record.task.clip:g}, and is {_space(observation)}."
     elif observation.get("dtype") not in ("float32", "float64"):
         yield f"what is seen are metres: the Box's dtype should be numpy.float32, not {observation.get('dtype')}."
     else:
@@ -62,10 +62,10 @@ def _space(told: Mapping[str, object]) -> str:
     return "missing" if kind in (None, "NoneType") else f"a {kind}"
 
 
-def resets_facts(seen: Visit) -> Iterator[str]:
+def resets_facts(record: EnvironmentRecord) -> Iterator[str]:
     """For every reset: what it returned, where the robot is, whether it was the newest scan that was seen."""
-    home = seen.wish.place.start or Pose()
-    for episode in seen.episodes.values():
+    home = record.task.place.start or Pose()
+    for episode in record.episodes.values():
         returned = episode.returned
         parts = returned.get("parts", [])
         turned = abs((episode.pose.theta - home.theta + math.pi) % (2 * math.pi) - math.pi)
@@ -78,46 +78,46 @@ def resets_facts(seen: Visit) -> Iterator[str]:
             yield "The observation of reset() is not in observation_space: look at its shape, dtype and bounds."
         elif away > NEAR_HOME[0] or turned > NEAR_HOME[1]:
             yield f"After reset() the robot stands {away:.2f} m and {math.degrees(turned):.0f} degrees from its home."
-        elif not _seen_right(parts[0], episode.ranges, seen):
-            wrong = _difference(parts[0], episode.ranges, seen)
+        elif not _seen_right(parts[0], episode.ranges, record):
+            wrong = _difference(parts[0], episode.ranges, record)
             yield f"In the observation of reset(): {wrong} Was the scan from before the reset kept?"
         else:
             yield ""
 
 
-def steps_facts(seen: Visit) -> Iterator[str]:
+def steps_facts(record: EnvironmentRecord) -> Iterator[str]:
     """For every step: five values of the right kinds."""
-    for moment in seen.moments:
-        returned = moment.returned
+    for step in record.step_records:
+        returned = step.returned
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
             count = returned.get("count", "no")
             yield f"step() returns five values: observation, reward, terminated, truncated, info; not {count}."
-        elif not moment.inside:
+        elif not step.inside:
             yield "The observation of step() is not in observation_space: look at its shape, dtype and bounds."
-        elif moment.part(1).get("kind") not in NUMBERS or moment.part(1).get("value") is None:
-            yield f"The second value of step(), the reward, is a finite number, not a {moment.part(1).get('kind')}."
-        elif (moment.part(2).get("kind"), moment.part(3).get("kind")) != ("bool", "bool"):
-            kinds = f"{moment.part(2).get('kind')} and {moment.part(3).get('kind')}"
+        elif step.part(1).get("kind") not in NUMBERS or step.part(1).get("value") is None:
+            yield f"The second value of step(), the reward, is a finite number, not a {step.part(1).get('kind')}."
+        elif (step.part(2).get("kind"), step.part(3).get("kind")) != ("bool", "bool"):
+            kinds = f"{step.part(2).get('kind')} and {step.part(3).get('kind')}"
             yield f"terminated and truncated are True or False, not {kinds}."
-        elif moment.part(4).get("kind") != "dict":
-            yield f"The fifth value of step() is info, a dictionary, not a {moment.part(4).get('kind')}."
+        elif step.part(4).get("kind") != "dict":
+            yield f"The fifth value of step() is info, a dictionary, not a {step.part(4).get('kind')}."
         else:
             yield ""
 
 
-def sees_facts(seen: Visit) -> Iterator[str]:
+def sees_facts(record: EnvironmentRecord) -> Iterator[str]:
     """For every step: nine sectors of the newest scan."""
-    for moment in seen.moments:
-        told = moment.part(0)
-        if _seen_right(told, moment.ranges, seen):
+    for step in record.step_records:
+        told = step.part(0)
+        if _seen_right(told, step.ranges, record):
             yield ""
         else:
-            wrong = _difference(told, moment.ranges, seen)
+            wrong = _difference(told, step.ranges, record)
             yield wrong[0].upper() + wrong[1:]
 
 
-def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], seen: Visit) -> bool:
-    numbers, wanted = told.get("numbers"), sectors(ranges, SECTORS, seen.wish.clip)
+def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord) -> bool:
+    numbers, wanted = told.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     return (
         isinstance(numbers, list)
         and len(numbers) == len(wanted)
@@ -128,9 +128,9 @@ def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], seen: Vis
     )
 
 
-def _difference(told: Mapping[str, object], ranges: tuple[float, ...], seen: Visit) -> str:
+def _difference(told: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord) -> str:
     """Where an observation that is not right is wrong first."""
-    numbers, wanted = told.get("numbers"), sectors(ranges, SECTORS, seen.wish.clip)
+    numbers, wanted = told.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     if not isinstance(numbers, list) or len(numbers) != len(wanted):
         return f"an observation is {SECTORS} numbers."
     place = next(
@@ -143,64 +143,64 @@ def _difference(told: Mapping[str, object], ranges: tuple[float, ...], seen: Vis
     return f"sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
 
 
-def acts_facts(seen: Visit) -> Iterator[str]:
+def acts_facts(record: EnvironmentRecord) -> Iterator[str]:
     """For every step in which nothing was in the way: whether the robot did what the action says."""
-    for moment in seen.moments:
-        if moment.touched:
+    for step in record.step_records:
+        if step.touched:
             continue
-        speed, turn = seen.wish.moves[moment.action]
-        gone = math.hypot(moment.after.x - moment.before.x, moment.after.y - moment.before.y)
-        turned = (moment.after.theta - moment.before.theta + math.pi) % (2 * math.pi) - math.pi
-        wanted = speed * seen.wish.step_s, turn * seen.wish.step_s
+        speed, turn = record.task.moves[step.action]
+        gone = math.hypot(step.after.x - step.before.x, step.after.y - step.before.y)
+        turned = (step.after.theta - step.before.theta + math.pi) % (2 * math.pi) - math.pi
+        wanted = speed * record.task.step_s, turn * record.task.step_s
         room = SLACK * max(abs(wanted[0]), abs(wanted[1]), 0.01)
         if abs(gone - wanted[0]) > room or abs(turned - wanted[1]) > room:
             yield (
-                f"step({moment.action}) should drive {wanted[0]:.3f} m and turn {math.degrees(wanted[1]):.0f} degrees; "
+                f"step({step.action}) should drive {wanted[0]:.3f} m and turn {math.degrees(wanted[1]):.0f} degrees; "
                 f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
             )
         else:
             yield ""
 
 
-def crash_facts(seen: Visit) -> Iterator[str]:
+def crash_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether a collision terminates."""
-    episode = seen.episodes["into the wall"]
-    hit = next((k for k, moment in enumerate(episode.moments) if moment.touched), None)
+    episode = record.episodes["into the wall"]
+    hit = next((k for k, step in enumerate(episode.step_records) if step.touched), None)
     yield _ended(episode, hit, "the robot touched a wall", "terminated")
 
 
-def arrival_facts(seen: Visit) -> Iterator[str]:
+def arrival_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether reaching the target terminates, and not too soon."""
-    case = seen.wish.place.case
+    case = record.task.place.case
     assert case is not None  # drives to a target are only asked for where there is one
-    episode, radius = seen.episodes["to the target"], case.target_radius
-    moments = episode.moments
-    late = next((k for k, moment in enumerate(moments) if moment.target_m < radius - BAND), None)
-    if moments and moments[-1].is_over and not moments[-1].touched:
-        away = moments[-1].target_m
-        late = len(moments) - 1 if away <= radius + BAND else late
+    episode, radius = record.episodes["to the target"], case.target_radius
+    step_records = episode.step_records
+    late = next((k for k, step in enumerate(step_records) if step.target_distance < radius - BAND), None)
+    if step_records and step_records[-1].is_over and not step_records[-1].touched:
+        away = step_records[-1].target_distance
+        late = len(step_records) - 1 if away <= radius + BAND else late
     yield _ended(episode, late, f"the robot came within {radius:g} m of the target", "terminated")
 
 
-def timeout_facts(seen: Visit) -> Iterator[str]:
+def timeout_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether running out of time truncates."""
-    last = seen.wish.max_steps - 1
-    episode = seen.episodes["turning on the spot"]
+    last = record.task.max_steps - 1
+    episode = record.episodes["turning on the spot"]
     yield _ended(episode, last, "the time was up", "truncated")
 
 
-def _ended(episode: Episode, due: int | None, why: str, how: str) -> str:
+def _ended(episode: EnvironmentEpisode, due: int | None, why: str, how: str) -> str:
     """A complaint unless the episode ended at this moment, and in this way."""
-    moments = episode.moments
-    over = next((k for k, moment in enumerate(moments) if moment.is_over), None)
+    step_records = episode.step_records
+    over = next((k for k, step in enumerate(step_records) if step.is_over), None)
     if over is not None and (due is None or over < due):
-        ended = "terminated" if moments[over].says(2) else "truncated"
+        ended = "terminated" if step_records[over].is_true(2) else "truncated"
         return f"The episode “{episode.name}” was {ended} after {over + 1} steps, without a reason."
     if due is None:
         return f"The episode “{episode.name}” did not come to its end: do the actions do what they should?"
     if over is None or over > due + 1:
         return f"After {due + 1} steps {why}: step() should return {how} as True then, and did not."
-    says = moments[over].says(2), moments[over].says(3)
+    says = step_records[over].is_true(2), step_records[over].is_true(3)
     if says != ((True, False) if how == "terminated" else (False, True)):
         hint = (
             "The world has not ended, only our patience: the agent cannot see the clock."
@@ -211,9 +211,11 @@ def _ended(episode: Episode, due: int | None, why: str, how: str) -> str:
     return ""
 
 
-def repeats_facts(seen: Visit) -> Iterator[str]:
+def repeats_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether a seed decides all that chance decides."""
-    one, again, other = (seen.episodes[name] for name in ("one seed", "the same seed again", "another seed"))
+    one, again, other = (
+        record.episodes[name] for name in ("one seed", "the same seed again", "another seed")
+    )
     same = _observations(one) == _observations(again)
     yield (
         ""
@@ -232,25 +234,25 @@ def repeats_facts(seen: Visit) -> Iterator[str]:
     )
 
 
-def _observations(episode: Episode) -> list[object]:
+def _observations(episode: EnvironmentEpisode) -> list[object]:
     first = episode.returned.get("parts", [{}])
-    seen = [first[0].get("numbers") if first else None]
-    seen += [moment.part(0).get("numbers") for moment in episode.moments]
-    return [[round(n, 3) if isinstance(n, float) else n for n in each or []] for each in seen]
+    record = [first[0].get("numbers") if first else None]
+    record += [step.part(0).get("numbers") for step in episode.step_records]
+    return [[round(n, 3) if isinstance(n, float) else n for n in each or []] for each in record]
 
 
-def _start(episode: Episode) -> tuple[float, ...]:
+def _start(episode: EnvironmentEpisode) -> tuple[float, ...]:
     return tuple(round(each, 4) for each in episode.pose)
 
 
-def pays_facts(seen: Visit) -> Iterator[str]:
+def pays_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether arriving pays, and a collision costs."""
     for name, sign, what in (
         ("to the target", 1, "reaching the target"),
         ("into the wall", -1, "a collision"),
     ):
-        moments = seen.episodes[name].moments
-        paid = moments[-1].part(1).get("value") if moments else None
+        step_records = record.episodes[name].step_records
+        paid = step_records[-1].part(1).get("value") if step_records else None
         fine = isinstance(paid, float) and paid * sign > 0
         wanted = "more than 0" if sign > 0 else "less than 0"
         yield (
@@ -260,83 +262,83 @@ def pays_facts(seen: Visit) -> Iterator[str]:
         )
 
 
-def checker_facts(seen: Visit) -> Iterator[str]:
+def checker_facts(record: EnvironmentRecord) -> Iterator[str]:
     """Whether Gymnasium's own checker is content."""
-    yield f"It says: {seen.checker}" if seen.checker else ""
+    yield f"It says: {record.checker_complaint}" if record.checker_complaint else ""
 
 
-Facts = Callable[[Visit], Iterator[str]]
+Facts = Callable[[EnvironmentRecord], Iterator[str]]
 """Each fact is a complaint, or empty where all is well."""
 
 
-def _measure(facts: Facts, look: Look) -> float:
-    return _share(list(facts(look.found)))
+def _measure(facts: Facts, evidence: EvidenceRecord) -> float:
+    return _share(list(facts(evidence.found)))
 
 
 @check(none=0, full=1, unit="%")
-def spaces(look: Look, params: NoParams) -> float:
+def spaces(evidence: EvidenceRecord, params: NoParams) -> float:
     """The spaces say what an agent may do and what it sees; {actual} of that is right."""
-    return _measure(spaces_facts, look)
+    return _measure(spaces_facts, evidence)
 
 
 @check(none=0, full=1, unit="%")
-def resets(look: Look, params: NoParams) -> float:
+def resets(evidence: EvidenceRecord, params: NoParams) -> float:
     """reset() begins an episode; it did so rightly in {actual} of the cases."""
-    return _measure(resets_facts, look)
+    return _measure(resets_facts, evidence)
 
 
 @check(none=0, full=1, unit="%")
-def steps(look: Look, params: NoParams) -> float:
+def steps(evidence: EvidenceRecord, params: NoParams) -> float:
     """What step() returned has the right form in {actual} of the steps."""
-    return _measure(steps_facts, look)
+    return _measure(steps_facts, evidence)
 
 
 @check(none=0.5, full=1, unit="%")
-def sees(look: Look, params: NoParams) -> float:
+def sees(evidence: EvidenceRecord, params: NoParams) -> float:
     """The observation is the nine sectors of the newest scan in {actual} of the steps."""
-    return _measure(sees_facts, look)
+    return _measure(sees_facts, evidence)
 
 
 @check(none=0.5, full=0.98, unit="%")
-def acts(look: Look, params: NoParams) -> float:
+def acts(evidence: EvidenceRecord, params: NoParams) -> float:
     """The robot did what the action says in {actual} of the steps."""
-    return _measure(acts_facts, look)
+    return _measure(acts_facts, evidence)
 
 
 @check(none=0, full=1, words=("something else", "terminated"))
-def crash(look: Look, params: NoParams) -> float:
+def crash(evidence: EvidenceRecord, params: NoParams) -> float:
     """A collision ends the episode."""
-    return _measure(crash_facts, look)
+    return _measure(crash_facts, evidence)
 
 
 @check(none=0, full=1, words=("something else", "terminated"))
-def arrival(look: Look, params: NoParams) -> float:
+def arrival(evidence: EvidenceRecord, params: NoParams) -> float:
     """Reaching the target ends the episode."""
-    return _measure(arrival_facts, look)
+    return _measure(arrival_facts, evidence)
 
 
 @check(none=0, full=1, words=("something else", "truncated"))
-def timeout(look: Look, params: NoParams) -> float:
+def timeout(evidence: EvidenceRecord, params: NoParams) -> float:
     """When its time is up an episode is cut off."""
-    return _measure(timeout_facts, look)
+    return _measure(timeout_facts, evidence)
 
 
 @check(none=0, full=1, unit="%")
-def repeats(look: Look, params: NoParams) -> float:
+def repeats(evidence: EvidenceRecord, params: NoParams) -> float:
     """The seed must decide whatever chance decides, and nothing else may."""
-    return _measure(repeats_facts, look)
+    return _measure(repeats_facts, evidence)
 
 
 @check(none=0, full=1, unit="%")
-def pays(look: Look, params: NoParams) -> float:
+def pays(evidence: EvidenceRecord, params: NoParams) -> float:
     """The reward of an episode's last step tells good ends from bad ones."""
-    return _measure(pays_facts, look)
+    return _measure(pays_facts, evidence)
 
 
 @check(none=0, full=1, words=("complains", "content"))
-def checker(look: Look, params: NoParams) -> float:
+def checker(evidence: EvidenceRecord, params: NoParams) -> float:
     """Gymnasium's own checker is not content."""
-    return _measure(checker_facts, look)
+    return _measure(checker_facts, evidence)
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
@@ -363,6 +365,6 @@ FACTS: Final[Mapping[str, Facts]] = MappingProxyType(
 """By the check's name."""
 
 
-def complaint(seen: Visit, name: str) -> str:
+def complaint(record: EnvironmentRecord, name: str) -> str:
     """The first complaint that a check has."""
-    return next(filter(None, FACTS[name](seen)), "")
+    return next(filter(None, FACTS[name](record)), "")

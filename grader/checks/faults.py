@@ -8,27 +8,27 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from grader.evidence.world.facts import RunFacts, WorldFacts
-from grader.kinds.contract import Look
+from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
-ANY: Final = math.nan
+UNSPECIFIED: Final = math.nan
 """A number that is not asked for: it differs from nothing by more than anything."""
 
 
 @dataclass(frozen=True)
-class Seen:
+class WorldContents:
     """A world that was read, or could not be."""
 
     world: WorldFacts
 
     @property
     def outcome(self) -> str:
-        count = len(self.world.problems)
-        return f"{count} mistake{'s' if count > 1 else ''}" if count else "read"
+        count_faults = len(self.world.problems)
+        return f"{count_faults} mistake{'s' if count_faults > 1 else ''}" if count_faults else "read"
 
 
 @dataclass(frozen=True)
-class Run:
+class WorldRun:
     """A world that ran."""
 
     world: WorldFacts
@@ -47,24 +47,24 @@ class Run:
         return f"not reached, {run.bumps} bumps" if run.bumps else "not reached"
 
 
-UNSAID: Final = ("", "")
+NO_WORDS: Final = ("", "")
 """Of a check that counts faults, the faults themselves say more than their number."""
 
 Faults = Callable[[WorldFacts, Any], Iterator[str]]
-RunFaults = Callable[[Run, Any], Iterator[str]]
+RunFaults = Callable[[WorldRun, Any], Iterator[str]]
 
 
-def count(look: Look, faults: Faults, params: Any) -> float:
+def count_faults(evidence: EvidenceRecord, faults: Faults, params: Any) -> float:
     """How many things are wrong; nan for a world that cannot be read."""
-    world: WorldFacts = look.found.world
+    world: WorldFacts = evidence.found.world
     return math.nan if world.problems else float(sum(1 for _ in faults(world, params)))
 
 
-def run_count(look: Look, faults: RunFaults, params: Any) -> float:
+def count_run_faults(evidence: EvidenceRecord, faults: RunFaults, params: Any) -> float:
     """The same of a run; nan where there was none."""
-    if not isinstance(look.found, Run) or look.found.run.problem:
+    if not isinstance(evidence.found, WorldRun) or evidence.found.run.problem:
         return math.nan
-    return float(sum(1 for _ in faults(look.found, params)))
+    return float(sum(1 for _ in faults(evidence.found, params)))
 
 
 def metres(value: float) -> str:
@@ -72,6 +72,6 @@ def metres(value: float) -> str:
     return f"{round(value, 3) + 0.0:g} m"
 
 
-def no_model(world: WorldFacts, name: str) -> str:
+def missing_model(world: WorldFacts, name: str) -> str:
     """What to say of a model that is missing."""
     return f"there is no model {quoted(name)}: {suggestion(name, [model.name for model in world.models])}"

@@ -7,20 +7,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import ANY, UNSAID, count, metres, no_model
+from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
 from grader.evidence.world.facts import Box, WorldFacts
-from grader.kinds.contract import Look
+from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted
 
 
 @check(none=0, full=1, words=("does not load", "loads"))
-def loads(look: Look, params: NoParams) -> float:
+def loads(evidence: EvidenceRecord, params: NoParams) -> float:
     """The world does not load. Each line says what is wrong, in which file, and where:"""
-    return 0.0 if look.found.world.problems else 1.0
+    return 0.0 if evidence.found.world.problems else 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Has:
+class ContentParams:
     layers: tuple[str, ...] = ()
     """Names that layers must have."""
     maps: tuple[str, ...] = ()
@@ -30,7 +30,7 @@ class Has:
     """Each a model and a type, such as ``robot Laser``."""
 
 
-def missing(world: WorldFacts, params: Has) -> Iterator[str]:
+def missing(world: WorldFacts, params: ContentParams) -> Iterator[str]:
     models = [model.name for model in world.models]
     for what, wanted, there in (
         ("layer", params.layers, world.layers),
@@ -44,32 +44,32 @@ def missing(world: WorldFacts, params: Has) -> Iterator[str]:
         name, _, kind = each.partition(" ")
         model = world.model(name)
         if model is None:
-            yield no_model(world, name)
-        elif kind not in (types := [device.type for device in model.devices]):
+            yield missing_model(world, name)
+        elif kind not in (types := [device.type for device in model.plugins]):
             yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
 
 
-@check(none=1, full=0, words=UNSAID, params=Has)
-def has(look: Look, params: Has) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=ContentParams)
+def has(evidence: EvidenceRecord, params: ContentParams) -> float:
     """Something that the task asks for is not there:"""
-    return count(look, missing, params)
+    return count_faults(evidence, missing, params)
 
 
 @dataclass(frozen=True, slots=True)
-class WallsAsked:
+class WallParams:
     map: str = ""
     """By default every wall."""
     source: str = ""
     """The picture's name."""
-    left: float = ANY
-    bottom: float = ANY
-    width: float = ANY
-    height: float = ANY
+    left: float = UNSPECIFIED
+    bottom: float = UNSPECIFIED
+    width: float = UNSPECIFIED
+    height: float = UNSPECIFIED
     """m"""
     within: float = 0.02
 
 
-def wrong_walls(world: WorldFacts, params: WallsAsked) -> Iterator[str]:
+def wrong_walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
     some = [walls for walls in world.walls if params.map in ("", walls.map)]
     boxes = [walls.box for walls in some if walls.box is not None]
     if not boxes:
@@ -97,26 +97,26 @@ def around(boxes: list[Box]) -> Box:
     return min(left), min(bottom), max(right), max(top)
 
 
-@check(none=1, full=0, words=UNSAID, params=WallsAsked)
-def walls(look: Look, params: WallsAsked) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=WallParams)
+def walls(evidence: EvidenceRecord, params: WallParams) -> float:
     """The walls are not where they should be:"""
-    return count(look, wrong_walls, params)
+    return count_faults(evidence, wrong_walls, params)
 
 
 @dataclass(frozen=True, slots=True)
-class Stands:
+class ModelPoseParams:
     model: str = "robot"
     x: float = 0.0
     y: float = 0.0
-    theta: float = ANY
+    theta: float = UNSPECIFIED
     within: float = 0.01
     """m, and ten times as much in rad"""
 
 
-def wrong_stand(world: WorldFacts, params: Stands) -> Iterator[str]:
+def wrong_stand(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
     model = world.model(params.model)
     if model is None:
-        yield no_model(world, params.model)
+        yield missing_model(world, params.model)
         return
     x, y, theta = model.pose
     if math.hypot(x - params.x, y - params.y) > params.within:
@@ -125,7 +125,7 @@ def wrong_stand(world: WorldFacts, params: Stands) -> Iterator[str]:
         yield f"{params.model} looks towards {theta:g} rad, not {params.theta:g}"
 
 
-@check(none=1, full=0, words=UNSAID, params=Stands)
-def stands(look: Look, params: Stands) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=ModelPoseParams)
+def stands(evidence: EvidenceRecord, params: ModelPoseParams) -> float:
     """A model does not stand where it should:"""
-    return count(look, wrong_stand, params)
+    return count_faults(evidence, wrong_stand, params)

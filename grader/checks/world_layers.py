@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import UNSAID, count
+from grader.checks.faults import NO_WORDS, count_faults
 from grader.evidence.world.facts import WorldFacts
-from grader.kinds.contract import Look
+from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)
-class Pairs:
+class CollisionParams:
     collide: tuple[str, ...] = ()
     """Each two things with `` - `` between: models, or maps by their file's name. All others must not collide."""
     free: tuple[str, ...] = ()
@@ -32,10 +32,10 @@ def _pair(a: str, b: str) -> tuple[str, str]:
     return (a, b) if a <= b else (b, a)
 
 
-def wrong_contacts(world: WorldFacts, params: Pairs) -> Iterator[str]:
+def wrong_contacts(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
     wanted, free = ({_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free))
     why: dict[tuple[str, str], tuple[bool, str]] = {}
-    for meeting in world.meetings:
+    for meeting in world.collisions:
         pair = _pair(_called(meeting.a, params.split), _called(meeting.b, params.split))
         if pair not in why or (meeting.collides and not why[pair][0]):
             why[pair] = meeting.collides, meeting.why
@@ -53,25 +53,25 @@ def wrong_contacts(world: WorldFacts, params: Pairs) -> Iterator[str]:
             yield f"{a} and {b} do not collide ({reason}), and should"
 
 
-@check(none=1, full=0, words=UNSAID, params=Pairs)
-def collisions(look: Look, params: Pairs) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=CollisionParams)
+def collisions(evidence: EvidenceRecord, params: CollisionParams) -> float:
     """Who collides with whom is not as the task asks:"""
-    return count(look, wrong_contacts, params)
+    return count_faults(evidence, wrong_contacts, params)
 
 
 @dataclass(frozen=True, slots=True)
-class Sights:
+class SightParams:
     sees: tuple[str, ...] = ()
     """Each a laser and what it must see: ``robot/lidar: hall, crate``. It must see nothing else."""
     split: tuple[str, ...] = ()
 
 
-def wrong_sights(world: WorldFacts, params: Sights) -> Iterator[str]:
+def wrong_sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
     for each in params.sees:
-        name, _, listed = each.partition(":")
-        wanted = {part.strip() for part in listed.split(",") if part.strip()}
+        name, _, join_faults = each.partition(":")
+        wanted = {part.strip() for part in join_faults.split(",") if part.strip()}
         views: dict[str, tuple[bool, str]] = {}
-        for view in world.views:
+        for view in world.sights:
             thing = _called(view.thing, params.split)
             if view.laser == name and (thing not in views or (view.sees and not views[thing][0])):
                 views[thing] = view.sees, view.why
@@ -90,16 +90,16 @@ def wrong_sights(world: WorldFacts, params: Sights) -> Iterator[str]:
                 )
 
 
-@check(none=1, full=0, words=UNSAID, params=Sights)
-def sights(look: Look, params: Sights) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=SightParams)
+def sights(evidence: EvidenceRecord, params: SightParams) -> float:
     """Which laser sees whom is not as the task asks:"""
-    return count(look, wrong_sights, params)
+    return count_faults(evidence, wrong_sights, params)
 
 
 @check(none=17, full=16, unit="layers")
-def few_layers(look: Look, params: NoParams) -> float:
+def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """The world has {actual}; {full} would do."""
-    world: WorldFacts = look.found.world
+    world: WorldFacts = evidence.found.world
     return math.nan if world.problems else float(len(world.layers))
 
 

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from grader.checks.contract import check
-from grader.checks.faults import ANY, UNSAID, count, metres, no_model
-from grader.evidence.world.facts import Device, Joint, Model, Part, WorldFacts
-from grader.kinds.contract import Look
+from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
+from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
+from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)
-class BodyAsked:
+class BodyParams:
     model: str = "robot"
     body: str = "base"
     kind: str = ""
@@ -22,12 +22,12 @@ class BodyAsked:
     """circle or polygon"""
     footprints: int = 0
     """How many; 0: any number."""
-    x: float = ANY
-    y: float = ANY
+    x: float = UNSPECIFIED
+    y: float = UNSPECIFIED
     """Where it is in the model."""
-    length: float = ANY
-    width: float = ANY
-    front: float = ANY
+    length: float = UNSPECIFIED
+    width: float = UNSPECIFIED
+    front: float = UNSPECIFIED
     """x of its foremost point, in its own frame"""
     collision: str = ""
     sensor: str = ""
@@ -35,19 +35,19 @@ class BodyAsked:
     within: float = 0.003
 
 
-def _part(world: WorldFacts, model_name: str, body: str) -> Part | str:
+def _find_body(world: WorldFacts, model_name: str, body: str) -> BodyFacts | str:
     model = world.model(model_name)
     if model is None:
-        return no_model(world, model_name)
-    for part in model.parts:
+        return missing_model(world, model_name)
+    for part in model.bodies:
         if part.name == body:
             return part
-    names = [part.name for part in model.parts]
+    names = [part.name for part in model.bodies]
     return f"{model_name} has no body {quoted(body)}: {suggestion(body, names)}"
 
 
-def wrong_body(world: WorldFacts, params: BodyAsked) -> Iterator[str]:
-    part = _part(world, params.model, params.body)
+def wrong_body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
+    part = _find_body(world, params.model, params.body)
     if isinstance(part, str):
         yield part
         return
@@ -79,29 +79,29 @@ def wrong_body(world: WorldFacts, params: BodyAsked) -> Iterator[str]:
             yield f"{name} has {what}: {str(asked != 'yes').lower()}"
 
 
-@check(none=1, full=0, words=UNSAID, params=BodyAsked)
-def body(look: Look, params: BodyAsked) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=BodyParams)
+def body(evidence: EvidenceRecord, params: BodyParams) -> float:
     """A body is not as the task asks:"""
-    return count(look, wrong_body, params)
+    return count_faults(evidence, wrong_body, params)
 
 
 @dataclass(frozen=True, slots=True)
-class JointAsked:
+class JointParams:
     model: str = "robot"
     a: str = "base"
     b: str = "wheel"
     kind: str = ""
     """weld or revolute"""
-    x: float = ANY
-    y: float = ANY
+    x: float = UNSPECIFIED
+    y: float = UNSPECIFIED
     """Where both ends are, in the model's frame."""
     within: float = 0.005
 
 
-def wrong_joint(world: WorldFacts, params: JointAsked) -> Iterator[str]:
+def wrong_joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
     model = world.model(params.model)
     if model is None:
-        yield no_model(world, params.model)
+        yield missing_model(world, params.model)
         return
     joint = _between(model, params)
     if joint is None:
@@ -117,32 +117,32 @@ def wrong_joint(world: WorldFacts, params: JointAsked) -> Iterator[str]:
             )
 
 
-def _between(model: Model, params: JointAsked) -> Joint | None:
+def _between(model: ModelFacts, params: JointParams) -> JointFacts | None:
     return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
 
 
-@check(none=1, full=0, words=UNSAID, params=JointAsked)
-def joint(look: Look, params: JointAsked) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=JointParams)
+def joint(evidence: EvidenceRecord, params: JointParams) -> float:
     """A joint is not as the task asks:"""
-    return count(look, wrong_joint, params)
+    return count_faults(evidence, wrong_joint, params)
 
 
 @dataclass(frozen=True, slots=True)
-class Topics:
+class TopicsParams:
     model: str = ""
     """By default any."""
     topics: tuple[str, ...] = ()
     """Each a name, perhaps with the type of its messages after a space."""
 
 
-def silent(publishes: bool) -> Callable[[WorldFacts, Topics], Iterator[str]]:
-    def missing(world: WorldFacts, params: Topics) -> Iterator[str]:
+def wrong_topics(publishes: bool) -> Callable[[WorldFacts, TopicsParams], Iterator[str]]:
+    def missing(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
         there = {
             end.topic: end.type
-            for end in world.ends
+            for end in world.endpoints
             if end.publishes is publishes and params.model in ("", end.model)
         }
-        others = {end.topic for end in world.ends if end.publishes is not publishes}
+        others = {end.topic for end in world.endpoints if end.publishes is not publishes}
         does, other = ("publishes", "subscribed") if publishes else ("subscribes", "published")
         for each in params.topics:
             topic, _, kind = each.partition(" ")
@@ -157,33 +157,33 @@ def silent(publishes: bool) -> Callable[[WorldFacts, Topics], Iterator[str]]:
     return missing
 
 
-@check(none=1, full=0, words=UNSAID, params=Topics)
-def publishes(look: Look, params: Topics) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=TopicsParams)
+def publishes(evidence: EvidenceRecord, params: TopicsParams) -> float:
     """The world's plugins do not say what the task asks:"""
-    return count(look, silent(True), params)
+    return count_faults(evidence, wrong_topics(True), params)
 
 
-@check(none=1, full=0, words=UNSAID, params=Topics)
-def subscribes(look: Look, params: Topics) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=TopicsParams)
+def subscribes(evidence: EvidenceRecord, params: TopicsParams) -> float:
     """The world's plugins do not listen where the task asks:"""
-    return count(look, silent(False), params)
+    return count_faults(evidence, wrong_topics(False), params)
 
 
 @dataclass(frozen=True, slots=True)
-class LaserAsked:
+class LaserParams:
     laser: str = "robot/lidar"
     """Model and plugin."""
     body: str = ""
     rays: int = 0
-    first: float = ANY
-    last: float = ANY
+    first: float = UNSPECIFIED
+    last: float = UNSPECIFIED
     """rad"""
-    range: float = ANY
+    range: float = UNSPECIFIED
     within: float = 0.01
 
 
-def wrong_laser(world: WorldFacts, params: LaserAsked) -> Iterator[str]:
-    device = _device(world, params.laser)
+def wrong_laser(world: WorldFacts, params: LaserParams) -> Iterator[str]:
+    device = _find_laser(world, params.laser)
     if isinstance(device, str):
         yield device
         return
@@ -202,19 +202,19 @@ def wrong_laser(world: WorldFacts, params: LaserAsked) -> Iterator[str]:
             yield f"the {what} {is_:.4g}, not {wanted:.4g}"
 
 
-def _device(world: WorldFacts, name: str) -> Device | str:
+def _find_laser(world: WorldFacts, name: str) -> PluginFacts | str:
     model_name, _, plugin = name.partition("/")
     model = world.model(model_name)
     if model is None:
-        return no_model(world, model_name)
-    names = [device.name for device in model.devices]
-    found = next((device for device in model.devices if device.name == plugin), None)
+        return missing_model(world, model_name)
+    names = [device.name for device in model.plugins]
+    found = next((device for device in model.plugins if device.name == plugin), None)
     if found is None:
         return f"{model_name} has no plugin {quoted(plugin)}: {suggestion(plugin, names)}"
     return found if found.rays else f"{name} is a {found.type}, not a Laser"
 
 
-@check(none=1, full=0, words=UNSAID, params=LaserAsked)
-def laser(look: Look, params: LaserAsked) -> float:
+@check(none=1, full=0, words=NO_WORDS, params=LaserParams)
+def laser(evidence: EvidenceRecord, params: LaserParams) -> float:
     """The laser is not as the task asks:"""
-    return count(look, wrong_laser, params)
+    return count_faults(evidence, wrong_laser, params)

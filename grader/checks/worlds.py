@@ -11,27 +11,27 @@ from grader.checks import world_layers as layers
 from grader.checks import world_models as models
 from grader.checks import world_runs as runs
 from grader.checks.contract import Check
-from grader.checks.faults import Faults, Run, RunFaults, Seen
+from grader.checks.faults import Faults, RunFaults, WorldContents, WorldRun
 
 
-def remark(found: Seen | Run, name: str, params: Any) -> str:
+def explain(found: WorldContents | WorldRun, name: str, params: Any) -> str:
     """What is wrong with a world in the light of a check, in words that help to mend it."""
     problems = found.world.problems
     if name == "loads":
-        return "\n".join(problems if len(problems) == 1 else numbered(problems))
+        return "\n".join(problems if len(problems) == 1 else number_problems(problems))
     if problems:
         return "The world cannot be read yet."
-    if isinstance(found, Run):
-        return found.run.problem or listed(RUNS[name](found, params))
-    return listed(FAULTS[name](found.world, params)) if name in FAULTS else ""
+    if isinstance(found, WorldRun):
+        return found.run.problem or join_faults(RUNS[name](found, params))
+    return join_faults(FAULTS[name](found.world, params)) if name in FAULTS else ""
 
 
-def numbered(problems: Sequence[str]) -> Iterator[str]:
+def number_problems(problems: Sequence[str]) -> Iterator[str]:
     """Each with its number, so that they can be told apart in one paragraph too."""
     return (f"({number}) {problem}" for number, problem in enumerate(problems, 1))
 
 
-def listed(faults: Iterable[str]) -> str:
+def join_faults(faults: Iterable[str]) -> str:
     """The faults in one sentence, of many only the first."""
     some = tuple(faults)
     more = f"; and {len(some) - MOST_TOLD} more" if len(some) > MOST_TOLD else ""
@@ -43,7 +43,7 @@ MOST_TOLD: Final = 4
 """Faults of one check."""
 
 
-def nothing_more(run: Run, params: Any) -> Iterator[str]:
+def nothing_more(run: WorldRun, params: Any) -> Iterator[str]:
     """For a check whose own sentence says all."""
     return iter(())
 
@@ -55,8 +55,8 @@ FAULTS: Final[Mapping[str, Faults]] = MappingProxyType(
         "stands": contents.wrong_stand,
         "body": models.wrong_body,
         "joint": models.wrong_joint,
-        "publishes": models.silent(True),
-        "subscribes": models.silent(False),
+        "publishes": models.wrong_topics(True),
+        "subscribes": models.wrong_topics(False),
         "laser": models.wrong_laser,
         "collisions": layers.wrong_contacts,
         "sights": layers.wrong_sights,

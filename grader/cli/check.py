@@ -55,7 +55,7 @@ def command(
     require_level: int | None,
     secret: bool,
     hints: int,
-    form: str,
+    format_name: str,
     as_json: bool,
     output: Path | None,
     replay: Path | None,
@@ -68,28 +68,28 @@ def command(
 
     Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
     """
-    from grader.archives import Refused
+    from grader.archives import SubmissionRefused
     from grader.reports import FORMATS
-    from grader.session import LevelTooLow, Terms, opened
-    from grader.submission import take
+    from grader.session import GradingOptions, LevelTooLow, open_grading
+    from grader.submission import read_submission
 
-    form = "json" if as_json else form
-    if form not in FORMATS:
-        options.fail(f"There is no format {form}; there are: {', '.join(FORMATS)}.")
+    format_name = "json" if as_json else format_name
+    if format_name not in FORMATS:
+        options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
     assignment = options.read_assignment(folder)
-    wanted = options.as_level(level)
+    grading_level = options.as_level(level)
     if require_level is not None:
-        wanted = options.required(max(require_level, assignment.level if level is None else level))
+        grading_level = options.required(max(require_level, assignment.level if level is None else level))
     try:
-        submission = take(file, assignment.submit)
-        with opened(assignment, submission, Terms(wanted, secret)) as grading:
+        submission = read_submission(file, assignment.submit)
+        with open_grading(assignment, submission, GradingOptions(grading_level, secret)) as grading:
             result = grading.result()
-            picture = _worst(grading, replay)
-    except (Refused, LevelTooLow) as error:
+            picture = _worst_picture(grading, replay)
+    except (SubmissionRefused, LevelTooLow) as error:
         options.fail(str(error))
     if for_student:
         result = result.for_student()
-    text = _report(result, form, hints, picture)
+    text = _report(result, format_name, hints, picture)
     if output is None:
         click.echo(text, nl=False)
     else:
@@ -99,52 +99,58 @@ def command(
     raise SystemExit(EXITS[result.verdict.value])
 
 
-def _report(result: GradingResult, form: str, hints: int, picture: str) -> str:
-    from grader.reports import terminal, writer
+def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:
+    from grader.reports import find_writer, terminal
 
-    return terminal.write(result, hints=hints) + picture if form == "text" else writer(form)(result)
+    return (
+        terminal.write(result, hints=hints) + picture
+        if format_name == "text"
+        else find_writer(format_name)(result)
+    )
 
 
-def _worst(grading: Grading, replay: Path | None) -> str:
+def _worst_picture(grading: Grading, replay: Path | None) -> str:
     """The worst episode in characters; and kept in a file, if asked for."""
-    worst = grading.worst()
+    worst = grading.worst_evidence()
     shown = "" if worst is None else worst.picture()
     if worst is None or not shown:
         return "" if replay is None else "\nNo episode went wrong that could be kept as a replay.\n"
-    title, moves = _titled(worst)
+    title, moves = _picture_title(worst)
     if not moves:
         return f"\n{title}:\n{shown}\n"
-    watch = "To watch it move: add --replay worst.npz" if replay is None else _kept(worst, replay, grading)
+    watch = (
+        "To watch it move: add --replay worst.npz" if replay is None else _save_replay(worst, replay, grading)
+    )
     return f"\n{title}:\n{shown}\n{watch}\n"
 
 
-def _titled(worst: Evidence) -> tuple[str, bool]:
+def _picture_title(worst: Evidence) -> tuple[str, bool]:
     """What the picture shows; and whether it can be watched moving."""
-    from grader.evidence.drive_record import Drive
-    from grader.kinds.contract import Look
+    from grader.evidence.drive_record import DriveRecord
+    from grader.kinds.contract import EvidenceRecord
 
-    if isinstance(worst, Drive):
+    if isinstance(worst, DriveRecord):
         return f"The worst episode, {worst.label} ({worst.outcome})", True
-    if isinstance(worst, Look):
+    if isinstance(worst, EvidenceRecord):
         return f"A look at {worst.label} ({worst.outcome})", False
     return "What a robot does that has learnt this reward perfectly", True
 
 
-def _kept(worst: Evidence, replay: Path, grading: Grading) -> str:
+def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     """Keeps an episode; how to watch it."""
-    from grader.evidence.drive_record import Drive
-    from grader.evidence.reward import Exam
+    from grader.evidence.drive_record import DriveRecord
+    from grader.evidence.reward import RewardEvidence
     from kit.run.recording import save
     from kit.world.catalogue import map_names
 
     root = ""
     try:
-        if isinstance(worst, Drive):
+        if isinstance(worst, DriveRecord):
             save(worst.recording, replay.absolute())
             if worst.recording.place not in map_names():
                 root = f" --root {shlex.quote(str(grading.assignment.folder))}"
-        elif isinstance(worst, Exam):
-            worst.film(replay.absolute())
+        elif isinstance(worst, RewardEvidence):
+            worst.save_exploit(replay.absolute())
     except OSError as error:
         options.fail(f"{replay} cannot be written: {error.strerror or error}.")
     return f"Watch it move: kit replay {shlex.quote(str(replay))}{root}"

@@ -23,20 +23,20 @@ def command(kind: str) -> None:
     """
     from dataclasses import fields
 
-    from grader.kinds.contract import kinds, sort_of
+    from grader.kinds.contract import find_kind, kind_names
     from kit.world.problems import quoted, suggestion
 
-    if kind not in kinds():
-        options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kinds())}")
-    for name, check in sort_of(kind).checks.items():
-        none, full = check.said(check.anchors.none), check.said(check.anchors.full)
+    if kind not in kind_names():
+        options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
+    for name, check in find_kind(kind).checks.items():
+        none, full = check.format(check.anchors.none), check.format(check.anchors.full)
         params = ", ".join(f"{each.name}: {each.default!r}" for each in fields(check.params))
         parts = [
             f"“{none}” earns nothing, “{full}” everything" if full else "",
             f"with: {params}" if params else "",
         ]
-        said = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
-        for text, first in ((said, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
-            click.echo(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
-    others = ", ".join(each for each in kinds() if each != kind)
+        text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
+        for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
+            click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
+    others = ", ".join(each for each in kind_names() if each != kind)
     click.echo("\n" + textwrap.fill(f"Other kinds: {others}.", WIDTH))

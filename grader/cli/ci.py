@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from grader.ci import WORKFLOWS, Source, workflow
+from grader.ci import WORKFLOWS, GitSource, workflow
 from grader.cli import options
 
 PLAIN = re.compile(r"[A-Za-z0-9_./-]+")
@@ -42,7 +42,7 @@ def command(service: str, folder: Path, kit: str, write: bool) -> None:
     if not PLAIN.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
         options.fail(f"{name}: name the folder relative to the repository, in letters, digits, _ . - and /.")
     try:
-        text = workflow(service, submit=assignment.submit, assignment=name, kit=Source.read(kit))
+        text = workflow(service, submit=assignment.submit, assignment=name, kit=GitSource.read(kit))
     except ValueError as error:
         options.fail(f"{error}.")
     if not write:

@@ -57,9 +57,9 @@ def command(
     Stop it at any moment and say the same again: it goes on. Exit code: 0 everything has a grade; 2 something named is
     wrong; 3 for some the grader broke.
     """
-    from grader.cohort.executors import CannotRun, by_dask, by_slurm, locally
-    from grader.cohort.queue import Queue, QueueError, prepare
-    from grader.session import Terms
+    from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
+    from grader.cohort.queue import Queue, QueueError, prepare_queue
+    from grader.session import GradingOptions
     from kit.host.sandbox.probe import highest
 
     def count(key: str) -> None:
@@ -67,7 +67,7 @@ def command(
 
     assignment = options.read_assignment(folder)
     queue = Queue(queue_folder.absolute())
-    terms = Terms(options.as_level(level), secret, may_fall=False)
+    terms = GradingOptions(options.as_level(level), secret, may_fall=False)
     wanted = assignment.level if terms.level is None else terms.level
     if secret and wanted < assignment.level:
         options.fail(
@@ -76,27 +76,27 @@ def command(
     if executor == "local" and highest() < wanted:
         options.fail(f"This machine does not reach confinement level {int(wanted)}; `kit doctor` says why.")
     try:
-        entries = prepare(queue, submissions, assignment, terms)
+        entries = prepare_queue(queue, submissions, assignment, terms)
         waiting = queue.waiting()
         click.echo(f"{len(entries)} submissions, {len(waiting)} to grade", err=True)
         with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
             if executor == "slurm":
-                by_slurm(queue, jobs)
+                run_on_slurm(queue, jobs)
             elif executor == "dask":
-                by_dask(queue, waiting, cluster, count)
+                run_on_dask(queue, waiting, cluster, count)
             elif executor == "local":
-                locally(queue, waiting, jobs, count)
-    except (QueueError, CannotRun, OSError) as error:
+                run_locally(queue, waiting, jobs, count)
+    except (QueueError, ExecutorUnavailable, OSError) as error:
         options.fail(str(error))
     raise SystemExit(publish(queue))
 
 
 def publish(queue: Queue) -> int:
     """Writes the gradebook into the queue folder; the exit code."""
-    from grader.cohort.gradebook import as_csv, as_json, rows, summary
+    from grader.cohort.gradebook import as_csv, as_json, gradebook_rows, summary
     from kit.workspace import write_atomically
 
-    table = rows(queue)
+    table = gradebook_rows(queue)
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
     click.echo(f"{summary(table)}: {queue.folder / 'gradebook.csv'}")

@@ -40,18 +40,18 @@ def command(
     """Print the gradebook of the queue FOLDER: late rules, and which of several submissions counts, are applied now
     and kept nowhere."""
     from grader.cohort import gradebook
-    from grader.cohort.choice import chosen
-    from grader.cohort.late import read_arrivals, read_policy
+    from grader.cohort.choice import choose_submissions
+    from grader.cohort.late import read_policy, read_submission_times
     from grader.cohort.queue import Queue, QueueError
     from grader.reports.cleaning import one_line
     from kit.world.problems import WorldError
 
     try:
         policy = None if late is None else read_policy(late)
-        arrivals = {} if times is None else read_arrivals(times)
-        table = gradebook.rows(Queue(folder.absolute()), policy, arrivals)
+        arrivals = {} if times is None else read_submission_times(times)
+        table = gradebook.gradebook_rows(Queue(folder.absolute()), policy, arrivals)
         timeless = [row.name for row in table if row.name not in arrivals] if policy is not None else []
-        table = chosen(table, arrivals, choose)
+        table = choose_submissions(table, arrivals, choose)
         before = None if against is None else gradebook.read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
         options.fail(str(error))

@@ -23,19 +23,19 @@ from grader.cli import options
 @click.option(
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
 )
-def command(file: Path, form: str, output: Path | None) -> None:
+def command(file: Path, format_name: str, output: Path | None) -> None:
     """Write a result (made by `grader check --json`) in another format."""
-    from grader.reports import FORMATS, writer
+    from grader.reports import FORMATS, find_writer
     from kit.school.result import GradingResult
     from kit.workspace import write_atomically
 
-    if form not in FORMATS:
-        options.fail(f"There is no format {form}; there are: {', '.join(FORMATS)}.")
+    if format_name not in FORMATS:
+        options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
     try:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
         options.fail(f"{file}: not a result of the grader.")
-    text = writer(form)(result)
+    text = find_writer(format_name)(result)
     if output is None:
         click.echo(text, nl=False)
     else:

@@ -24,22 +24,24 @@ def command(folder: Path, solutions: Path | None, level: int | None) -> None:
     Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
     """
     from grader.reports.cleaning import plain
-    from grader.self_test import SUCCESSES, odds, prove
-    from grader.session import LevelTooLow, Terms
+    from grader.self_test import SUCCESSES, try_works, unfair_fail_odds
+    from grader.session import GradingOptions, LevelTooLow
 
     assignment = options.read_assignment(folder)
-    terms = Terms(options.as_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets)
+    terms = GradingOptions(
+        options.as_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets
+    )
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False
     try:
-        for proof in prove(assignment, terms, solutions):
+        for proof in try_works(assignment, terms, solutions):
             failed |= bool(proof.problems)
             click.echo(f"{'[no]' if proof.problems else '[ok]'} {proof.name:<32} {proof.summary}")
             for problem in proof.problems:
                 click.echo(f"     {plain(problem, 600)}")
     except LevelTooLow as error:
         options.fail(str(error))
-    chances = tuple(odds(assignment, secret=assignment.has_secrets))
+    chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
         click.echo("\nThe odds that a work fails by bad luck, if in each episode it succeeds with")
         click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESSES))

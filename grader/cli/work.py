@@ -25,7 +25,7 @@ from grader.cli import options
 )
 def command(folder: Path, shard: str, jobs: int) -> None:
     """Work off the jobs in the queue FOLDER that have no result yet."""
-    from grader.cohort.executors import locally
+    from grader.cohort.executors import run_locally
     from grader.cohort.queue import Queue, QueueError
 
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", shard)
@@ -34,7 +34,7 @@ def command(folder: Path, shard: str, jobs: int) -> None:
     queue = Queue(folder.absolute())
     try:
         keys = queue.waiting((int(found[1]), int(found[2])))
-        locally(queue, keys, jobs, lambda key: None)
+        run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:
         options.fail(str(error))
     click.echo(f"{len(keys)} graded")

@@ -14,9 +14,9 @@ import click
 def command(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
     from grader.cohort.queue import Queue
-    from grader.cohort.work import serve
+    from grader.cohort.work import serve_jobs
 
     # What anything below prints must not stand between the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    serve(Queue(folder), sys.stdin, answers)
+    serve_jobs(Queue(folder), sys.stdin, answers)

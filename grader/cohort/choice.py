@@ -7,26 +7,26 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
-from grader.cohort.gradebook import Row
-from grader.cohort.late import Arrival
+from grader.cohort.gradebook import GradebookRow
+from grader.cohort.late import SubmissionTime
 
-Rank = tuple[float, float, str]
-
-
-def _latest(row: Row, came: Arrival) -> Rank:
-    return came.at.timestamp(), 0.0, row.name
+SortKey = tuple[float, float, str]
 
 
-def _latest_in_time(row: Row, came: Arrival) -> Rank:
-    return row.kept, came.at.timestamp(), row.name
+def _latest(row: GradebookRow, time: SubmissionTime) -> SortKey:
+    return time.at.timestamp(), 0.0, row.name
 
 
-def _best(row: Row, came: Arrival) -> Rank:
+def _latest_in_time(row: GradebookRow, time: SubmissionTime) -> SortKey:
+    return row.kept, time.at.timestamp(), row.name
+
+
+def _best(row: GradebookRow, time: SubmissionTime) -> SortKey:
     # Without a grade nothing is known: somebody has to look before another one counts.
-    return float("inf") if row.final is None else row.final, came.at.timestamp(), row.name
+    return float("inf") if row.final is None else row.final, time.at.timestamp(), row.name
 
 
-RULES: Final[Mapping[str, tuple[str, Callable[[Row, Arrival], Rank]]]] = MappingProxyType(
+RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], SortKey]]]] = MappingProxyType(
     {
         "latest": ("the latest", _latest),
         "in-time": ("the latest of those that lost least by lateness", _latest_in_time),
@@ -36,32 +36,36 @@ RULES: Final[Mapping[str, tuple[str, Callable[[Row, Arrival], Rank]]]] = Mapping
 """Each rule: what is said of the one that counts, and the rank that is highest for it."""
 
 
-def chosen(table: Sequence[Row], arrivals: Mapping[str, Arrival], rule: str) -> tuple[Row, ...]:
+def choose_submissions(
+    table: Sequence[GradebookRow], arrivals: Mapping[str, SubmissionTime], rule: str
+) -> tuple[GradebookRow, ...]:
     """One row for each student, under the student's name. What has no arrival is its own student's.
 
     KeyError if there is no such rule; ValueError where an arrival belongs to no submission.
     """
-    strange = sorted(arrivals.keys() - {row.name for row in table})
-    if strange:
-        raise ValueError(f"no submission is named {strange[0]}; there are {len(table)} in the queue")
+    unknown = sorted(arrivals.keys() - {row.name for row in table})
+    if unknown:
+        raise ValueError(f"no submission is named {unknown[0]}; there are {len(table)} in the queue")
     return tuple(sorted(_chosen(table, arrivals, rule), key=lambda row: row.name))
 
 
-def _chosen(table: Sequence[Row], arrivals: Mapping[str, Arrival], rule: str) -> Iterator[Row]:
-    said, rank = RULES[rule]
-    by_student: dict[str, list[Row]] = {}
+def _chosen(
+    table: Sequence[GradebookRow], arrivals: Mapping[str, SubmissionTime], rule: str
+) -> Iterator[GradebookRow]:
+    rule_text, rank = RULES[rule]
+    by_student: dict[str, list[GradebookRow]] = {}
     for row in table:
-        came = arrivals.get(row.name)
-        by_student.setdefault(row.name if came is None else came.student, []).append(row)
-    for student, own in by_student.items():
-        if len(own) == 1:
-            yield replace(own[0], name=student)
+        time = arrivals.get(row.name)
+        by_student.setdefault(row.name if time is None else time.student, []).append(row)
+    for student, submissions in by_student.items():
+        if len(submissions) == 1:
+            yield replace(submissions[0], name=student)
             continue
-        unknown = [row.name for row in own if row.name not in arrivals]
+        unknown = [row.name for row in submissions if row.name not in arrivals]
         if unknown:
             raise ValueError(
                 f"{student} is a student and the name of a submission without a time: {unknown[0]}"
             )
-        counts = max(own, key=lambda row: rank(row, arrivals[row.name]))
-        note = f"{counts.name}, {said} of {len(own)}"
-        yield replace(counts, name=student, note=f"{note}. {counts.note}" if counts.note else note)
+        chosen = max(submissions, key=lambda row: rank(row, arrivals[row.name]))
+        note = f"{chosen.name}, {rule_text} of {len(submissions)}"
+        yield replace(chosen, name=student, note=f"{note}. {chosen.note}" if chosen.note else note)

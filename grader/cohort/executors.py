@@ -11,19 +11,19 @@ from pathlib import Path
 from typing import Final
 
 from grader.cohort.queue import Queue
-from grader.cohort.work import TRIES, Pool, give_up, work
+from grader.cohort.work import TRIES, WorkerPool, grade_job, record_incident
 from kit.workspace import write_atomically
 
 SCRIPT: Final = "slurm.sh"
 
 
-class CannotRun(Exception):
+class ExecutorUnavailable(Exception):
     """This machine has not what an executor needs; the message says what to do."""
 
 
-def locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
+def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
     """In processes on this machine."""
-    Pool(queue, keys, jobs, on_done).run()
+    WorkerPool(queue, keys, jobs, on_done).run()
 
 
 def slurm_script(queue: Queue, shards: int) -> str:
@@ -40,19 +40,19 @@ exec {command} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
 """
 
 
-def by_slurm(queue: Queue, shards: int) -> None:
+def run_on_slurm(queue: Queue, shards: int) -> None:
     """Submits the array job and waits until it is over. Raises CannotRun."""
     script = queue.folder / SCRIPT
     write_atomically(script, slurm_script(queue, shards).encode())
     sbatch = shutil.which("sbatch")
     if sbatch is None:
-        raise CannotRun(f"There is no sbatch here. On the cluster's front end run: sbatch {script}")
+        raise ExecutorUnavailable(f"There is no sbatch here. On the cluster's front end run: sbatch {script}")
     done = subprocess.run([sbatch, "--wait", str(script)], capture_output=True, text=True, check=False)
     if done.returncode != 0 and queue.waiting():
-        raise CannotRun(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
+        raise ExecutorUnavailable(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
 
 
-def by_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
+def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
     """On a Dask cluster whose machines all see the queue folder. Only keys travel. Raises CannotRun.
 
     A job that takes its worker with it, again and again, is an incident and has no grade; the others go on.
@@ -60,26 +60,28 @@ def by_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[
     try:
         from distributed import Client, KilledWorker, as_completed
     except ImportError:
-        raise CannotRun(
+        raise ExecutorUnavailable(
             "Dask is not installed. In the kit's folder: pip install -c constraints.txt -e '.[cluster]'"
         ) from None
     if not address:
-        raise CannotRun("Say where the Dask scheduler is: --cluster tcp://HOST:8786")
+        raise ExecutorUnavailable("Say where the Dask scheduler is: --cluster tcp://HOST:8786")
     folder = str(queue.folder.absolute())
     with Client(address) as client:
-        futures = {client.submit(work_key, folder, key, pure=False, retries=TRIES - 1): key for key in keys}
+        futures = {
+            client.submit(grade_job_by_key, folder, key, pure=False, retries=TRIES - 1): key for key in keys
+        }
         for future in as_completed(futures):
             problem = future.exception()
             if isinstance(problem, KilledWorker):
-                give_up(queue, futures[future])
+                record_incident(queue, futures[future])
             elif problem is not None:
-                raise CannotRun(
+                raise ExecutorUnavailable(
                     f"A worker of the cluster could not grade: {type(problem).__name__}: {problem}"
                 )
             on_done(futures[future])
 
 
-def work_key(folder: str, key: str) -> str:
+def grade_job_by_key(folder: str, key: str) -> str:
     """One job, by names alone."""
-    work(Queue(Path(folder)), key)
+    grade_job(Queue(Path(folder)), key)
     return key

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
-from grader.cohort.late import Arrival, LatePolicy
+from grader.cohort.late import LatePolicy, SubmissionTime
 from grader.cohort.queue import Queue
 from grader.reports.cleaning import cell, one_line
 from kit.school.result import CriterionStatus, GradingVerdict, format_points
@@ -19,7 +19,7 @@ WAITING: Final = "waiting"
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class GradebookRow:
     """What one submission earned."""
 
     name: str
@@ -37,27 +37,29 @@ class Row:
     submission: str
 
 
-def rows(
-    queue: Queue, policy: LatePolicy | None = None, arrivals: Mapping[str, Arrival] | None = None
-) -> tuple[Row, ...]:
+def gradebook_rows(
+    queue: Queue, policy: LatePolicy | None = None, arrivals: Mapping[str, SubmissionTime] | None = None
+) -> tuple[GradebookRow, ...]:
     """One for each submission, in the order of names."""
     return tuple(sorted(_rows(queue, policy, arrivals or {}), key=lambda row: row.name))
 
 
-def _rows(queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, Arrival]) -> Iterator[Row]:
+def _rows(
+    queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, SubmissionTime]
+) -> Iterator[GradebookRow]:
     most = round(queue.assignment().max_points, 6)
     for entry in queue.entries():
-        came = arrivals.get(entry.name)
-        kept = policy.kept(came.at) if policy is not None and came is not None else 1.0
+        time = arrivals.get(entry.name)
+        kept = policy.kept(time.at) if policy is not None and time is not None else 1.0
         if entry.key is None:
-            yield Row(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
+            yield GradebookRow(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
             continue
         result = queue.result(entry.key)
         if result is None:
-            yield Row(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
+            yield GradebookRow(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
             continue
         points = result.points
-        yield Row(
+        yield GradebookRow(
             entry.name,
             result.verdict.value,
             points,
@@ -73,11 +75,11 @@ def _rows(queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, Arriva
         )
 
 
-def as_json(table: Sequence[Row]) -> str:
+def as_json(table: Sequence[GradebookRow]) -> str:
     return json.dumps([asdict(row) for row in table], indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
-def as_csv(table: Sequence[Row]) -> str:
+def as_csv(table: Sequence[GradebookRow]) -> str:
     """For a spreadsheet, in which no cell is a formula."""
     criteria = sorted({identity for row in table for identity in row.tests})
     out = io.StringIO()
@@ -101,15 +103,15 @@ def _number(points: float | None) -> str:
     return "" if points is None else format_points(points)
 
 
-def read_json(text: str) -> tuple[Row, ...]:
+def read_json(text: str) -> tuple[GradebookRow, ...]:
     """What ``as_json`` made. Raises ValueError."""
     try:
-        return tuple(Row(**each) for each in json.loads(text))
+        return tuple(GradebookRow(**each) for each in json.loads(text))
     except (TypeError, ValueError):
         raise ValueError("not a gradebook in JSON") from None
 
 
-def changes(before: Sequence[Row], after: Sequence[Row]) -> Iterator[str]:
+def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> Iterator[str]:
     """What another grading changed, a line each: to be read before it is published."""
     old, new = {row.name: row for row in before}, {row.name: row for row in after}
     for name in sorted(old.keys() | new.keys()):
@@ -126,7 +128,7 @@ def changes(before: Sequence[Row], after: Sequence[Row]) -> Iterator[str]:
             yield f"{one_line(name)}: {_number(was.final) or 'none'} -> {_number(now.final) or 'none'}{detail}"
 
 
-def summary(table: Sequence[Row]) -> str:
+def summary(table: Sequence[GradebookRow]) -> str:
     """One line: how many of each."""
     kinds = [
         GradingVerdict.PASS.value,

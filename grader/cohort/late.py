@@ -47,7 +47,7 @@ def read_policy(file: Path) -> LatePolicy:
     section = Documents(Enclosure.around(file), {}, problems).section(file, Place(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
-    due = moment(section.name("due"))
+    due = parse_time(section.name("due"))
     if due is None:
         section.error("must be a date and time such as 2026-11-30T23:59:00+01:00", "due")
     policy = LatePolicy(
@@ -63,7 +63,7 @@ def read_policy(file: Path) -> LatePolicy:
 
 
 @dataclass(frozen=True, slots=True)
-class Arrival:
+class SubmissionTime:
     """When a submission came, and whose it is."""
 
     at: datetime
@@ -71,7 +71,7 @@ class Arrival:
     """By default its own name."""
 
 
-def read_arrivals(file: Path) -> Mapping[str, Arrival]:
+def read_submission_times(file: Path) -> Mapping[str, SubmissionTime]:
     """A CSV file with the columns ``name`` and ``submitted``, and ``student`` where some hand in more than once.
 
     Raises ValueError, OSError.
@@ -79,18 +79,18 @@ def read_arrivals(file: Path) -> Mapping[str, Arrival]:
     arrivals = {}
     with file.open(newline="", encoding="utf-8-sig") as opened:
         for number, row in enumerate(csv.DictReader(opened), 2):
-            name, at = row.get("name") or "", moment(row.get("submitted") or "")
+            name, at = row.get("name") or "", parse_time(row.get("submitted") or "")
             if at is None or not name:
                 raise ValueError(
                     f"{file}:{number}: a row needs a name and a time such as 2026-11-30T23:59:00+01:00"
                 )
             if name in arrivals:
                 raise ValueError(f"{file}:{number}: {name} is there twice")
-            arrivals[name] = Arrival(at, (row.get("student") or "").strip() or name)
+            arrivals[name] = SubmissionTime(at, (row.get("student") or "").strip() or name)
     return arrivals
 
 
-def moment(text: str) -> datetime | None:
+def parse_time(text: str) -> datetime | None:
     """A date and time; one without a zone is UTC."""
     try:
         at = datetime.fromisoformat(text.strip())

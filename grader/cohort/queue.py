@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from grader.archives import Refused, is_archive
+from grader.archives import SubmissionRefused, is_archive
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.session import Terms
-from grader.submission import WORTHLESS, Submission, take
+from grader.session import GradingOptions
+from grader.submission import IGNORED_NAMES, Submission, read_submission
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level
 from kit.school.result import SCHEMA, GradingResult
@@ -29,7 +29,7 @@ class QueueError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class QueueEntry:
     """One submission of the cohort."""
 
     name: str
@@ -66,12 +66,12 @@ class Queue:
             raise QueueError(f"{self.folder}: no queue of the grader; `grader cohort` makes one.") from None
         return content
 
-    def terms(self) -> Terms:
+    def grading_options(self) -> GradingOptions:
         content = self.manifest()
-        return Terms(Level(content["level"]), bool(content["secret"]), may_fall=False)
+        return GradingOptions(Level(content["level"]), bool(content["secret"]), may_fall=False)
 
-    def entries(self) -> tuple[Entry, ...]:
-        return tuple(Entry(**each) for each in self.manifest()["entries"])
+    def entries(self) -> tuple[QueueEntry, ...]:
+        return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
 
     def result(self, key: str) -> GradingResult | None:
         """None if there is none yet, or none that can be read: then it is graded again."""
@@ -91,20 +91,22 @@ class Queue:
         files = {name: base64.b64decode(data) for name, data in content["files"].items()}
         return Submission(content["name"], content["main"], files)
 
-    def keep(self, key: str, result: GradingResult) -> None:
+    def save_result(self, key: str, result: GradingResult) -> None:
         write_atomically(
             self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
         )
 
 
-def key_of(submission: Submission, assignment: Assignment, terms: Terms) -> str:
+def job_key(submission: Submission, assignment: Assignment, terms: GradingOptions) -> str:
     """What decides a result, as one name."""
     level = assignment.level if terms.level is None else terms.level
     parts = (submission.digest, assignment.version, grader_version(), SCHEMA, terms.secret, int(level))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
-def prepare(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) -> tuple[Entry, ...]:
+def prepare_queue(
+    queue: Queue, cohort: Path, assignment: Assignment, terms: GradingOptions
+) -> tuple[QueueEntry, ...]:
     """Makes or renews the queue for all submissions in the folder ``cohort``. Results that fit are kept.
 
     Raises QueueError, OSError.
@@ -126,10 +128,12 @@ def prepare(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) ->
     return entries
 
 
-def _entries(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) -> Iterator[Entry]:
+def _entries(
+    queue: Queue, cohort: Path, assignment: Assignment, terms: GradingOptions
+) -> Iterator[QueueEntry]:
     names: set[str] = set()
     for path in sorted(cohort.iterdir()):
-        if path.name.startswith(".") or path.name in WORTHLESS:
+        if path.name.startswith(".") or path.name in IGNORED_NAMES:
             continue
         name = (
             path.name
@@ -140,16 +144,16 @@ def _entries(queue: Queue, cohort: Path, assignment: Assignment, terms: Terms) -
             name = path.name
         names.add(name)
         try:
-            submission = take(path, assignment.submit)
-        except Refused as refused:
-            yield Entry(name, None, str(refused))
+            submission = read_submission(path, assignment.submit)
+        except SubmissionRefused as refused:
+            yield QueueEntry(name, None, str(refused))
             continue
-        key = key_of(submission, assignment, terms)
+        key = job_key(submission, assignment, terms)
         if not queue.job(key).exists():
             files = {each: base64.b64encode(data).decode() for each, data in sorted(submission.files.items())}
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
-        yield Entry(name, key)
+        yield QueueEntry(name, key)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

@@ -29,30 +29,30 @@ def _assignment(folder: Path, version: str) -> Assignment:
     return Queue(folder).assignment()
 
 
-def work(queue: Queue, key: str) -> GradingResult:
+def grade_job(queue: Queue, key: str) -> GradingResult:
     """Grades one job and keeps its result."""
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
-    submission, terms = queue.submission(key), queue.terms()
+    submission, terms = queue.submission(key), queue.grading_options()
     result = grade(assignment, submission, terms)
     for _ in range(TRIES - 1):
         if result.verdict is not GradingVerdict.BROKEN:
             break
         result = grade(assignment, submission, terms)
-    queue.keep(key, result)
+    queue.save_result(key, result)
     return result
 
 
-def serve(queue: Queue, asked: IO[str], told: IO[str]) -> None:
+def serve_jobs(queue: Queue, keys: IO[str], output: IO[str]) -> None:
     """A worker's life: a key on each line in, the same key on a line out when its result is kept."""
-    for line in asked:
+    for line in keys:
         key = line.strip()
-        work(queue, key)
-        told.write(f"{DONE} {key}\n")
-        told.flush()
+        grade_job(queue, key)
+        output.write(f"{DONE} {key}\n")
+        output.flush()
 
 
-class Pool:
+class WorkerPool:
     """``jobs`` worker processes. A worker that dies takes its job's try with it, and no more."""
 
     def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
@@ -65,7 +65,7 @@ class Pool:
 
     def run(self) -> None:
         """Until every key has a result. Raises OSError if results cannot be kept."""
-        threads = [threading.Thread(target=self._feed) for _ in range(self._jobs)]
+        threads = [threading.Thread(target=self._run_worker) for _ in range(self._jobs)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -73,7 +73,7 @@ class Pool:
         if self._problems:
             raise self._problems[0]
 
-    def _feed(self) -> None:
+    def _run_worker(self) -> None:
         """Keeps one worker busy."""
         worker: subprocess.Popen[str] | None = None
         try:
@@ -82,17 +82,17 @@ class Pool:
                     worker = worker or self._start()
                     if self._is_done(worker, key):
                         break
-                    _end(worker, now=True)
+                    _stop_worker(worker, now=True)
                     worker = None
                     if attempt == TRIES - 1:
-                        give_up(self._queue, key)
+                        record_incident(self._queue, key)
                 with self._lock:
                     self._on_done(key)
         except Exception as error:  # noqa: BLE001  # a thread's errors are raised where it was started
             self._problems.append(error)
         finally:
             if worker is not None:
-                _end(worker)
+                _stop_worker(worker)
 
     def _next(self) -> str | None:
         with self._lock:
@@ -118,7 +118,7 @@ class Pool:
         return worker.stdout.readline() == f"{DONE} {key}\n"
 
 
-def _end(worker: subprocess.Popen[str], *, now: bool = False) -> None:
+def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:
     """Lets a worker go: it ends when nothing more can be asked."""
     if now:
         worker.kill()
@@ -127,14 +127,14 @@ def _end(worker: subprocess.Popen[str], *, now: bool = False) -> None:
         worker.stdin.close()
 
 
-def give_up(queue: Queue, key: str) -> None:
+def record_incident(queue: Queue, key: str) -> None:
     """Keeps for a job that there is no grade, because whoever graded it died."""
-    queue.keep(key, _incident(queue, key))
+    queue.save_result(key, _incident_result(queue, key))
 
 
-def _incident(queue: Queue, key: str) -> GradingResult:
+def _incident_result(queue: Queue, key: str) -> GradingResult:
     """The grader died, more than once: no grade, and somebody has to look."""
-    assignment, submission, terms = queue.assignment(), queue.submission(key), queue.terms()
+    assignment, submission, terms = queue.assignment(), queue.submission(key), queue.grading_options()
     tests = tuple(
         replace(
             CriterionResult(

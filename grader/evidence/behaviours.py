@@ -8,65 +8,69 @@ from dataclasses import dataclass
 import numpy as np
 
 from grader.evidence import value_iteration
-from grader.evidence.task_model import BACK, FORWARD, HEADINGS, LASTS, LEFT, RIGHT, Floats, Model
+from grader.evidence.task_model import BACK, FORWARD, HEADINGS, LAST_MOVES, LEFT, RIGHT, Floats, GridModel
 
 Moves = Sequence[int]
 
 DETOUR = (LEFT, RIGHT) * 4
-STARTS = 5
+START_COUNT = 5
 """From how many places behaviours are compared."""
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class BehaviourComparison:
     """Two behaviours from the same start; the first should be paid more."""
 
     better: str
     worse: str
-    paid_better: float
-    paid_worse: float
+    better_return: float
+    worse_return: float
 
     @property
-    def is_right(self) -> bool:
-        return self.paid_better > self.paid_worse + 1e-9 * max(abs(self.paid_better), abs(self.paid_worse))
+    def is_ordered(self) -> bool:
+        return self.better_return > self.worse_return + 1e-9 * max(
+            abs(self.better_return), abs(self.worse_return)
+        )
 
     def __str__(self) -> str:
-        return (
-            f"It pays {self.paid_better:.3g} for {self.better}, but {self.paid_worse:.3g} for {self.worse}."
-        )
+        return f"It pays {self.better_return:.3g} for {self.better}, but {self.worse_return:.3g} for {self.worse}."
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class LoopComparison:
     """A behaviour that never arrives, against driving to the target."""
 
     name: str
-    paid: float
-    arriving: float
+    loop_return: float
+    arrival_return: float
 
     @property
-    def pays(self) -> bool:
-        return self.paid >= self.arriving - 1e-9 * max(abs(self.paid), abs(self.arriving))
+    def is_profitable(self) -> bool:
+        return self.loop_return >= self.arrival_return - 1e-9 * max(
+            abs(self.loop_return), abs(self.arrival_return)
+        )
 
     def __str__(self) -> str:
-        return f"{self.name.capitalize()} for ever is paid {self.paid:.3g}, driving to the target only {self.arriving:.3g}."
+        return f"{self.name.capitalize()} for ever is paid {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
 
 
-def pairs(model: Model, rewards: Floats) -> tuple[Pair, ...]:
+def compare_behaviours(model: GridModel, rewards: Floats) -> tuple[BehaviourComparison, ...]:
     """The comparisons, from several starts."""
-    return tuple(_pairs(model, rewards))
+    return tuple(_compare_behaviours(model, rewards))
 
 
-def loops(model: Model, rewards: Floats) -> tuple[Loop, ...]:
+def compare_loops(model: GridModel, rewards: Floats) -> tuple[LoopComparison, ...]:
     """Every closed way that fits, from several starts."""
-    found = []
-    for start, good in _drives(model):
-        arriving = paid(model, rewards, start, good)
+    drives = []
+    for start, good in _sample_drives(model):
+        arrival_return = discounted_return(model, rewards, start, good)
         for name, loop in LOOPS.items():
-            if _fits(model, start, loop):
+            if _is_free_loop(model, start, loop):
                 repeated = loop * (model.task.max_steps // len(loop))
-                found.append(Loop(name, paid(model, rewards, start, repeated), arriving))
-    return tuple(found)
+                drives.append(
+                    LoopComparison(name, discounted_return(model, rewards, start, repeated), arrival_return)
+                )
+    return tuple(drives)
 
 
 LOOPS: dict[str, tuple[int, ...]] = {
@@ -78,7 +82,7 @@ LOOPS: dict[str, tuple[int, ...]] = {
 }
 
 
-def paid(model: Model, rewards: Floats, start: int, moves: Moves) -> float:
+def discounted_return(model: GridModel, rewards: Floats, start: int, moves: Moves) -> float:
     """The discounted return of a sequence of moves, until the episode ends."""
     total, weight, state = 0.0, 1.0, start
     for move in moves[: model.task.max_steps]:
@@ -90,11 +94,11 @@ def paid(model: Model, rewards: Floats, start: int, moves: Moves) -> float:
     return total
 
 
-def _pairs(model: Model, rewards: Floats) -> Iterator[Pair]:
-    for start, good in _drives(model):
-        reached = paid(model, rewards, start, good)
-        slowly = paid(model, rewards, start, (*DETOUR, *good))
-        crash = _crash(model, start)
+def _compare_behaviours(model: GridModel, rewards: Floats) -> Iterator[BehaviourComparison]:
+    for start, good in _sample_drives(model):
+        direct_return = discounted_return(model, rewards, start, good)
+        slow_return = discounted_return(model, rewards, start, (*DETOUR, *good))
+        crash = _crash_moves(model, start)
         for name, moves in (
             ("the same after turning to and fro", (*DETOUR, *good)),
             ("spinning on the spot until time runs out", (LEFT,) * model.task.max_steps),
@@ -104,35 +108,39 @@ def _pairs(model: Model, rewards: Floats) -> Iterator[Pair]:
             ),
             ("running into a wall", crash),
         ):
-            yield Pair("driving to the target", name, reached, paid(model, rewards, start, moves))
-        yield Pair(
+            yield BehaviourComparison(
+                "driving to the target", name, direct_return, discounted_return(model, rewards, start, moves)
+            )
+        yield BehaviourComparison(
             "reaching the target slowly",
             "spinning on the spot until time runs out",
-            slowly,
-            paid(model, rewards, start, (LEFT,) * model.task.max_steps),
+            slow_return,
+            discounted_return(model, rewards, start, (LEFT,) * model.task.max_steps),
         )
 
 
-def _drives(model: Model) -> list[tuple[int, tuple[int, ...]]]:
+def _sample_drives(model: GridModel) -> list[tuple[int, tuple[int, ...]]]:
     """Some starts, each with a shortest drive to the target."""
-    truth = value_iteration.plan(model, np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01)))
+    policy = value_iteration.value_iteration(
+        model, np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01))
+    )
     starts = [int(start) for start in model.starts if np.isfinite(model.to_go[model.cell_of(start)])]
-    found = []
-    for start in starts[len(starts) // (2 * STARTS) :: max(1, len(starts) // STARTS)][:STARTS]:
-        way = value_iteration.follow(truth, start, model.task.max_steps)
-        moves = (way[1:] % LASTS).tolist()
+    drives = []
+    for start in starts[len(starts) // (2 * START_COUNT) :: max(1, len(starts) // START_COUNT)][:START_COUNT]:
+        states = value_iteration.rollout(policy, start, model.task.max_steps)
+        moves = (states[1:] % LAST_MOVES).tolist()
         if len(moves) > 1:
-            found.append((start, tuple(moves)))
-    return found
+            drives.append((start, tuple(moves)))
+    return drives
 
 
-def _crash(model: Model, start: int) -> Moves:
+def _crash_moves(model: GridModel, start: int) -> Moves:
     return (
         (FORWARD,) * model.task.max_steps if _ends_in_wall(model, start) else (BACK,) * model.task.max_steps
     )
 
 
-def _ends_in_wall(model: Model, start: int) -> bool:
+def _ends_in_wall(model: GridModel, start: int) -> bool:
     state = start
     for _ in range(model.task.max_steps):
         if model.done[state, FORWARD]:
@@ -141,7 +149,7 @@ def _ends_in_wall(model: Model, start: int) -> bool:
     return False
 
 
-def _fits(model: Model, start: int, loop: Moves) -> bool:
+def _is_free_loop(model: GridModel, start: int, loop: Moves) -> bool:
     """Whether the way is closed and free, and does not touch the target."""
     state = start
     for move in loop:

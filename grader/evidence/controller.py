@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.assignment import Assignment, Criterion, Seeds, Trial
-from grader.evidence.drive_record import Drive
-from grader.evidence.episodes import Order, run
+from grader.assignment import Assignment, Criterion, SeedSet, Trial
+from grader.evidence.drive_record import DriveRecord
+from grader.evidence.episodes import EpisodeSpec, run_episode
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 
 
-class ControllerRuns:
+class ControllerEpisodes:
     """The episodes of one submission."""
 
     def __init__(
@@ -24,34 +24,36 @@ class ControllerRuns:
         self._file = file
         self._secret = secret
         self._may_fall = may_fall and not secret
-        self._drives: dict[tuple[str, bool, int], Drive] = {}
+        self._drives: dict[tuple[str, bool, int], DriveRecord] = {}
 
-    def evidence(self, criterion: Criterion) -> Sequence[Drive]:
+    def evidence(self, criterion: Criterion) -> Sequence[DriveRecord]:
         return [
             self._drive(self._assignment.trial(name), place, seed, secret)
             for name in criterion.trials
             for secret, place, seed in self._seeds(self._assignment.trial(name), criterion.seeds)
         ]
 
-    def all(self) -> Sequence[Drive]:
+    def all(self) -> Sequence[DriveRecord]:
         return list(self._drives.values())
 
-    def _seeds(self, trial: Trial, which: Seeds) -> list[tuple[bool, int, int]]:
+    def _seeds(self, trial: Trial, which: SeedSet) -> list[tuple[bool, int, int]]:
         """Whether it is secret, its place among its kind from 1, and the seed."""
-        public = list(enumerate(trial.seeds, 1)) if which is not Seeds.SECRET else []
-        secret = list(enumerate(trial.secret_seeds, 1)) if which is not Seeds.PUBLIC and self._secret else []
+        public = list(enumerate(trial.seeds, 1)) if which is not SeedSet.SECRET else []
+        secret = (
+            list(enumerate(trial.secret_seeds, 1)) if which is not SeedSet.PUBLIC and self._secret else []
+        )
         return [(False, *each) for each in public] + [(True, *each) for each in secret]
 
-    def _drive(self, trial: Trial, place: int, seed: int, secret: bool) -> Drive:
+    def _drive(self, trial: Trial, place: int, seed: int, secret: bool) -> DriveRecord:
         key = trial.name, secret, seed
         if key not in self._drives:
             label = f"{trial.name}, secret seed {place}" if secret else f"{trial.name}, seed {seed}"
-            self._drives[key] = self._run(Order(trial, seed, label, secret))
+            self._drives[key] = self._run(EpisodeSpec(trial, seed, label, secret))
         return self._drives[key]
 
-    def _run(self, order: Order) -> Drive:
+    def _run(self, spec: EpisodeSpec) -> DriveRecord:
         while True:
-            drive = run(order, self._file, limits=self._assignment.limits, level=self.level)
+            drive = run_episode(spec, self._file, limits=self._assignment.limits, level=self.level)
             cannot = drive.failure is not None and drive.failure.kind is FailureKind.CONFINEMENT
             if not (cannot and self._may_fall and self.level > Level.LIMITED):
                 return drive

@@ -20,7 +20,7 @@ from kit.run.recording import ACCEPT, Recording
 from kit.run.scenario import Place
 from kit.world.records import Circle, Polygon
 
-LOOK_EVERY = 5
+CLEARANCE_INTERVAL = 5
 """Ticks between two looks at how near the walls are: 0.05 s, in which a robot at 1 m/s goes 5 cm."""
 
 COLUMNS, ROWS = 60, 18
@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Talk:
+class TopicTraffic:
     """What the program said on one topic."""
 
     kind: str
@@ -41,7 +41,7 @@ class Talk:
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class DriveRecord:
     """One episode, over."""
 
     trial: str
@@ -55,7 +55,7 @@ class Drive:
     score: Score
     failure: Failure | None
     """Why the program stopped, if it did not stop well."""
-    talk: Mapping[str, Talk]
+    traffic: Mapping[str, TopicTraffic]
     """By topic, what the program's nodes published."""
     refused: tuple[str, ...]
     """Which of the world's services the program asked for in vain."""
@@ -64,7 +64,7 @@ class Drive:
     level: int
     answers: Mapping[str, str] = field(default_factory=dict)
     """By call, what the program answered; see ``grader.evidence.service_calls``."""
-    bumped: tuple[int, ...] = ()
+    bump_ticks: tuple[int, ...] = ()
     """The ticks at which the robot began to touch something."""
 
     @property
@@ -92,12 +92,15 @@ class Drive:
 
     @cached_property
     def clearances(self) -> Floats:
-        """(k,) from the robot's hull to the nearest wall [m], every ``LOOK_EVERY`` ticks; 0 where it touches."""
+        """(k,) from the robot's hull to the nearest wall [m], every ``CLEARANCE_INTERVAL`` ticks; 0 where it touches."""
         walls = self.walls
         if not len(walls) or not len(self.track):
-            return np.full(max(1, len(self.track) // LOOK_EVERY), math.inf)
+            return np.full(max(1, len(self.track) // CLEARANCE_INTERVAL), math.inf)
         return np.array(
-            [nearest_wall(self.body(Pose(*row)), walls)[0] for row in self.track[::LOOK_EVERY].tolist()]
+            [
+                nearest_wall(self.body(Pose(*row)), walls)[0]
+                for row in self.track[::CLEARANCE_INTERVAL].tolist()
+            ]
         )
 
     @cached_property
@@ -112,12 +115,12 @@ class Drive:
         """(k, 3) what the robot was told: time [s], forward [m/s], turn [rad/s]."""
         rows = [
             (
-                told.tick * self.recording.step_size,
-                told.content[2]["linear"]["x"],
-                told.content[2]["angular"]["z"],
+                entry.tick * self.recording.step_size,
+                entry.content[2]["linear"]["x"],
+                entry.content[2]["angular"]["z"],
             )
-            for told in self.recording.inputs
-            if told.kind == ACCEPT and told.content[1] == "geometry_msgs/msg/Twist"
+            for entry in self.recording.inputs
+            if entry.kind == ACCEPT and entry.content[1] == "geometry_msgs/msg/Twist"
         ]
         return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
@@ -137,7 +140,7 @@ class Drive:
         )
         return Body(model.name, pose, polygons, discs, robot=True)
 
-    def remark(self, check: str, params: Any = None) -> str:
+    def explain(self, check: str, params: Any = None) -> str:
         """What else there is to say; the check's own sentence says all."""
         return ""
 
@@ -150,6 +153,6 @@ class Drive:
             walls=self.walls,
             bodies=(self.body(Pose(*self.track[-1].tolist())),),
             targets=(Disc(*case.target, case.target_radius),) if case else (),
-            trails=(self.track[::LOOK_EVERY, :2].copy(),),
+            trails=(self.track[::CLEARANCE_INTERVAL, :2].copy(),),
         )
         return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))

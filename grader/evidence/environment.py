@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.evidence.episodes import MOST_PRINTED, STEP, JudgedRunner, noisy
+from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_noise
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.node_process import Guest
@@ -30,28 +30,28 @@ from kit.ros.node.node import Node
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 
-EXAMINER: Final = Path(__file__).with_name("environment_examiner.py")
-ASK: Final = "/examination/ask"
-ANSWER: Final = "/examination/answer"
-PATIENCE_S: Final = 5.0
+EXAMINER_FILE: Final = Path(__file__).with_name("environment_examiner.py")
+REQUEST_TOPIC: Final = "/examination/ask"
+ANSWER_TOPIC: Final = "/examination/answer"
+CALL_TIMEOUT_S: Final = 5.0
 """Simulated: how long one call may take. A step takes a tenth of a second."""
-CHECKER_S: Final = 60.0
+CHECKER_TIMEOUT_S: Final = 60.0
 """Simulated: how long Gymnasium's checker may take, which makes many steps."""
-LATE: Final = 6
+OVERDUE_STEPS: Final = 6
 """Steps for which an episode is still driven after it should have ended."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class EnvironmentTask:
     """The kind's task: which environment is to be written, and where it lives."""
 
-    cls: str
+    class_name: str
     place: Place
     moves: tuple[tuple[float, float], ...]
     """What each action does: m/s, rad/s."""
     step_s: float
     max_steps: int
-    way: tuple[tuple[float, float], ...]
+    waypoints: tuple[tuple[float, float], ...]
     """Points by which the target is reached."""
     scan: str
     """The topic of the robot's laser."""
@@ -62,7 +62,7 @@ class Wish:
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class StepRecord:
     """One step: what was returned, and what was true."""
 
     action: int
@@ -73,27 +73,27 @@ class Moment:
     after: Pose
     touched: bool
     """Whether the robot touched something during the step."""
-    target_m: float
+    target_distance: float
     """From the hull to the target's middle, after it."""
     ranges: tuple[float, ...]
     """The newest scan."""
 
-    def part(self, place: int) -> Mapping[str, Json]:
+    def part(self, index: int) -> Mapping[str, Json]:
         """One of the values returned; empty if there is none."""
         parts = self.returned.get("parts", [])
-        return parts[place] if len(parts) > place else {}
+        return parts[index] if len(parts) > index else {}
 
-    def says(self, place: int) -> bool:
+    def is_true(self, index: int) -> bool:
         """Whether it returned True there."""
-        return self.part(place).get("value") is True
+        return self.part(index).get("value") is True
 
     @property
     def is_over(self) -> bool:
-        return self.says(2) or self.says(3)
+        return self.is_true(2) or self.is_true(3)
 
 
 @dataclass(slots=True)
-class Episode:
+class EnvironmentEpisode:
     """From a reset on."""
 
     name: str
@@ -101,55 +101,57 @@ class Episode:
     inside: bool
     pose: Pose
     ranges: tuple[float, ...]
-    moments: list[Moment] = field(default_factory=list)
+    step_records: list[StepRecord] = field(default_factory=list)
 
 
 @dataclass(slots=True)
-class Visit:
+class EnvironmentRecord:
     """Everything that was seen."""
 
-    wish: Wish
-    about: Mapping[str, Json] = field(default_factory=dict)
+    task: EnvironmentTask
+    description: Mapping[str, Json] = field(default_factory=dict)
     """Of the environment: its spaces, and whether it is one."""
-    episodes: dict[str, Episode] = field(default_factory=dict)
-    checker: str = ""
+    episodes: dict[str, EnvironmentEpisode] = field(default_factory=dict)
+    checker_complaint: str = ""
     """What Gymnasium's own checker complains of."""
     steps: int = 0
     printed: tuple[str, ...] = ()
 
     @property
-    def moments(self) -> list[Moment]:
-        return [moment for episode in self.episodes.values() for moment in episode.moments]
+    def step_records(self) -> list[StepRecord]:
+        return [step for episode in self.episodes.values() for step in episode.step_records]
 
 
-class FreeRunner(JudgedRunner):
+class UnrestrictedRunner(RestrictedRunner):
     """A world whose robot may be put anywhere: an environment begins its episodes as it likes."""
 
     def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
         return service in self._services
 
 
-def visit(wish: Wish, assignment: Assignment, file: Path, level: Level, seed: int) -> Visit:
+def examine_environment(
+    task: EnvironmentTask, assignment: Assignment, file: Path, level: Level, seed: int
+) -> EnvironmentRecord:
     """Lives through some episodes with the environment. Raises GuestError where the student's code fails."""
     with tempfile.TemporaryDirectory(prefix="examination-") as folder:
         Path(folder).chmod(0o755)
-        shutil.copyfile(EXAMINER, Path(folder, EXAMINER.name))
+        shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
         shutil.copyfile(file, Path(folder, file.name))
         graph = Graph(log_sink=lambda record: None)
-        simulation = Simulation(noisy(wish.place.world, 0.0), seed=1, step_size=STEP)
-        runner = FreeRunner(simulation, graph, frozenset({"move_model"}))
-        arguments = [file.stem, wish.cls, *_parameters(wish.place)]
+        simulation = Simulation(with_laser_noise(task.place.world, 0.0), seed=1, step_size=STEP)
+        runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
+        arguments = [file.stem, task.class_name, *_parameters(task.place)]
         # It listens before there is anything to hear.
-        examination = _Examination(runner, wish, seed)
+        examination = _Examination(runner, task, seed)
         guest = Guest.start(
-            graph, Path(folder, EXAMINER.name), args=arguments, limits=assignment.limits, level=level
+            graph, Path(folder, EXAMINER_FILE.name), args=arguments, limits=assignment.limits, level=level
         )
         with guest:
             runner.participants.append(guest)
-            examination.hold(guest)
+            examination.run_all(guest)
             lines = guest.take_output().lines
-    examination.seen.printed = tuple(printable(line.text) for line in lines)[:MOST_PRINTED]
-    return examination.seen
+    examination.record.printed = tuple(printable(line.text) for line in lines)[:MAX_PRINTED_LINES]
+    return examination.record
 
 
 def _parameters(place: Place) -> list[str]:
@@ -167,71 +169,73 @@ def _parameters(place: Place) -> list[str]:
 class _Examination:
     """Asks, and notes what happened."""
 
-    def __init__(self, runner: FreeRunner, wish: Wish, seed: int) -> None:
+    def __init__(self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int) -> None:
         self._runner = runner
         self._guest: Guest | None = None
-        self._wish = wish
+        self._task = task
         self._seed = seed
-        self.seen = Visit(wish)
-        assert wish.place.robot is not None  # the sheet's reader sees to it
-        self._robot = wish.place.robot
-        self._heard: list[str] = []
+        self.record = EnvironmentRecord(task)
+        assert task.place.robot is not None  # the sheet's reader sees to it
+        self._robot = task.place.robot
+        self._answers: list[str] = []
         self._ranges: tuple[float, ...] = ()
         self._touched = False
         node = runner.graph.create_node("grader")
-        self._ask = node.create_publisher(String, ASK, 10)
-        node.create_subscription(String, ANSWER, self._heard_answer, 10)
-        runner.graph.add_message_listener(self._overhear)
+        self._request_publisher = node.create_publisher(String, REQUEST_TOPIC, 10)
+        node.create_subscription(String, ANSWER_TOPIC, self._on_answer, 10)
+        runner.graph.add_message_listener(self._on_message)
 
-    def hold(self, guest: Guest) -> None:
+    def run_all(self, guest: Guest) -> None:
         """Everything that is tried, in order."""
         self._guest = guest
-        self.seen.about = self._answer(PATIENCE_S, "the file's beginning")
-        if "missing" in self.seen.about or not self.seen.about.get("is_env"):
+        self.record.description = self._await_answer(CALL_TIMEOUT_S, "the file's beginning")
+        if "missing" in self.record.description or not self.record.description.get("is_env"):
             return
-        turning = next((k for k, (speed, turn) in enumerate(self._wish.moves) if not speed and turn > 0), 0)
-        ahead = next((k for k, (speed, turn) in enumerate(self._wish.moves) if speed and not turn), 0)
-        self._episode("turning on the spot", 0, lambda _: turning, self._wish.max_steps)
-        self._episode("into the wall", 1, lambda _: ahead, self._wish.max_steps)
-        self._episode("to the target", 2, self._pilot(), self._wish.max_steps)
-        chance = random.Random(f"moves {self._seed}")
-        moves = [chance.randrange(len(self._wish.moves)) for _ in range(15)]
+        turning = next((k for k, (speed, turn) in enumerate(self._task.moves) if not speed and turn > 0), 0)
+        ahead = next((k for k, (speed, turn) in enumerate(self._task.moves) if speed and not turn), 0)
+        self._run_episode("turning on the spot", 0, lambda _: turning, self._task.max_steps)
+        self._run_episode("into the wall", 1, lambda _: ahead, self._task.max_steps)
+        self._run_episode("to the target", 2, self._make_pilot(), self._task.max_steps)
+        rng = random.Random(f"moves {self._seed}")
+        moves = [rng.randrange(len(self._task.moves)) for _ in range(15)]
         for name, seed in (("one seed", 3), ("the same seed again", 3), ("another seed", 4)):
-            self._episode(name, seed, lambda done: moves[done], len(moves))
-        self.seen.checker = self._checked()
+            self._run_episode(name, seed, lambda done: moves[done], len(moves))
+        self.record.checker_complaint = self._run_checker()
 
-    def _episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
+    def _run_episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
         """Drives until it is over, and a little on if it does not end where it should."""
         answer = self._call(f"reset(seed={self._seed + seed})", call="reset", seed=self._seed + seed)
-        episode = Episode(
+        episode = EnvironmentEpisode(
             name, answer.get("returned", {}), answer.get("inside") is True, self._pose(), self._ranges
         )
-        self.seen.episodes[name] = episode
+        self.record.episodes[name] = episode
         overdue = 0
-        while overdue < LATE and len(episode.moments) < steps + LATE:
-            done = len(episode.moments)
-            if name not in ENDING and done >= steps:
+        while overdue < OVERDUE_STEPS and len(episode.step_records) < steps + OVERDUE_STEPS:
+            done = len(episode.step_records)
+            if name not in TERMINATING_EPISODES and done >= steps:
                 return
-            moment = self._step(choose(done))
-            episode.moments.append(moment)
-            if moment.is_over:
+            step = self._make_step(choose(done))
+            episode.step_records.append(step)
+            if step.is_over:
                 return
-            is_due = moment.touched or moment.target_m < 0.1 or done + 1 > steps
+            is_due = step.touched or step.target_distance < 0.1 or done + 1 > steps
             overdue += is_due or overdue > 0
 
-    def _step(self, action: int) -> Moment:
+    def _make_step(self, action: int) -> StepRecord:
         before, self._touched = self._pose(), False
         answer = self._call(f"step({action})", call="step", action=action)
-        self.seen.steps += 1
-        case = self._wish.place.case
+        self.record.steps += 1
+        case = self._task.place.case
         assert case is not None  # the sheet's reader sees to it
-        away = self._runner.simulation.hull_distance(self._robot, case.target)
+        distance = self._runner.simulation.hull_distance(self._robot, case.target)
         returned, inside = answer.get("returned", {}), answer.get("inside") is True
-        return Moment(action, returned, inside, before, self._pose(), self._touched, away, self._ranges)
+        return StepRecord(
+            action, returned, inside, before, self._pose(), self._touched, distance, self._ranges
+        )
 
-    def _pilot(self) -> Callable[[int], int]:
+    def _make_pilot(self) -> Callable[[int], int]:
         """Chooses moves along the way: turn towards the next point, then go."""
-        way = list(self._wish.way)
+        way = list(self._task.waypoints)
 
         def choose(done: int) -> int:
             pose = self._pose()
@@ -240,73 +244,73 @@ class _Examination:
             off = math.atan2(way[0][1] - pose.y, way[0][0] - pose.x) - pose.theta
             off = (off + math.pi) % (2 * math.pi) - math.pi
             return max(
-                range(len(self._wish.moves)),
-                key=lambda k: self._wish.moves[k][0] if abs(off) < 0.12 else off * self._wish.moves[k][1],
+                range(len(self._task.moves)),
+                key=lambda k: self._task.moves[k][0] if abs(off) < 0.12 else off * self._task.moves[k][1],
             )
 
         return choose
 
-    def _checked(self) -> str:
-        answer = self._call("Gymnasium's checker", CHECKER_S, call="checker")
+    def _run_checker(self) -> str:
+        answer = self._call("Gymnasium's checker", CHECKER_TIMEOUT_S, call="checker")
         complaints = [str(answer.get("says", "")), *map(str, answer.get("warns", []))]
         return printable(next((each for each in complaints if each), ""))[:500]
 
-    def _call(self, what: str, patience_s: float = PATIENCE_S, **question: Json) -> Mapping[str, Json]:
-        self._ask.publish(String(data=json.dumps(question)))
-        return self._answer(patience_s, what)
+    def _call(self, what: str, timeout_s: float = CALL_TIMEOUT_S, **question: Json) -> Mapping[str, Json]:
+        self._request_publisher.publish(String(data=json.dumps(question)))
+        return self._await_answer(timeout_s, what)
 
-    def _answer(self, patience_s: float, what: str) -> Mapping[str, Json]:
+    def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
         """Ticks until the answer comes."""
-        for _ in range(round(patience_s / STEP)):
+        for _ in range(round(timeout_s / STEP)):
             self._runner.exchange_until_idle()
-            if self._heard:
-                return self._read(self._heard.pop())
+            if self._answers:
+                return self._decode_answer(self._answers.pop())
             self._runner.tick()
             self._touched = self._touched or self._runner.simulation.touches(self._robot)
             if self._guest is not None and self._guest.failure is not None:
                 raise GuestError(self._guest.failure)
             if self._guest is not None and self._guest.has_ended:
                 raise GuestError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
-        message = f"{what} did not come back within {patience_s:g} simulated seconds. Does it wait for a message that nobody sends?"
+        message = f"{what} did not come back within {timeout_s:g} simulated seconds. Does it wait for a message that nobody sends?"
         raise GuestError(Failure(FailureKind.TIMEOUT, message))
 
-    def _read(self, text: str) -> Mapping[str, Json]:
+    def _decode_answer(self, text: str) -> Mapping[str, Json]:
         try:
             answer = decode(text.encode("ascii", "replace"))
         except ProtocolError as error:
             raise GuestError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
-        if not isinstance(answer, dict) or not _is_plain(answer.get("returned", {})):
+        if not isinstance(answer, dict) or not _is_plain_value(answer.get("returned", {})):
             raise GuestError(Failure(FailureKind.PROTOCOL, "the answer is no data"))
         return answer
 
-    def _heard_answer(self, message: String) -> None:
-        self._heard.append(message.data)
+    def _on_answer(self, message: String) -> None:
+        self._answers.append(message.data)
 
-    def _overhear(self, _: int, node: Node, topic: str, message: Message) -> None:
-        if topic == self._wish.scan and node.handle.full_name == "/flatland_server":
+    def _on_message(self, _: int, node: Node, topic: str, message: Message) -> None:
+        if topic == self._task.scan and node.handle.full_name == "/flatland_server":
             self._ranges = tuple(getattr(message, "ranges", ()))
 
     def _pose(self) -> Pose:
         return self._runner.simulation.pose(self._robot)
 
 
-ENDING: Final = ("turning on the spot", "into the wall", "to the target")
+TERMINATING_EPISODES: Final = ("turning on the spot", "into the wall", "to the target")
 """Episodes that are driven until they end."""
 
 
-def _is_plain(told: Json) -> bool:
+def _is_plain_value(value: Json) -> bool:
     """Whether a told value has the shape that ``grader.evidence.environment_examiner`` gives it."""
-    if not isinstance(told, dict):
+    if not isinstance(value, dict):
         return False
-    parts = told.get("parts", [])
-    return isinstance(parts, list) and all(map(_is_plain, parts))
+    parts = value.get("parts", [])
+    return isinstance(parts, list) and all(map(_is_plain_value, parts))
 
 
-def sectors(ranges: Sequence[float], count: int, clip: float) -> list[float]:
+def sector_minima(ranges: Sequence[float], count: int, clip: float) -> list[float]:
     """The nearest range of each of ``count`` parts of a scan, at most ``clip``; what is left over is in the last part."""
     nearest, size = [clip] * count, max(1, len(ranges) // count)
     for k, each in enumerate(ranges):
         if not math.isnan(each):
-            place = min(k // size, count - 1)
-            nearest[place] = min(nearest[place], each)
+            index = min(k // size, count - 1)
+            nearest[index] = min(nearest[index], each)
     return nearest

@@ -18,77 +18,79 @@ from gymnasium.utils.env_checker import check_env
 
 MOST_NUMBERS: Final = 200
 
-Plain = dict[str, Any]
+PlainData = dict[str, Any]
 
 
-def told(value: object) -> Plain:
+def describe_value(value: object) -> PlainData:
     """A value as plain data: what it is, and its numbers; None for one that is not finite."""
     kind = type(value).__name__
     if isinstance(value, tuple):
-        return {"kind": kind, "parts": [told(each) for each in value[:8]], "count": len(value)}
+        return {"kind": kind, "parts": [describe_value(each) for each in value[:8]], "count": len(value)}
     if isinstance(value, np.ndarray):
         plain = value.ravel()[:MOST_NUMBERS].tolist() if value.dtype.kind in "fiub" else []
-        numbers = [finite(each) for each in plain]
+        numbers = [finite_or_none(each) for each in plain]
         return {"kind": kind, "dtype": str(value.dtype), "shape": list(value.shape), "numbers": numbers}
     if isinstance(value, (bool, np.bool_)):
         return {"kind": "bool", "value": bool(value)}
     if isinstance(value, (int, float, np.number)):
-        return {"kind": kind, "value": finite(value)}
+        return {"kind": kind, "value": finite_or_none(value)}
     return {"kind": kind}
 
 
-def finite(value: Any) -> float | None:
+def finite_or_none(value: Any) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def space(value: object) -> Plain:
+def describe_space(value: object) -> PlainData:
     """A space as plain data."""
     if isinstance(value, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
     if isinstance(value, gymnasium.spaces.Box):
-        low, high = (finite(bound) for bound in (value.low.min(), value.high.max()))
+        low, high = (finite_or_none(bound) for bound in (value.low.min(), value.high.max()))
         shape = list(value.shape)
         return {"kind": "Box", "shape": shape, "dtype": str(value.dtype), "low": low, "high": high}
     return {"kind": type(value).__name__}
 
 
-def inside(env: Any, returned: object) -> bool:
+def is_observation_valid(env: Any, returned: object) -> bool:
     """Whether the observation, the first of what was returned, lies in the space of observations."""
     is_space = isinstance(getattr(env, "observation_space", None), gymnasium.Space)
     seen = returned[0] if isinstance(returned, tuple) and returned else returned
     return bool(is_space and env.observation_space.contains(seen))
 
 
-def made(module: ModuleType, name: str) -> tuple[Any, Plain]:
+def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:
     """The environment, and what to tell of it."""
     cls = getattr(module, name, None)
     classes = [each for each, value in vars(module).items() if isinstance(value, type)][:20]
     if not isinstance(cls, type):
         return None, {"missing": classes}
     env = cls()
-    spaces = {each: space(getattr(env, each, None)) for each in ("action_space", "observation_space")}
+    spaces = {
+        each: describe_space(getattr(env, each, None)) for each in ("action_space", "observation_space")
+    }
     return env, {"is_env": isinstance(env, gymnasium.Env), **spaces}
 
 
-def reset(env: Any, question: Plain) -> Plain:
+def reset(env: Any, question: PlainData) -> PlainData:
     returned = env.reset(seed=question["seed"])
-    return {"returned": told(returned), "inside": inside(env, returned)}
+    return {"returned": describe_value(returned), "inside": is_observation_valid(env, returned)}
 
 
-def step(env: Any, question: Plain) -> Plain:
+def step(env: Any, question: PlainData) -> PlainData:
     returned = env.step(np.int64(question["action"]))
-    return {"returned": told(returned), "inside": inside(env, returned)}
+    return {"returned": describe_value(returned), "inside": is_observation_valid(env, returned)}
 
 
-def checker(env: Any, question: Plain) -> Plain:
+def run_checker(env: Any, question: PlainData) -> PlainData:
     """What Gymnasium's own checker says."""
-    with warnings.catch_warnings(record=True) as heard:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             check_env(env, skip_render_check=True)
         except Exception as problem:  # noqa: BLE001  # whatever it is, it is for the student to read
             return {"says": f"{type(problem).__name__}: {problem}"[:500], "warns": []}
-    return {"says": "", "warns": [str(each.message)[:300] for each in heard[:5]]}
+    return {"says": "", "warns": [str(each.message)[:300] for each in caught[:5]]}
 
 
 def main() -> None:
@@ -100,10 +102,10 @@ def main() -> None:
     rclpy.init()
     node = rclpy.create_node("examiner", start_parameter_services=False, use_global_arguments=False)
     questions: list[str] = []
-    node.create_subscription(String, "/examination/ask", lambda heard: questions.append(heard.data), 10)
+    node.create_subscription(String, "/examination/ask", lambda caught: questions.append(caught.data), 10)
     answers = node.create_publisher(String, "/examination/answer", 10)
-    env, answer = made(import_module(module), name)
-    calls = {"reset": reset, "step": step, "checker": checker}
+    env, answer = make_environment(import_module(module), name)
+    calls = {"reset": reset, "step": step, "checker": run_checker}
     while rclpy.ok():
         answers.publish(String(data=json.dumps(answer)))
         while not questions:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Shift, Trial
-from grader.evidence.drive_record import Drive, Talk
-from grader.evidence.service_calls import Caller
+from grader.evidence.drive_record import DriveRecord, TopicTraffic
+from grader.evidence.service_calls import ServiceCaller
 from kit.geometry import Pose
 from kit.host.failure import Failure, GuestError
 from kit.host.node_process import Guest
@@ -35,18 +35,18 @@ from kit.world.records import Model, World
 STEP: Final = 0.01
 """s"""
 
-HOME_HAIR: Final = 1e-6
+HOME_TOLERANCE: Final = 1e-6
 """A robot may be sent this near to its home [m, rad], and nowhere else."""
 
 WORLD_NODE: Final = "/flatland_server"
 """The world's own."""
 
-MOST_PRINTED: Final = 200
+MAX_PRINTED_LINES: Final = 200
 """Lines of a program's output that are kept."""
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class EpisodeSpec:
     """One episode to run."""
 
     trial: Trial
@@ -55,7 +55,7 @@ class Order:
     secret: bool
 
 
-class JudgedRunner(Runner):
+class RestrictedRunner(Runner):
     """A runner whose world only changes as the assignment allows, and whose clock no program stops."""
 
     def __init__(self, simulation: Simulation, graph: Graph, services: frozenset[str]) -> None:
@@ -64,7 +64,7 @@ class JudgedRunner(Runner):
         self.refused: list[str] = []
         super().__init__(simulation, graph)
 
-    def admit(self, robot: str | None, home: Pose) -> None:
+    def allow_home(self, robot: str | None, home: Pose) -> None:
         """Where the robot may be sent."""
         self._home = robot, home
 
@@ -74,7 +74,7 @@ class JudgedRunner(Runner):
             raise SimulationError(f"{service} is not allowed while a program is graded")
         super().call_service(service, *arguments)
 
-    def prepare(self, service: str, *arguments: Any) -> None:
+    def call_unrestricted(self, service: str, *arguments: Any) -> None:
         """The same without asking: for the grader itself."""
         super().call_service(service, *arguments)
 
@@ -95,33 +95,33 @@ class JudgedRunner(Runner):
         robot, home = self._home
         name, pose = arguments
         return name == robot and all(
-            abs(wanted - allowed) <= HOME_HAIR for wanted, allowed in zip(pose, home, strict=True)
+            abs(wanted - allowed) <= HOME_TOLERANCE for wanted, allowed in zip(pose, home, strict=True)
         )
 
 
-class Listener:
+class TrafficRecorder:
     """Counts what each topic is told by others than the world."""
 
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[tuple[str, str], int] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
-        self.stop = graph.add_message_listener(self._hear)
+        self.stop = graph.add_message_listener(self._on_message)
 
-    def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+    def _on_message(self, time_ns: int, node: Node, name: str, message: Message) -> None:
         if node.handle.full_name == WORLD_NODE:
             return
         key = name, type_name(type(message))
         self._counts[key] = self._counts.get(key, 0) + 1
         self._nodes.setdefault(key, set()).add(node.handle.full_name)
 
-    def talk(self) -> Mapping[str, Talk]:
+    def traffic(self) -> Mapping[str, TopicTraffic]:
         return {
-            name: Talk(kind, count, tuple(sorted(self._nodes[name, kind])))
+            name: TopicTraffic(kind, count, tuple(sorted(self._nodes[name, kind])))
             for (name, kind), count in sorted(self._counts.items())
         }
 
 
-class Bumps(Observer):
+class BumpRecorder(Observer):
     """Notes, as one of the runner's observers, when the robot begins to touch something."""
 
     def __init__(self, robot: str | None) -> None:
@@ -142,86 +142,86 @@ class Bumps(Observer):
         self._count += 1
 
 
-def run(order: Order, file: Path, *, limits: Limits, level: Level) -> Drive:
+def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> DriveRecord:
     """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
-    trial = order.trial
+    trial = spec.trial
     place = _place(trial)
     graph = Graph(log_sink=lambda record: None)
     simulation = Simulation(
-        place.world, seed=order.seed, step_size=STEP, wanted=lambda topic: graph.subscription_count(topic) > 0
+        place.world, seed=spec.seed, step_size=STEP, wanted=lambda topic: graph.subscription_count(topic) > 0
     )
-    runner = JudgedRunner(simulation, graph, trial.services)
+    runner = RestrictedRunner(simulation, graph, trial.services)
     recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
     trip, fingerprint = Trip(place.driven, place.case), Fingerprint()
-    bumps = Bumps(place.robot)
+    bumps = BumpRecorder(place.robot)
     runner.observers += [recorder, trip, fingerprint, bumps]
-    home = shifted(trial, order.seed)
+    home = shifted_start(trial, spec.seed)
     if place.robot is not None:
         if home != trial.home():
-            runner.prepare("move_model", place.robot, tuple(home))
-        runner.admit(place.robot, home)
-    listener = Listener(graph)
-    caller = Caller(graph, trial.calls)
+            runner.call_unrestricted("move_model", place.robot, tuple(home))
+        runner.allow_home(place.robot, home)
+    traffic_recorder = TrafficRecorder(graph)
+    service_caller = ServiceCaller(graph, trial.calls)
     arguments = [*_arguments(place, home), *_parameters(trial)]
-    failure, printed = _drive(runner, trip, order, file, arguments, limits, level, caller)
-    listener.stop()
-    return Drive(
+    failure, printed = _drive(runner, trip, spec, file, arguments, limits, level, service_caller)
+    traffic_recorder.stop()
+    return DriveRecord(
         trial=trial.name,
-        label=order.label,
-        seed=order.seed,
-        secret=order.secret,
+        label=spec.label,
+        seed=spec.seed,
+        secret=spec.secret,
         place=place,
         limit_s=trial.time_s,
         recording=recorder.recording(),
         score=trip.score,
         failure=failure,
-        talk=listener.talk(),
-        refused=tuple(runner.refused[:MOST_PRINTED]),
+        traffic=traffic_recorder.traffic(),
+        refused=tuple(runner.refused[:MAX_PRINTED_LINES]),
         printed=printed,
         fingerprint=fingerprint.text,
         level=int(level),
-        answers=caller.answers(),
-        bumped=bumps.ticks,
+        answers=service_caller.answers(),
+        bump_ticks=bumps.ticks,
     )
 
 
 def _drive(
-    runner: JudgedRunner,
+    runner: RestrictedRunner,
     trip: Trip,
-    order: Order,
+    spec: EpisodeSpec,
     file: Path,
     arguments: list[str],
     limits: Limits,
     level: Level,
-    caller: Caller,
+    service_caller: ServiceCaller,
 ) -> tuple[Failure | None, tuple[str, ...]]:
     """Ticks until the time is over, the target reached, or the program failed."""
     try:
-        guest = Guest.start(runner.graph, file, args=arguments, seed=order.seed, limits=limits, level=level)
+        guest = Guest.start(runner.graph, file, args=arguments, seed=spec.seed, limits=limits, level=level)
     except GuestError as error:
         return error.failure, ()
     with guest:
         runner.participants.append(guest)
-        for tick in range(round(order.trial.time_s / STEP)):
-            caller.look(tick * STEP)
+        for tick in range(round(spec.trial.time_s / STEP)):
+            service_caller.call_due(tick * STEP)
             runner.tick()
-            if guest.failure is not None or (order.trial.until_reached and trip.score.reached_s is not None):
+            if guest.failure is not None or (spec.trial.until_reached and trip.score.reached_s is not None):
                 break
         failure = guest.failure
     lines = [printable(line.text) for line in guest.take_output().lines]
-    return failure, tuple(lines[:MOST_PRINTED])
+    return failure, tuple(lines[:MAX_PRINTED_LINES])
 
 
-def shifted(trial: Trial, seed: int) -> Pose:
+def shifted_start(trial: Trial, seed: int) -> Pose:
     """Where the robot starts with this seed."""
     home, shift = trial.home(), trial.shift
     if shift == Shift():
         return home
-    chance = random.Random(f"start {seed}")
+    rng = random.Random(f"start {seed}")
     return Pose(
-        home.x + chance.uniform(-shift.x, shift.x),
-        home.y + chance.uniform(-shift.y, shift.y),
-        home.theta + chance.uniform(-shift.theta, shift.theta),
+        home.x + rng.uniform(-shift.x, shift.x),
+        home.y + rng.uniform(-shift.y, shift.y),
+        home.theta + rng.uniform(-shift.theta, shift.theta),
     )
 
 
@@ -229,15 +229,15 @@ def _place(trial: Trial) -> Place:
     place = trial.place
     if trial.noise is None:
         return place
-    return replace(place, world=noisy(place.world, trial.noise))
+    return replace(place, world=with_laser_noise(place.world, trial.noise))
 
 
-def noisy(world: World, noise: float) -> World:
+def with_laser_noise(world: World, noise: float) -> World:
     """The same world with lasers that err by this standard deviation [m]."""
-    return replace(world, models=tuple(_noisy(model, noise) for model in world.models))
+    return replace(world, models=tuple(_with_laser_noise(model, noise) for model in world.models))
 
 
-def _noisy(model: Model, noise: float) -> Model:
+def _with_laser_noise(model: Model, noise: float) -> Model:
     plugins = tuple(
         replace(plugin, params=replace(plugin.params, noise=noise))
         if isinstance(plugin.params, LaserParams)

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.evidence.episodes import Listener
+from grader.evidence.episodes import TrafficRecorder
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
@@ -42,18 +42,18 @@ from kit.run.runner import Runner
 from kit.run.view import Showing
 from kit.world.problems import WorldError
 
-MOST_PROGRAMS: Final = 12
-MOST_LINES: Final = 200
+MAX_PROGRAMS: Final = 12
+MAX_LINES: Final = 200
 PID: Final = re.compile(r"\[?pid \[?\d+\]?")
 ANSWER_TICKS: Final = 20
 """So long a node has to say what its parameters are."""
-LONGEST_STRIDE: Final = 0.1
+MAX_STRIDE: Final = 0.1
 """A model that is farther [m] from where it was one tick ago was put there."""
 COLUMNS, ROWS = 60, 18
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class LaunchCase:
     """One way to launch it."""
 
     name: str
@@ -64,34 +64,34 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
-class Questions:
+class ParameterQueries:
     """What is to be looked at: by node, which parameters."""
 
     parameters: Mapping[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
-class Launched:
+class LaunchRecord:
     """One run, over."""
 
-    run: Run
+    run: LaunchCase
     failure: Failure | None = None
     arguments: tuple[Argument, ...] = ()
     """That the launch file declares."""
-    died: tuple[str, ...] = ()
+    failures: tuple[str, ...] = ()
     """What went wrong with what it started."""
     graph: GraphState | None = None
     """Who was there at the end."""
-    talk: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    traffic: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """By topic, which nodes spoke there."""
     parameters: Mapping[str, str] = field(default_factory=dict)
     """``/node name`` -> its value, as text."""
-    ways: Mapping[str, float] = field(default_factory=dict)
+    distances: Mapping[str, float] = field(default_factory=dict)
     """By model, how far it drove [m]."""
     printed: tuple[str, ...] = ()
     steps: int = 0
-    drawn: str = ""
-    remarks: Any = None
+    drawing: str = ""
+    explain_with: Any = None
     """(check, params) -> what else there is to say."""
 
     @property
@@ -106,26 +106,26 @@ class Launched:
     def outcome(self) -> str:
         if self.failure is not None:
             return f"stopped ({self.failure.kind.value})"
-        return f"{len(self.nodes)} nodes" + (f", {len(self.died)} failed" if self.died else "")
+        return f"{len(self.nodes)} nodes" + (f", {len(self.failures)} failed" if self.failures else "")
 
     @property
     def nodes(self) -> tuple[str, ...]:
         """By full name, but for the world's own and the keyboard's."""
         there = () if self.graph is None else self.graph.nodes
-        return tuple(name for name in there if name not in OURS)
+        return tuple(name for name in there if name not in KIT_NODES)
 
-    def remark(self, check: str, params: Any = None) -> str:
-        return "" if self.remarks is None or self.secret else str(self.remarks(self, check, params))
+    def explain(self, check: str, params: Any = None) -> str:
+        return "" if self.explain_with is None or self.secret else str(self.explain_with(self, check, params))
 
     def picture(self, check: str = "") -> str:
-        return self.drawn
+        return self.drawing
 
 
-OURS: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_looks"})
+KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_queries"})
 
 
 @contextmanager
-def laid_out(package: Path, file: Path) -> Iterator[LaunchTarget]:
+def package_copy(package: Path, file: Path) -> Iterator[LaunchTarget]:
     """The package with the student's launch file in it, in a folder of its own."""
     with tempfile.TemporaryDirectory(prefix="launch-") as made:
         folder = Path(made) / "package"
@@ -137,11 +137,11 @@ def laid_out(package: Path, file: Path) -> Iterator[LaunchTarget]:
         yield LaunchTarget(target, folder, (folder, SHARE))
 
 
-def launched(
-    run: Run, target: LaunchTarget, questions: Questions, *, level: Level, limits: Limits
-) -> Launched:
+def run_launch(
+    run: LaunchCase, target: LaunchTarget, queries: ParameterQueries, *, level: Level, limits: Limits
+) -> LaunchRecord:
     """One run. Never raises for what is the student's mistake."""
-    bounds = Bounds(level, limits, limits, commands=False, most=MOST_PROGRAMS)
+    bounds = Bounds(level, limits, limits, commands=False, most=MAX_PROGRAMS)
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
     try:
@@ -154,36 +154,42 @@ def launched(
             say=lambda line: printed.append(str(line)),
         )
     except GuestError as error:
-        return Launched(run, _told(error.failure, target))
+        return LaunchRecord(run, _without_folder(error.failure, target))
     try:
         launch.begin()
-        seen = _with_world(run, launch, questions) if launch.world else _without(run, launch, questions)
+        seen = (
+            _run_with_world(run, launch, queries)
+            if launch.world
+            else _run_without_world(run, launch, queries)
+        )
     except GuestError as error:
-        return Launched(run, _told(error.failure, target), arguments)
+        return LaunchRecord(run, _without_folder(error.failure, target), arguments)
     except (CannotStart, WorldError, PackageError, OSError) as problem:
-        return Launched(run, _told(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments)
+        return LaunchRecord(
+            run, _without_folder(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments
+        )
     finally:
         launch.close()
-    return Launched(
+    return LaunchRecord(
         run,
         arguments=arguments,
-        died=tuple(printable(each) for each in launch.failures),
-        printed=tuple(_steady(line, target) for line in printed[:MOST_LINES]),
+        failures=tuple(printable(each) for each in launch.failures),
+        printed=tuple(_normalized_line(line, target) for line in printed[:MAX_LINES]),
         **seen,
     )
 
 
-def _told(failure: Failure, target: LaunchTarget) -> Failure:
+def _without_folder(failure: Failure, target: LaunchTarget) -> Failure:
     """Where the copy lies is nothing to tell."""
     return replace(failure, message=printable(failure.message.replace(f"{target.folder}/", "")))
 
 
-def _steady(line: str, target: LaunchTarget) -> str:
+def _normalized_line(line: str, target: LaunchTarget) -> str:
     """A line without what differs from run to run: processes' numbers, and where the copy lies."""
     return printable(PID.sub("pid", line).replace(f"{target.folder}/", ""))
 
 
-def _with_world(run: Run, launch: Launch, questions: Questions) -> dict[str, Any]:
+def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) -> dict[str, Any]:
     assert launch.world is not None
     file = launch.world.path.resolve()
     if not file.is_relative_to(launch.target.folder.resolve()):
@@ -197,68 +203,70 @@ def _with_world(run: Run, launch: Launch, questions: Questions) -> dict[str, Any
         recorder = Recorder(run.name, None, session.runner.simulation)
         session.runner.observers.append(recorder)
         ticks = round(run.time_s / session.runner.simulation.step_size)
-        listener = Listener(launch.graph)
-        _ticked(session.runner, launch, ticks)
-        listener.stop()
+        traffic_recorder = TrafficRecorder(launch.graph)
+        _tick_until_over(session.runner, launch, ticks)
+        traffic_recorder.stop()
         recording = recorder.recording()
-        ways = {name: _way(recording.track(name)) for name in session.runner.simulation.model_names}
+        ways = {
+            name: _driven_distance(recording.track(name)) for name in session.runner.simulation.model_names
+        }
         drawn = "\n".join(row.rstrip() for row in plain_rows(Showing(session).view().scene, COLUMNS, ROWS))
         return {
-            **_looked(launch.graph, listener),
-            "parameters": _parameters(launch.graph, session.runner, questions),
-            "ways": ways,
-            "drawn": drawn,
+            **_graph_record(launch.graph, traffic_recorder),
+            "parameters": _parameters(launch.graph, session.runner, queries),
+            "distances": ways,
+            "drawing": drawn,
             "steps": recording.ticks,
         }
 
 
-def _without(run: Run, launch: Launch, questions: Questions) -> dict[str, Any]:
+def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) -> dict[str, Any]:
     launch.start()
     ticker = Worldless(launch.graph)
     ticker.participants.append(launch)
-    listener = Listener(launch.graph)
+    traffic_recorder = TrafficRecorder(launch.graph)
     ticks = round(run.time_s / ticker.step_size)
-    _ticked(ticker, launch, ticks)
-    listener.stop()
+    _tick_until_over(ticker, launch, ticks)
+    traffic_recorder.stop()
     return {
-        **_looked(launch.graph, listener),
-        "parameters": _parameters(launch.graph, ticker, questions),
+        **_graph_record(launch.graph, traffic_recorder),
+        "parameters": _parameters(launch.graph, ticker, queries),
         "steps": ticks,
     }
 
 
-def _ticked(ticker: Runner | Worldless, launch: Launch, ticks: int) -> None:
+def _tick_until_over(ticker: Runner | Worldless, launch: Launch, ticks: int) -> None:
     for _ in range(ticks):
         if launch.is_over:
             break
         ticker.tick()
 
 
-def _looked(graph: Graph, listener: Listener) -> dict[str, Any]:
-    talk = {name: each.nodes for name, each in listener.talk().items()}
-    return {"graph": snapshot(graph), "talk": MappingProxyType(talk)}
+def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, Any]:
+    traffic = {name: each.nodes for name, each in traffic_recorder.traffic().items()}
+    return {"graph": snapshot(graph), "traffic": MappingProxyType(traffic)}
 
 
-def _parameters(graph: Graph, ticker: Runner | Worldless, questions: Questions) -> Mapping[str, str]:
+def _parameters(graph: Graph, ticker: Runner | Worldless, queries: ParameterQueries) -> Mapping[str, str]:
     """Asks the nodes themselves."""
-    asking = graph.create_node("grader_looks")
-    asked = {}
-    for node, names in questions.parameters.items():
-        client = asking.create_client(GetParameters, f"{node}/get_parameters")
+    asking_node = graph.create_node("grader_queries")
+    requests = {}
+    for node, names in queries.parameters.items():
+        client = asking_node.create_client(GetParameters, f"{node}/get_parameters")
         if client.service_is_ready():
-            asked[node] = names, client.call_async(GetParameters.Request(names=list(names)))
-    for _ in range(ANSWER_TICKS if asked else 0):
+            requests[node] = names, client.call_async(GetParameters.Request(names=list(names)))
+    for _ in range(ANSWER_TICKS if requests else 0):
         ticker.tick()
     found = {}
-    for node, (names, future) in asked.items():
+    for node, (names, future) in requests.items():
         answer = future.result() if future.done() else None
         for name, value in zip(names, [] if answer is None else answer.values, strict=False):
             if value.type != ParameterType.PARAMETER_NOT_SET:
-                found[f"{node} {name}"] = _text(value)
+                found[f"{node} {name}"] = _parameter_text(value)
     return MappingProxyType(found)
 
 
-def _text(value: Any) -> str:
+def _parameter_text(value: Any) -> str:
     kinds = {
         ParameterType.PARAMETER_BOOL: lambda: str(value.bool_value).lower(),
         ParameterType.PARAMETER_INTEGER: lambda: str(value.integer_value),
@@ -268,7 +276,7 @@ def _text(value: Any) -> str:
     return printable(kinds.get(value.type, lambda: "a list")())
 
 
-def _way(track: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+def _driven_distance(track: np.ndarray[Any, np.dtype[np.float64]]) -> float:
     """m, without jumps."""
     strides = np.hypot(*np.diff(track[:, :2], axis=0).T) if len(track) > 1 else np.empty(0)
-    return float(math.fsum(strides[strides <= LONGEST_STRIDE].tolist()))
+    return float(math.fsum(strides[strides <= MAX_STRIDE].tolist()))

@@ -11,11 +11,12 @@ from typing import Any, Final, Self
 import numpy as np
 
 from grader.assignment import Assignment, Criterion
-from grader.evidence import behaviours, exploit, value_iteration
-from grader.evidence.reward_training import Budget, success
+from grader.evidence import exploit, value_iteration
+from grader.evidence.behaviours import BehaviourComparison, LoopComparison, compare_behaviours, compare_loops
+from grader.evidence.reward_training import RewardTrainingParams, mean_success
 from grader.evidence.symmetry import Turned, mirrored, rotated
-from grader.evidence.task_model import Floats, Model, build
-from grader.evidence.transitions import KNOWN, Steps, transition
+from grader.evidence.task_model import Floats, GridModel, build_model
+from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
@@ -26,18 +27,18 @@ from kit.world.problems import suggestion
 
 SHUFFLE: Final = 1234
 """The seed of the order in which the same transitions are asked for a second time."""
-MOST_SAMPLES: Final = 4000
+MAX_SAMPLES: Final = 4000
 """Transitions that the mirrored and the rotated task are compared on."""
 
 
-class Exam:
+class RewardEvidence:
     """One reward function. What is asked of it first is asked of it in its process; it is asked once."""
 
     label = "the reward"
     secret = False
 
     def __init__(self, file: Path, assignment: Assignment, level: Level) -> None:
-        self.model: Model = build(assignment.task)
+        self.model: GridModel = build_model(assignment.task)
         self.level = level
         self.failure: Failure | None = None
         self.printed: tuple[str, ...] = ()
@@ -45,10 +46,12 @@ class Exam:
         self._file = file
         self._limits = assignment.limits
         self._names: tuple[str, ...] = ()
-        self._trained: dict[Budget, float] = {}
+        self._successes: dict[RewardTrainingParams, float] = {}
         try:
-            self._names = signature(file)
-            self.rewards: Floats = self._asked(Steps.all(self.model)).reshape(self.model.states, -1)
+            self._names = read_parameter_names(file)
+            self.rewards: Floats = self._evaluate_all(TransitionBatch.all(self.model)).reshape(
+                self.model.states, -1
+            )
         except GuestError as error:
             self.failure = error.failure
 
@@ -57,17 +60,17 @@ class Exam:
         return "examined" if self.failure is None else f"stopped ({self.failure.kind.value})"
 
     @cached_property
-    def plan(self) -> value_iteration.Plan:
-        return value_iteration.plan(self.model, self.rewards)
+    def policy(self) -> value_iteration.OptimalPolicy:
+        return value_iteration.value_iteration(self.model, self.rewards)
 
     @cached_property
-    def judged(self) -> value_iteration.Outcome:
-        return value_iteration.judge(self.plan)
+    def plan_outcome(self) -> value_iteration.PolicyOutcome:
+        return value_iteration.evaluate_policy(self.policy)
 
     @cached_property
     def is_pure(self) -> bool:
         """Whether the same transitions give the same rewards to the bit: in another order, and in a fresh process."""
-        steps = Steps.all(self.model)
+        steps = TransitionBatch.all(self.model)
         order = np.random.default_rng(SHUFFLE).permutation(len(steps))
         shuffled = steps.at(order)
         try:
@@ -82,70 +85,74 @@ class Exam:
     @cached_property
     def symmetry(self) -> float:
         """The share of transitions whose reward stays the same when the whole task is mirrored and when it is turned."""
-        everything = Steps.all(self.model)
+        everything = TransitionBatch.all(self.model)
         # In the target's middle there is no direction to the target.
         elsewhere = np.flatnonzero(
             ~everything.reached & (self.model.cell_of(everything.states) != self.model.target)
         )
-        pick = np.random.default_rng(SHUFFLE).permutation(elsewhere)[:MOST_SAMPLES]
-        sample = everything.at(pick)
-        known = self.rewards.reshape(-1)[pick]
+        sampled = np.random.default_rng(SHUFFLE).permutation(elsewhere)[:MAX_SAMPLES]
+        sample = everything.at(sampled)
+        known = self.rewards.reshape(-1)[sampled]
         same = np.ones(len(sample), dtype=np.bool_)
-        turns: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
+        transforms: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
         try:
             with self._open() as functions:
-                for turned in turns:
-                    same &= np.isclose(self._call(functions, turned), known, rtol=1e-6, atol=1e-9)
+                for transformed in transforms:
+                    same &= np.isclose(self._call(functions, transformed), known, rtol=1e-6, atol=1e-9)
         except GuestError:
             return 0.0
         return float(same.mean())
 
     @cached_property
-    def pairs(self) -> tuple[behaviours.Pair, ...]:
+    def behaviours(self) -> tuple[BehaviourComparison, ...]:
         """Behaviours compared by what the reward pays them in all."""
-        return behaviours.pairs(self.model, self.rewards)
+        return compare_behaviours(self.model, self.rewards)
 
     @cached_property
-    def loops(self) -> tuple[behaviours.Loop, ...]:
-        return behaviours.loops(self.model, self.rewards)
+    def loops(self) -> tuple[LoopComparison, ...]:
+        return compare_loops(self.model, self.rewards)
 
-    def trained(self, budget: Budget) -> float:
+    def success_after_training(self, budget: RewardTrainingParams) -> float:
         """How well a robot drives that was trained with this reward; 0 where the reward fails on the way."""
-        if budget not in self._trained:
+        if budget not in self._successes:
             try:
                 with self._open() as functions:
-                    self._trained[budget] = success(lambda each: self._paid(functions, each), budget)
+                    self._successes[budget] = mean_success(
+                        lambda each: self._rewards_of(functions, each), budget
+                    )
             except GuestError:
-                self._trained[budget] = 0.0
-        return self._trained[budget]
+                self._successes[budget] = 0.0
+        return self._successes[budget]
 
-    def remark(self, check: str, params: Any = None) -> str:
+    def explain(self, check: str, params: Any = None) -> str:
         """What else there is to say in the light of a check."""
         if check == "ordered":
-            wrong = next((pair for pair in self.pairs if not pair.is_right), None)
+            wrong = next((pair for pair in self.behaviours if not pair.is_ordered), None)
             return "" if wrong is None else str(wrong)
         if check == "loops":
-            paid = next((loop for loop in self.loops if loop.pays), None)
-            return "" if paid is None else str(paid)
+            profitable = next((loop for loop in self.loops if loop.is_profitable), None)
+            return "" if profitable is None else str(profitable)
         return ""
 
     def picture(self, check: str = "") -> str:
         """What a robot would do that has learnt this reward perfectly, where it does not do what was meant."""
-        if self.failure is not None or self.judged.exploit is None:
+        if self.failure is not None or self.plan_outcome.exploit_start is None:
             return ""
-        way = value_iteration.follow(self.plan, self.judged.exploit, self.model.task.max_steps)
-        return value_iteration.picture(self.model, way)
+        states = value_iteration.rollout(
+            self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps
+        )
+        return value_iteration.draw_path(self.model, states)
 
-    def film(self, file: Path) -> None:
+    def save_exploit(self, file: Path) -> None:
         """Keeps what ``picture`` shows as a recording. Raises OSError."""
-        assert self.judged.exploit is not None, "there is no picture"
-        exploit.keep(
+        assert self.plan_outcome.exploit_start is not None, "there is no picture"
+        exploit.save_exploit(
             self.model,
-            value_iteration.follow(self.plan, self.judged.exploit, self.model.task.max_steps),
+            value_iteration.rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps),
             file,
         )
 
-    def _asked(self, steps: Steps) -> Floats:
+    def _evaluate_all(self, steps: TransitionBatch) -> Floats:
         with self._open() as functions:
             try:
                 return self._call(functions, steps)
@@ -155,23 +162,23 @@ class Exam:
     def _open(self) -> StudentFunctions:
         return StudentFunctions(self._file, limits=self._limits, level=self.level)
 
-    def _call(self, functions: StudentFunctions, steps: Steps) -> Floats:
+    def _call(self, functions: StudentFunctions, steps: TransitionBatch) -> Floats:
         self.steps += len(steps)
-        return self._paid(functions, transition(steps))
+        return self._rewards_of(functions, to_transition(steps))
 
-    def _paid(self, functions: StudentFunctions, step: Transition) -> Floats:
+    def _rewards_of(self, functions: StudentFunctions, step: Transition) -> Floats:
         """(n,) what the student's reward pays for n transitions."""
         return np.array(functions.call_columns(FUNCTION, columns_of(step, self._names)), dtype=np.float64)
 
 
-class Examination:
+class RewardCollector:
     """The one piece of evidence that there is of a reward."""
 
     def __init__(self, assignment: Assignment, file: Path, *, level: Level, may_fall: bool) -> None:
         self.level = level
         while True:
-            self._exam = Exam(file, assignment, self.level)
-            failure = self._exam.failure
+            self._evidence = RewardEvidence(file, assignment, self.level)
+            failure = self._evidence.failure
             if (
                 failure is None
                 or failure.kind is not FailureKind.CONFINEMENT
@@ -189,14 +196,14 @@ class Examination:
     ) -> None:
         """Every process has ended already."""
 
-    def evidence(self, criterion: Criterion) -> Sequence[Exam]:
-        return [self._exam]
+    def evidence(self, criterion: Criterion) -> Sequence[RewardEvidence]:
+        return [self._evidence]
 
-    def all(self) -> Sequence[Exam]:
-        return [self._exam]
+    def all(self) -> Sequence[RewardEvidence]:
+        return [self._evidence]
 
 
-def signature(file: Path) -> tuple[str, ...]:
+def read_parameter_names(file: Path) -> tuple[str, ...]:
     """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
     try:
         names = parameters_of(file)
@@ -204,8 +211,8 @@ def signature(file: Path) -> tuple[str, ...]:
         # Where the snapshot lies is nothing to tell.
         message = str(error).replace(f"{file}", file.name)
         raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
-    unknown = [name for name in names if name not in KNOWN]
+    unknown = [name for name in names if name not in MODEL_FACTS]
     if unknown:
-        message = f"{file.name}: {FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], KNOWN)}"
+        message = f"{file.name}: {FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], MODEL_FACTS)}"
         raise GuestError(Failure(FailureKind.IMPORT, message))
     return names

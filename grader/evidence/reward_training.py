@@ -20,7 +20,7 @@ from kit.learning.training.training import make_learner
 
 
 @dataclass(frozen=True, slots=True)
-class Budget:
+class RewardTrainingParams:
     """How one trains, and how often."""
 
     task: str = "turn"
@@ -33,7 +33,7 @@ class Budget:
     """Of each exam, for each case of the task."""
 
 
-class Quiet:
+class SilentCallbacks:
     """Looks on and says nothing."""
 
     def between(self) -> None:
@@ -43,7 +43,7 @@ class Quiet:
         """Nor after an episode."""
 
 
-def success(reward: RewardFunction, budget: Budget) -> float:
+def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
     """The share of episodes in which the target is reached after training with ``reward``, the mean of all seeds.
 
     Raises GuestError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
@@ -57,6 +57,6 @@ def success(reward: RewardFunction, budget: Budget) -> float:
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
-        learner.learn(budget.steps, Quiet())
+        learner.learn(budget.steps, SilentCallbacks())
         shares.append(Examiner(task).test(learner.policy(), budget.episodes, seed_for(seed, "exam")).mean)
     return fmean(shares)

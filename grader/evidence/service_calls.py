@@ -16,15 +16,15 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.client import Client
 from kit.world.yaml_section import Section
 
-SILENCE: Final = "no answer"
-NOBODY: Final = "no such service"
+NO_ANSWER: Final = "no answer"
+NO_SERVICE: Final = "no such service"
 
 LONGEST_ANSWER: Final = 2000
 """Characters that are kept."""
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class ServiceCall:
     """One call, at some time of the episode."""
 
     name: str
@@ -36,11 +36,11 @@ class Call:
     request: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
 
-def read_call(section: Section) -> Call:
+def read_service_call(section: Section) -> ServiceCall:
     """Notes mistakes, and finishes the section."""
     given = section.section("request", None)
     request: Mapping[str, Any] = {} if given is None else given.rest()
-    made = Call(
+    call = ServiceCall(
         section.name("name"),
         section.number("at", minimum=0),
         section.name("service"),
@@ -48,41 +48,41 @@ def read_call(section: Section) -> Call:
         MappingProxyType(dict(request)),
     )
     try:
-        from_dict(find_service(made.type).Request, made.request)
+        from_dict(find_service(call.type).Request, call.request)
     except (LookupError, ValueError, TypeError, AttributeError) as error:
         section.error(f"no such call: {error}", "type")
     section.finish()
-    return made
+    return call
 
 
-class Caller:
+class ServiceCaller:
     """Makes the calls when their time has come. Never waits for an answer."""
 
-    def __init__(self, graph: Graph, calls: tuple[Call, ...]) -> None:
+    def __init__(self, graph: Graph, calls: tuple[ServiceCall, ...]) -> None:
         self._calls = sorted(calls, key=lambda call: call.at_s)
         self._node = graph.create_node("grader_calls") if calls else None
         self._clients: dict[str, Client[Any, Any]] = {}
         self._futures: dict[str, Future[Any] | None] = {}
 
-    def look(self, time_s: float) -> None:
+    def call_due(self, time_s: float) -> None:
         """Once a tick."""
         while self._calls and self._calls[0].at_s <= time_s:
             call = self._calls.pop(0)
             assert self._node is not None
-            kind = find_service(call.type)
+            service_type = find_service(call.type)
             if call.service not in self._clients:
-                self._clients[call.service] = self._node.create_client(kind, call.service)
+                self._clients[call.service] = self._node.create_client(service_type, call.service)
             client = self._clients[call.service]
-            request = from_dict(kind.Request, call.request)
+            request = from_dict(service_type.Request, call.request)
             self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
 
     def answers(self) -> Mapping[str, str]:
-        """By call, what was answered, as JSON in one line; or ``NOBODY`` or ``SILENCE``."""
-        return {name: _said(future) for name, future in self._futures.items()}
+        """By call, what was answered, as JSON in one line; or ``NO_SERVICE`` or ``NO_ANSWER``."""
+        return {name: _answer_text(future) for name, future in self._futures.items()}
 
 
-def _said(future: Future[Any] | None) -> str:
+def _answer_text(future: Future[Any] | None) -> str:
     if future is None:
-        return NOBODY
+        return NO_SERVICE
     answer = future.result() if future.done() else None
-    return SILENCE if answer is None else printable(json.dumps(to_dict(answer)))[:LONGEST_ANSWER]
+    return NO_ANSWER if answer is None else printable(json.dumps(to_dict(answer)))[:LONGEST_ANSWER]

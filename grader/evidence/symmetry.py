@@ -9,58 +9,66 @@ from typing import TypeAlias
 import numpy as np
 
 from grader.assignment import GridTask
-from grader.evidence.task_model import HEADINGS, LASTS, LEFT, RIGHT, Integers, Model, build
-from grader.evidence.transitions import Steps
+from grader.evidence.task_model import HEADINGS, LAST_MOVES, LEFT, RIGHT, GridModel, Integers, build_model
+from grader.evidence.transitions import TransitionBatch
 
-Turned: TypeAlias = Steps
+Turned: TypeAlias = TransitionBatch
 
-SWAPPED = np.arange(LASTS)
-SWAPPED[[LEFT, RIGHT]] = RIGHT, LEFT
+MIRRORED_MOVES = np.arange(LAST_MOVES)
+MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT
 
 
-def mirrored(steps: Steps) -> Turned:
+def mirrored(steps: TransitionBatch) -> Turned:
     """Left and right exchanged: x runs the other way."""
     task = steps.model.task
     width = len(task.rows[0])
-    return _turned(
+    return _transformed(
         steps,
         replace(task, rows=tuple(row[::-1] for row in task.rows)),
         lambda cells: np.column_stack([width - 1 - cells[:, 0], cells[:, 1]]),
         lambda headings: (HEADINGS // 2 - headings) % HEADINGS,
-        SWAPPED,
+        MIRRORED_MOVES,
     )
 
 
-def rotated(steps: Steps) -> Turned:
+def rotated(steps: TransitionBatch) -> Turned:
     """A quarter turn counter-clockwise."""
     task = steps.model.task
     height = len(task.rows)
     rows = tuple("".join(row[k] for row in task.rows) for k in reversed(range(len(task.rows[0]))))
-    return _turned(
+    return _transformed(
         steps,
         replace(task, rows=rows),
         lambda cells: np.column_stack([height - 1 - cells[:, 1], cells[:, 0]]),
         lambda headings: (headings + HEADINGS // 4) % HEADINGS,
-        np.arange(LASTS),
+        np.arange(LAST_MOVES),
     )
 
 
-def _turned(
-    steps: Steps,
+def _transformed(
+    steps: TransitionBatch,
     task: GridTask,
     move_cells: Callable[[Integers], Integers],
-    turn: Callable[[Integers], Integers],
+    turn_headings: Callable[[Integers], Integers],
     moves: Integers,
-) -> Steps:
-    before, after = steps.model, build(task)
+) -> TransitionBatch:
+    before, after = steps.model, build_model(task)
     number = {tuple(cell): index for index, cell in enumerate(after.cells.tolist())}
-    place = np.array([number[tuple(cell)] for cell in move_cells(before.cells).tolist()])
-    return Steps(after, _states(before, steps.states, place, turn, moves), moves[steps.moves])
+    cell_map = np.array([number[tuple(cell)] for cell in move_cells(before.cells).tolist()])
+    return TransitionBatch(
+        after, _states(before, steps.states, cell_map, turn_headings, moves), moves[steps.moves]
+    )
 
 
 def _states(
-    model: Model, states: Integers, place: Integers, turn: Callable[[Integers], Integers], moves: Integers
+    model: GridModel,
+    states: Integers,
+    cell_map: Integers,
+    turn_headings: Callable[[Integers], Integers],
+    moves: Integers,
 ) -> Integers:
-    headings = turn(model.heading_of(states))
-    made: Integers = (place[model.cell_of(states)] * HEADINGS + headings) * LASTS + moves[states % LASTS]
-    return made
+    headings = turn_headings(model.heading_of(states))
+    transformed: Integers = (cell_map[model.cell_of(states)] * HEADINGS + headings) * LAST_MOVES + moves[
+        states % LAST_MOVES
+    ]
+    return transformed

@@ -28,15 +28,15 @@ MOVES: Final = ("forward", "back", "left", "right")
 FORWARD, BACK, LEFT, RIGHT = range(4)
 NO_MOVE: Final = 4
 """The last move of a state in which an episode begins."""
-LASTS: Final = len(MOVES) + 1
-STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
+LAST_MOVES: Final = len(MOVES) + 1
+HEADING_STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """By heading, counter-clockwise from x: the next cell (columns, rows up)."""
 LONGEST_RANGE: Final = 10.0
 """m, to which the model looks ahead."""
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class GridModel:
     """All states and transitions of one task. A state is a number: ``(cell * HEADINGS + heading) * LASTS + last``."""
 
     task: GridTask
@@ -64,14 +64,14 @@ class Model:
     def starts(self) -> Integers:
         """Every state in which an episode may begin: not in the target, no move before."""
         states: Integers = np.arange(self.states)
-        begin: Integers = states[(self.cell_of(states) != self.target) & (states % LASTS == NO_MOVE)]
+        begin: Integers = states[(self.cell_of(states) != self.target) & (states % LAST_MOVES == NO_MOVE)]
         return begin
 
     def cell_of(self, states: Integers) -> Integers:
-        return states // (HEADINGS * LASTS)
+        return states // (HEADINGS * LAST_MOVES)
 
     def heading_of(self, states: Integers) -> Integers:
-        return states // LASTS % HEADINGS
+        return states // LAST_MOVES % HEADINGS
 
     def pose(self, states: Integers) -> Floats:
         """(..., 3) ``x y theta`` [m, m, rad]"""
@@ -84,7 +84,7 @@ class Model:
         floor = {tuple(cell): number for number, cell in enumerate(self.cells.tolist())}
         room = np.zeros((len(self.cells), HEADINGS))
         for number, (column, row) in enumerate(self.cells.tolist()):
-            for heading, (dx, dy) in enumerate(STEPS):
+            for heading, (dx, dy) in enumerate(HEADING_STEPS):
                 free = 0
                 while (column + (free + 1) * dx, row + (free + 1) * dy) in floor:
                     free += 1
@@ -101,7 +101,7 @@ class Model:
         while waiting:
             at = waiting.pop(0)
             column, row = self.cells[at].tolist()
-            for dx, dy in STEPS:
+            for dx, dy in HEADING_STEPS:
                 beside = number.get((column + dx, row + dy))
                 far = length[at] + CELL * float(np.hypot(dx, dy))
                 if beside is not None and far < length[beside] - 1e-9:
@@ -114,28 +114,28 @@ class Model:
         found = np.flatnonzero((self.cells == (column, row)).all(axis=1))
         if not len(found):
             raise LookupError(f"no floor at {column}, {row}")
-        return (int(found[0]) * HEADINGS + heading) * LASTS + NO_MOVE
+        return (int(found[0]) * HEADINGS + heading) * LAST_MOVES + NO_MOVE
 
 
-def build(task: GridTask) -> Model:
+def build_model(task: GridTask) -> GridModel:
     """The model of a map drawn in characters."""
     rows = task.rows[::-1]
     cells = [(x, y) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign != "#"]
     number = {cell: index for index, cell in enumerate(cells)}
     target = next(index for (x, y), index in number.items() if rows[y][x] == "G")
-    states = len(cells) * HEADINGS * LASTS
+    states = len(cells) * HEADINGS * LAST_MOVES
     after = np.zeros((states, len(MOVES)), dtype=np.int64)
     hit = np.zeros((states, len(MOVES)), dtype=np.bool_)
     for cell, (x, y) in enumerate(cells):
         for heading in range(HEADINGS):
-            first = (cell * HEADINGS + heading) * LASTS
+            first = (cell * HEADINGS + heading) * LAST_MOVES
             for move, (to, turned, is_hit) in enumerate(_moves(number, x, y, heading)):
-                after[first : first + LASTS, move] = (to * HEADINGS + turned) * LASTS + move
-                hit[first : first + LASTS, move] = is_hit
-    reached = (after // (HEADINGS * LASTS) == target) & (np.arange(states) // (HEADINGS * LASTS) != target)[
-        :, None
-    ]
-    return Model(task, np.array(cells, dtype=np.int64), target, after, hit, reached & ~hit)
+                after[first : first + LAST_MOVES, move] = (to * HEADINGS + turned) * LAST_MOVES + move
+                hit[first : first + LAST_MOVES, move] = is_hit
+    reached = (after // (HEADINGS * LAST_MOVES) == target) & (
+        np.arange(states) // (HEADINGS * LAST_MOVES) != target
+    )[:, None]
+    return GridModel(task, np.array(cells, dtype=np.int64), target, after, hit, reached & ~hit)
 
 
 def _moves(
@@ -143,7 +143,7 @@ def _moves(
 ) -> Sequence[tuple[int, int, bool]]:
     """For each move: the cell and heading after it, and whether it is a collision."""
     here = number[x, y]
-    dx, dy = STEPS[heading]
+    dx, dy = HEADING_STEPS[heading]
     driven = []
     for sign in (1, -1):
         # Between two walls that touch at a corner nothing passes.

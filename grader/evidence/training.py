@@ -5,7 +5,6 @@ No program of a student's runs. The task, its reward, the budget and the exam ar
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
@@ -30,14 +29,14 @@ from kit.learning.training.stopping_rules import (
 )
 from kit.learning.training.training import make_learner
 
-UNREACHABLE: Final = 2.0
+UNREACHABLE_GOAL: Final = 2.0
 """A goal for trainings that no test is to stop."""
-CONFIRMING: Final = 200
+CONFIRMING_EPISODES: Final = 200
 """Episodes of each case in the longer test of those that want to be sure."""
 PICTURE_ROWS: Final = 16
 
 
-class Stop(Enum):
+class StopRule(Enum):
     """When a training stops."""
 
     NEVER = "never"
@@ -47,7 +46,7 @@ class Stop(Enum):
     """When a longer test makes it sure."""
 
 
-class Order(Enum):
+class CaseOrder(Enum):
     """How the cases follow one another."""
 
     MIXED = "mixed"
@@ -56,7 +55,7 @@ class Order(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Budget:
+class TrainingBudget:
     """The kind's task: what is to be learned, and how much may be spent."""
 
     choice: TaskChoice
@@ -72,7 +71,7 @@ class Budget:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class TrainingSettings:
     """What a student hands in."""
 
     algorithm: str
@@ -82,12 +81,12 @@ class Plan:
     edges: tuple[float, ...]
     worlds: int
     train_on: tuple[str, ...]
-    order: Order
+    order: CaseOrder
     batch: int
     """Steps between two tests."""
     test_episodes: int
     """In all, of each test."""
-    stop: Stop
+    stop: StopRule
     goal: float
     keeps_best: bool
     steps: int
@@ -95,7 +94,7 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
-class Tested:
+class TrainingTest:
     """One test on the way."""
 
     steps: int
@@ -105,12 +104,12 @@ class Tested:
 
 
 @dataclass(frozen=True, slots=True)
-class Training:
+class TrainingResult:
     """What came of one training."""
 
     number: int
     steps: int
-    tests: tuple[Tested, ...]
+    tests: tuple[TrainingTest, ...]
     claimed: float
     """The accuracy that its own last word gives the policy kept; 0 if it was never tested."""
     exam: Counts
@@ -122,19 +121,19 @@ class Training:
 
 
 @dataclass(frozen=True, slots=True)
-class Trainings:
+class TrainingResults:
     """What was found."""
 
-    budget: Budget
-    plan: Plan
-    each: tuple[Training, ...]
+    budget: TrainingBudget
+    settings: TrainingSettings
+    trainings: tuple[TrainingResult, ...]
 
     def pooled(self, case: str) -> Count:
         """Of all exams."""
-        counts = [training.exam[case] for training in self.each]
+        counts = [training.exam[case] for training in self.trainings]
         return Count(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
-    def surely(self, *cases: str) -> float:
+    def success_lower_bound(self, *cases: str) -> float:
         """What the success in these cases together is not below, with 95 % confidence (Wilson)."""
         counts = [self.pooled(case) for case in cases or self.budget.cases]
         return at_least(sum(count.reached for count in counts), sum(count.episodes for count in counts))
@@ -145,7 +144,7 @@ class Trainings:
 
     def picture(self) -> str:
         """The tests of the worst training, a row each."""
-        worst = min(self.each, key=lambda training: training.accuracy)
+        worst = min(self.trainings, key=lambda training: training.accuracy)
         cases = self.budget.cases
         rows = [f"training {worst.number}:  steps  " + "  ".join(f"{case:>12}" for case in cases)]
         skipped = max(0, len(worst.tests) - PICTURE_ROWS)
@@ -162,75 +161,87 @@ def _bar(share: float) -> str:
     return f"{'#' * round(7 * share):7}"
 
 
-def train(plan: Plan, budget: Budget, seeds: tuple[int, ...]) -> Trainings:
+def run_trainings(
+    settings: TrainingSettings, budget: TrainingBudget, seeds: tuple[int, ...]
+) -> TrainingResults:
     """Trains as planned, once for each seed. Raises LearnerMissing."""
-    if find_algorithm(plan.algorithm).neural:
+    if find_algorithm(settings.algorithm).neural:
         require_learner()
-    return Trainings(
-        budget, plan, tuple(_trained(plan, budget, seed, number) for number, seed in enumerate(seeds, 1))
+    return TrainingResults(
+        budget,
+        settings,
+        tuple(_run_training(settings, budget, seed, number) for number, seed in enumerate(seeds, 1)),
     )
 
 
-def _trained(plan: Plan, budget: Budget, seed: int, number: int) -> Training:
-    watch = _Watch(plan, budget, seed)
-    stages = [plan.train_on] if plan.order is Order.MIXED else [(case,) for case in plan.train_on]
+def _run_training(
+    settings: TrainingSettings, budget: TrainingBudget, seed: int, number: int
+) -> TrainingResult:
+    monitor = _TrainingMonitor(settings, budget, seed)
+    stages = (
+        [settings.train_on] if settings.order is CaseOrder.MIXED else [(case,) for case in settings.train_on]
+    )
     learner: Learner | None = None
     for place, on in enumerate(stages, 1):
-        learner = _learner(plan, budget, on, seed_for(seed, "training", place), learner)
-        watch.learner = learner
+        learner = _learner(settings, budget, on, seed_for(seed, "training", place), learner)
+        monitor.learner = learner
         try:
-            learner.learn(plan.steps * place // len(stages), watch)
+            learner.learn(settings.steps * place // len(stages), monitor)
         except Halt:
             break
     assert learner is not None  # a plan names at least one case
-    watch.look_once_more()
-    policy = watch.best if plan.keeps_best and watch.best is not None else learner.policy()
-    claimed = watch.best_accuracy if plan.keeps_best else watch.last_accuracy
-    exam = watch.examine(policy, budget.episodes, seed_for(seed, "exam"))
-    return Training(number, learner.steps, tuple(watch.tests), claimed, exam)
+    monitor.test_last_steps()
+    policy = monitor.best if settings.keeps_best and monitor.best is not None else learner.policy()
+    claimed = monitor.best_accuracy if settings.keeps_best else monitor.last_accuracy
+    exam = monitor.examine(policy, budget.episodes, seed_for(seed, "exam"))
+    return TrainingResult(number, learner.steps, tuple(monitor.tests), claimed, exam)
 
 
-def _learner(plan: Plan, budget: Budget, on: tuple[str, ...], seed: int, before: Learner | None) -> Learner:
+def _learner(
+    settings: TrainingSettings, budget: TrainingBudget, on: tuple[str, ...], seed: int, before: Learner | None
+) -> Learner:
     """One who learns these cases, and knows what the one before knew."""
-    algorithm = find_algorithm(plan.algorithm)
+    algorithm = find_algorithm(settings.algorithm)
     choice = replace(budget.choice, on=on)
     preset = find_preset("kit", algorithm, budget.choice.task)
     learner = make_learner(
-        algorithm, _adapted(preset, plan, algorithm.neural), choice, choice.resolve(), seed=seed
+        algorithm, _adapted(preset, settings, algorithm.neural), choice, choice.resolve(), seed=seed
     )
     if before is not None:
         learner.load(before.save())
     return learner
 
 
-def _adapted(preset: Preset, plan: Plan, neural: bool) -> Preset:
+def _adapted(preset: Preset, settings: TrainingSettings, neural: bool) -> Preset:
     if neural:
-        return replace(preset, worlds=plan.worlds, learning_rate=plan.learning_rate, steps=plan.steps)
-    settings = Tabular(plan.learning_rate, plan.discount, plan.exploration, plan.edges)
-    return replace(preset, settings=settings, worlds=plan.worlds, steps=plan.steps)
+        return replace(
+            preset, worlds=settings.worlds, learning_rate=settings.learning_rate, steps=settings.steps
+        )
+    tabular = Tabular(settings.learning_rate, settings.discount, settings.exploration, settings.edges)
+    return replace(preset, settings=tabular, worlds=settings.worlds, steps=settings.steps)
 
 
-def _strategy(plan: Plan, cases: int) -> Strategy:
-    if plan.stop is Stop.SURE:
-        screening = -(-plan.test_episodes // cases)
-        confirming = max(CONFIRMING, screening)
-        return UntilSure(plan.batch, plan.goal, screening, confirming, patience=0)
-    goal = plan.goal if plan.stop is Stop.FIRST else UNREACHABLE
-    return TrainUntil(plan.batch, plan.test_episodes, goal)
+def _strategy(settings: TrainingSettings, cases: int) -> Strategy:
+    if settings.stop is StopRule.SURE:
+        screening = -(-settings.test_episodes // cases)
+        confirming = max(CONFIRMING_EPISODES, screening)
+        return UntilSure(settings.batch, settings.goal, screening, confirming, patience=0)
+    goal = settings.goal if settings.stop is StopRule.FIRST else UNREACHABLE_GOAL
+    return TrainUntil(settings.batch, settings.test_episodes, goal)
 
 
-class _Watch:
+class _TrainingMonitor:
     """Tests the learner now and then, keeps the best policy, and stops as planned."""
 
     learner: Learner
 
-    def __init__(self, plan: Plan, budget: Budget, seed: int) -> None:
+    def __init__(self, settings: TrainingSettings, budget: TrainingBudget, seed: int) -> None:
         self._examiner = Examiner(budget.choice.resolve())
-        self._strategy = _strategy(plan, len(budget.cases))
-        self._every, self._seed = plan.batch, seed
-        self._next, self._looks = plan.batch, 0
+        self._strategy = _strategy(settings, len(budget.cases))
+        self._every, self._seed = settings.batch, seed
+        self._next, self._test_count = settings.batch, 0
         self._memory = Memory()
-        self.tests: list[Tested] = []
+        self.tests: list[TrainingTest] = []
         self.best: Policy | None = None
         self.best_accuracy = self.last_accuracy = 0.0
 
@@ -241,23 +252,23 @@ class _Watch:
     def between(self) -> None:
         if self.learner.steps >= self._next:
             self._next = self.learner.steps + self._every
-            self._look()
+            self._run_test()
 
     def saw(self, episode: Episode) -> None:
         """What training does is not what counts."""
 
-    def look_once_more(self) -> None:
+    def test_last_steps(self) -> None:
         """At the end, if the last steps have not been looked at."""
         if not self.tests or self.tests[-1].steps < self.learner.steps:
             try:
-                self._look()
+                self._run_test()
             except Halt:
                 return
 
     def __call__(self, episodes: int) -> Counts:
         """A test of the present policy."""
-        self._looks += 1
-        seed = seed_for(self._seed, "test", self._looks)
+        self._test_count += 1
+        seed = seed_for(self._seed, "test", self._test_count)
         return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
 
     def examine(self, policy: Policy, episodes: int, seed: int) -> Counts:
@@ -265,17 +276,12 @@ class _Watch:
         result = self._examiner.test(policy, episodes, seed)
         return {case.case: Count(case.reached, case.episodes) for case in result.cases}
 
-    def _look(self) -> None:
+    def _run_test(self) -> None:
         verdict = self._strategy.look(self.learner.steps, self._memory, self)
         self._memory = verdict.memory
-        self.tests.append(Tested(self.learner.steps, verdict.counts, verdict.keep))
+        self.tests.append(TrainingTest(self.learner.steps, verdict.counts, verdict.keep))
         self.last_accuracy = accuracy(verdict.counts)
         if verdict.keep:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
         if verdict.stop:
             raise Halt(verdict.reason)
-
-
-def by_case(training: Training) -> Mapping[str, float]:
-    """The exam's share in each case."""
-    return {case: count.share for case, count in training.exam.items()}

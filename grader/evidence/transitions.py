@@ -9,13 +9,13 @@ from typing import Final
 
 import numpy as np
 
-from grader.evidence.task_model import CELL, LASTS, MOVES, Flags, Floats, Integers, Model
+from grader.evidence.task_model import CELL, LAST_MOVES, MOVES, Flags, Floats, GridModel, Integers
 from kit.learning.environment.actions import Move
 from kit.learning.environment.observations import RAYS
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
 
-KNOWN: Final = (
+MODEL_FACTS: Final = (
     *(
         "collided",
         "reached",
@@ -45,15 +45,15 @@ on what the model leaves out."""
 KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
 """The kit's number of each of the model's moves; the last: none."""
 
-SIGHT: Final = 2.0
+AGENT_SIGHT: Final = 2.0
 """m: no farther does the agent of the kit's tasks see (dissertation, section 3.1.2)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Steps:
+class TransitionBatch:
     """Some transitions of a model: which state, which move."""
 
-    model: Model
+    model: GridModel
     states: Integers
     moves: Integers
 
@@ -61,17 +61,17 @@ class Steps:
         return len(self.states)
 
     @classmethod
-    def all(cls, model: Model) -> Steps:
+    def all(cls, model: GridModel) -> TransitionBatch:
         """Every one there is, state by state."""
         states = np.repeat(np.arange(model.states), len(MOVES))
         return cls(model, states, np.tile(np.arange(len(MOVES)), model.states))
 
-    def at(self, index: Integers) -> Steps:
+    def at(self, index: Integers) -> TransitionBatch:
         """Some of them, in another order."""
-        return Steps(self.model, self.states[index], self.moves[index])
+        return TransitionBatch(self.model, self.states[index], self.moves[index])
 
     @cached_property
-    def after(self) -> Integers:
+    def next_states(self) -> Integers:
         return self.model.next[self.states, self.moves]
 
     @property
@@ -83,20 +83,22 @@ class Steps:
         return self.model.reached[self.states, self.moves]
 
 
-def rewards_of(reward: RewardFunction, model: Model) -> Floats:
+def rewards_of(reward: RewardFunction, model: GridModel) -> Floats:
     """(states, moves) what one of the kit's rewards pays for every transition.
 
     What it knows of an episode's past beyond the last move is not part of the model's states: every transition stands
     for one at an episode's beginning.
     """
-    return np.asarray(reward(transition(Steps.all(model))), dtype=np.float64).reshape(model.states, -1)
+    return np.asarray(reward(to_transition(TransitionBatch.all(model))), dtype=np.float64).reshape(
+        model.states, -1
+    )
 
 
-def transition(steps: Steps) -> Transition:
+def to_transition(steps: TransitionBatch) -> Transition:
     """The kit's record of these transitions, for one robot."""
     model, count = steps.model, len(steps)
-    before, after = model.cell_of(steps.states), model.cell_of(steps.after)
-    front = np.minimum(model.ahead[after, model.heading_of(steps.after)], SIGHT)
+    before, after = model.cell_of(steps.states), model.cell_of(steps.next_states)
+    front = np.minimum(model.ahead[after, model.heading_of(steps.next_states)], AGENT_SIGHT)
     zeros = np.zeros((count, 1), dtype=np.int64)
     return Transition(
         case=np.zeros(count, dtype=np.int64),
@@ -106,8 +108,8 @@ def transition(steps: Steps) -> Transition:
         in_target=steps.reached[:, None],
         was_in_target=zeros.astype(np.bool_),
         move=KIT_MOVES[steps.moves][:, None],
-        previous_move=KIT_MOVES[steps.states % LASTS][:, None],
-        pose=model.pose(steps.after)[:, None, :],
+        previous_move=KIT_MOVES[steps.states % LAST_MOVES][:, None],
+        pose=model.pose(steps.next_states)[:, None, :],
         previous_pose=model.pose(steps.states)[:, None, :],
         target=np.broadcast_to((model.cells[model.target] + 0.5) * CELL, (count, 2)),
         to_go=model.to_go[after][:, None],

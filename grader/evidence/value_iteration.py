@@ -11,19 +11,19 @@ from typing import Final
 
 import numpy as np
 
-from grader.evidence.task_model import HEADINGS, LASTS, MOVES, Flags, Floats, Integers, Model
+from grader.evidence.task_model import HEADINGS, LAST_MOVES, MOVES, Flags, Floats, GridModel, Integers
 
-EXACT: Final = 1e-10
+CONVERGENCE_SHARE: Final = 1e-10
 """Values count as settled when the rest of the iteration could change none by more than this share of the largest."""
-TIE: Final = 1e-9
+TIE_SHARE: Final = 1e-9
 """Moves whose values differ by no more than this share of the largest are equally good."""
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class OptimalPolicy:
     """What a reward asks for."""
 
-    model: Model
+    model: GridModel
     rewards: Floats
     """(states, moves)"""
     values: Floats
@@ -32,72 +32,72 @@ class Plan:
     """(states, moves) whether no move is better."""
 
 
-def plan(model: Model, rewards: Floats) -> Plan:
+def value_iteration(model: GridModel, rewards: Floats) -> OptimalPolicy:
     """Bellman's optimality equation, iterated until it holds.
 
     ``rewards``: (states, moves). Q(s, a) = r(s, a) + discount * max Q(s', .), without the last term where the episode
     ends.
     """
     discount = model.task.discount
-    carry = np.where(model.done, 0.0, discount)
+    discounts = np.where(model.done, 0.0, discount)
     values = np.zeros(model.states)
     largest = max(float(np.abs(rewards).max(initial=0.0)), 1e-300)
     while True:
-        worth = rewards + carry * values[model.next]
-        better = worth.max(axis=1)
+        q_values = rewards + discounts * values[model.next]
+        better = q_values.max(axis=1)
         change = float(np.abs(better - values).max())
         values = better
-        if change * discount / (1.0 - discount) <= EXACT * largest:
+        if change * discount / (1.0 - discount) <= CONVERGENCE_SHARE * largest:
             break
-    best = worth >= better[:, None] - TIE * max(largest, float(np.abs(worth).max()))
-    return Plan(model, rewards, worth, best)
+    best = q_values >= better[:, None] - TIE_SHARE * max(largest, float(np.abs(q_values).max()))
+    return OptimalPolicy(model, rewards, q_values, best)
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class PolicyOutcome:
     """What the planned behaviour does from every start, by the true goal."""
 
     success: float
     """How often it reaches the target, the mean of all starts; of equally good moves each is as likely."""
     steps: float
     """How long episodes last, the mean of all starts."""
-    exploit: int | None
+    exploit_start: int | None
     """A start from which the target may be missed; None if there is none."""
 
 
-def judge(made: Plan) -> Outcome:
+def evaluate_policy(policy: OptimalPolicy) -> PolicyOutcome:
     """Lets the plan drive from every start from which the target can be reached at all, for ``max_steps``."""
-    model = made.model
+    model = policy.model
     starts = model.starts[np.isfinite(model.to_go[model.cell_of(model.starts)])]
-    chance = made.best / made.best.sum(axis=1, keepdims=True)
+    probabilities = policy.best / policy.best.sum(axis=1, keepdims=True)
     success, steps = np.zeros(model.states), np.zeros(model.states)
     for _ in range(model.task.max_steps):
-        success = (chance * np.where(model.done, model.reached, success[model.next])).sum(axis=1)
-        steps = 1.0 + (chance * np.where(model.done, 0.0, steps[model.next])).sum(axis=1)
+        success = (probabilities * np.where(model.done, model.reached, success[model.next])).sum(axis=1)
+        steps = 1.0 + (probabilities * np.where(model.done, 0.0, steps[model.next])).sum(axis=1)
     lost = starts[success[starts] < 1.0 - 1e-9]
     # Where it is missed most; of these, from neither the nearest nor the farthest start: that shows best.
     worst = lost[success[lost] <= success[lost].min(initial=1.0) + 1e-9]
     order = np.argsort(model.to_go[model.cell_of(worst)], kind="stable")
-    return Outcome(
+    return PolicyOutcome(
         float(success[starts].mean()),
         float(steps[starts].mean()),
         int(worst[order[len(worst) // 2]]) if len(worst) else None,
     )
 
 
-def follow(made: Plan, start: int, steps: int) -> Integers:
+def rollout(policy: OptimalPolicy, start: int, steps: int) -> Integers:
     """The states that the plan leads through, the first included; of equally good moves the first."""
-    model, state, seen = made.model, start, [start]
+    model, state, visited = policy.model, start, [start]
     for _ in range(steps):
-        move = int(np.argmax(made.best[state]))
-        seen.append(int(model.next[state, move]))
+        move = int(np.argmax(policy.best[state]))
+        visited.append(int(model.next[state, move]))
         if model.done[state, move]:
             break
-        state = seen[-1]
-    return np.array(seen, dtype=np.int64)
+        state = visited[-1]
+    return np.array(visited, dtype=np.int64)
 
 
-def picture(model: Model, states: Integers) -> str:
+def draw_path(model: GridModel, states: Integers) -> str:
     """A way through the map in characters: where it began, where it went how often, and how it ended."""
     rows = [list(row) for row in model.task.rows]
     visits: dict[tuple[int, int], int] = {}
@@ -110,8 +110,8 @@ def picture(model: Model, states: Integers) -> str:
     x, y = model.cells[model.target].tolist()
     rows[-1 - y][x] = "G"
     shown = "\n".join("".join(row) for row in rows)
-    moves = [MOVES[last] for last in (states[1:] % LASTS).tolist()]
-    said = ", ".join(moves[:12]) + (", ..." if len(moves) > 12 else "")
+    moves = [MOVES[last] for last in (states[1:] % LAST_MOVES).tolist()]
+    moves_text = ", ".join(moves[:12]) + (", ..." if len(moves) > 12 else "")
     headings = ["E", "NE", "N", "NW", "W", "SW", "S", "SE"]
-    facing = headings[int(states[0]) // LASTS % HEADINGS]
-    return f"{shown}\nS start (facing {facing}), G target, 1-9 and + how often it was there.\nMoves: {said}"
+    facing = headings[int(states[0]) // LAST_MOVES % HEADINGS]
+    return f"{shown}\nS start (facing {facing}), G target, 1-9 and + how often it was there.\nMoves: {moves_text}"

@@ -1,1 +1,1 @@
-"""What can be handed in: one module a kind, found by its name, with one record ``SORT`` that says how it is graded."""
+"""What can be handed in: one module a kind, found by its name, with one record ``KIND`` that says how it is graded."""

@@ -22,16 +22,16 @@ from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment, Criterion, Trial
-    from grader.grading import Evidence, Gatherer
+    from grader.grading import Evidence, EvidenceCollector
 
-Made = TypeVar("Made")
+Parsed = TypeVar("Parsed")
 
-PACKAGE: Final = "grader.kinds"
-NOT_KINDS: Final = ("contract",)
+KINDS_PACKAGE: Final = "grader.kinds"
+NON_KIND_MODULES: Final = ("contract",)
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class AssignmentFiles:
     """An assignment's files while they are read."""
 
     folder: Path
@@ -42,17 +42,17 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class KindSettings:
     """What a kind reads of the sheet for itself."""
 
     trials: tuple[Trial, ...] = ()
     """Kinds of episodes, where the kind has episodes."""
-    content: Any = None
+    task: Any = None
     """The kind's own record."""
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
+class EvidenceOptions:
     """How one submission is to be looked at."""
 
     level: Level
@@ -62,35 +62,37 @@ class Conditions:
 
 
 @dataclass(frozen=True, slots=True)
-class Sort:
+class Kind:
     """One kind of assignment."""
 
     endings: tuple[str, ...]
     """What the name of the file handed in may end with."""
     checks: Mapping[str, Check]
     """By name."""
-    read: Callable[[Sheet], Task]
+    read_settings: Callable[[AssignmentFiles], KindSettings]
     """Notes mistakes in the sections; need not finish them."""
-    gather: Callable[[Assignment, Path, Conditions], AbstractContextManager[Gatherer]]
+    collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main file handed in, conditions) -> who gathers evidence."""
 
 
-def kinds() -> tuple[str, ...]:
+def kind_names() -> tuple[str, ...]:
     """Every kind there is, by name."""
-    package = import_module(PACKAGE)
+    package = import_module(KINDS_PACKAGE)
     return tuple(
-        sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NOT_KINDS)
+        sorted(
+            each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NON_KIND_MODULES
+        )
     )
 
 
-def sort_of(kind: str) -> Sort:
+def find_kind(kind: str) -> Kind:
     """The kind's record; its module is imported when it is first asked for."""
-    sort: Sort = import_module(f"{PACKAGE}.{kind}").SORT
-    return sort
+    kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
+    return kind_record
 
 
 @dataclass(eq=False)
-class Look:
+class EvidenceRecord:
     """One look at what was handed in: what was found, or why nothing could be found."""
 
     found: Any = None
@@ -101,54 +103,54 @@ class Look:
     outcome: str = "looked at"
     steps: int = 0
     printed: tuple[str, ...] = ()
-    remarks: Callable[[str, Any], str] = lambda check, params: ""
+    explain_with: Callable[[str, Any], str] = lambda check, params: ""
     """(a check's name, its params) -> what else there is to say."""
-    pictures: Callable[[str], str] = lambda check: ""
+    draw_with: Callable[[str], str] = lambda check: ""
 
-    def remark(self, check: str, params: Any) -> str:
-        return self.remarks(check, params)
+    def explain(self, check: str, params: Any) -> str:
+        return self.explain_with(check, params)
 
     def picture(self, check: str = "") -> str:
-        return self.pictures(check)
+        return self.draw_with(check)
 
 
-class Looks:
+class FixedEvidence:
     """A gatherer of evidence that is gathered once, for every criterion the same."""
 
-    def __init__(self, looks: Sequence[Evidence], level: Level) -> None:
+    def __init__(self, evidence: Sequence[Evidence], level: Level) -> None:
         self.level = level
-        self._looks = tuple(looks)
+        self._evidence = tuple(evidence)
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return self._looks
+        return self._evidence
 
     def all(self) -> Sequence[Evidence]:
-        return self._looks
+        return self._evidence
 
 
-def from_yaml(file: Path, make: Callable[[Section], Made]) -> Made | Failure:
+def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:
     """What a handed-in YAML file says; or all its mistakes, each with its place, as one failure."""
     problems = Problems()
     try:
         section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
         problems.raise_if_any()
         assert section is not None  # None is noted as a problem
-        made = make(section)
+        parsed = make(section)
         problems.raise_if_any()
     except (WorldError, OSError) as error:
         # Where the snapshot lies is nothing to tell.
         return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
-    return made
+    return parsed
 
 
-def once(
-    look: Callable[[Assignment, Path, Conditions], Look],
-) -> Callable[..., AbstractContextManager[Gatherer]]:
-    """``Sort.gather`` for a kind that looks once."""
+def collect_once(
+    collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
+) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
+    """``Kind.collect`` for a kind that looks once."""
 
-    def gather(
-        assignment: Assignment, file: Path, conditions: Conditions
-    ) -> AbstractContextManager[Gatherer]:
-        return nullcontext(Looks([look(assignment, file, conditions)], conditions.level))
+    def collect(
+        assignment: Assignment, file: Path, options: EvidenceOptions
+    ) -> AbstractContextManager[EvidenceCollector]:
+        return nullcontext(FixedEvidence([collect_evidence(assignment, file, options)], options.level))
 
-    return gather
+    return collect

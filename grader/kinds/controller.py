@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.drives import CHECKS
-from grader.evidence.service_calls import read_call
-from grader.kinds.contract import Conditions, Sheet, Sort, Task
+from grader.evidence.service_calls import read_service_call
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
 from kit.geometry import Pose
 from kit.run.scenario import Place as Where
 from kit.run.scenario import find_place
@@ -21,35 +21,37 @@ from kit.world.problems import WorldError, quoted, suggestion
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
 LONGEST_EPISODE: Final = 3600.0
 """s"""
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The trials."""
-    return Task(trials=tuple(trials(sheet)))
+    return KindSettings(trials=tuple(trials(files)))
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """Its episodes, each run when a criterion first needs it."""
-    from grader.evidence.controller import ControllerRuns
+    from grader.evidence.controller import ControllerEpisodes
 
     return nullcontext(
-        ControllerRuns(
+        ControllerEpisodes(
             assignment,
             file,
-            level=conditions.level,
-            secret=conditions.secret,
-            may_fall=conditions.may_fall,
+            level=options.level,
+            secret=options.secret,
+            may_fall=options.may_fall,
         )
     )
 
 
-def trials(sheet: Sheet) -> Iterator[Trial]:
+def trials(files: AssignmentFiles) -> Iterator[Trial]:
     """Kinds of episodes: where, how long, with which seeds."""
-    section, secrets, folder = sheet.public, sheet.secret, sheet.folder
+    section, secrets, folder = files.public, files.secret, files.folder
     seen: set[str] = set()
     hidden = None if secrets is None else secrets.section("seeds")
     for each in section.sections("trials", at_least=1):
@@ -72,7 +74,7 @@ def trials(sheet: Sheet) -> Iterator[Trial]:
         parameters = each.texts("parameters", ())
         if any(":=" not in one for one in parameters):
             each.error("parameters look like name:=value", "parameters")
-        calls = tuple(read_call(one) for one in each.sections("calls", ()))
+        calls = tuple(read_service_call(one) for one in each.sections("calls", ()))
         each.finish()
         secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
         if place is not None:
@@ -118,4 +120,4 @@ def place_of(section: Section, folder: Path) -> Where | None:
     return replace(place, case=made)
 
 
-SORT: Final = Sort((".py",), CHECKS, read, gather)
+KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

@@ -24,8 +24,15 @@ from numpy.lib import format as npy
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
 from grader.checks.drives import CHECKS
-from grader.evidence.drive_record import Drive
-from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task
+from grader.evidence.drive_record import DriveRecord
+from grader.kinds.contract import (
+    AssignmentFiles,
+    EvidenceOptions,
+    EvidenceRecord,
+    FixedEvidence,
+    Kind,
+    KindSettings,
+)
 from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
@@ -38,24 +45,24 @@ from kit.sim.services import tell
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
-    from grader.grading import Evidence, Gatherer
+    from grader.grading import Evidence, EvidenceCollector
 
 STEP: Final = 0.01
 """s: as the kit's own faces tick."""
-LONGEST: Final = 600.0
+MAX_TIME_S: Final = 600.0
 """s that may be asked for."""
-MOST_BYTES: Final = 64 << 20
+MAX_BYTES: Final = 64 << 20
 """Of the file, unpacked."""
-MOST_INPUTS: Final = 100
+MAX_INPUTS_PER_S: Final = 100
 """A second, on average; more were never driven by hand."""
-HOME_HAIR: Final = 1e-6
+HOME_TOLERANCE: Final = 1e-6
 """A robot that has bumped is sent this near to its home [m, rad], and nowhere else."""
-PARTS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy": 1})
+ARRAYS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy": 1})
 """What a recording's file holds: arrays of so many dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class HandDriveTask:
     """The kind's task."""
 
     place: Place | None
@@ -65,47 +72,51 @@ class Stage:
 
 
 @dataclass(frozen=True, eq=False)
-class HandDrive(Drive):
+class ReplayedDrive(DriveRecord):
     """One attempt of a recording, as it came out when it was run again."""
 
-    off_m: float = field(default=math.inf)
+    max_deviation: float = field(default=math.inf)
     """How far, at worst, the file's poses are from ours."""
 
 
 @check(none=0.01, full=1e-6, unit="m")
-def genuine(drive: HandDrive, params: NoParams) -> float:
+def genuine(drive: ReplayedDrive, params: NoParams) -> float:
     """The same commands lead somewhere else: the robot is up to {actual} away from where your recording says. Was the
     file changed, or the map? Drive again and hand in the file as the kit wrote it."""
-    return drive.off_m
+    return drive.max_deviation
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """Where the drive must have taken place."""
-    section = sheet.public.section("drive")
-    made = Stage(place_of(section, sheet.folder), section.number("time", 180.0, above=0, maximum=LONGEST))
+    section = files.public.section("drive")
+    made = HandDriveTask(
+        place_of(section, files.folder), section.number("time", 180.0, above=0, maximum=MAX_TIME_S)
+    )
     section.finish()
-    return Task(content=made)
+    return KindSettings(task=made)
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """Runs the recording again, once. No program of the student's is involved."""
     try:
-        seen: Evidence = _again(assignment.task, _checked(assignment.task, file))
+        seen: Evidence = _rerun(assignment.task, _load_checked(assignment.task, file))
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:
         # Where the snapshot lies is nothing to tell.
         message = printable(str(error).replace(f"{file}", file.name))
-        seen = Look(failure=Failure(FailureKind.IMPORT, message or "It cannot be read."))
-    return nullcontext(Looks([seen], conditions.level))
+        seen = EvidenceRecord(failure=Failure(FailureKind.IMPORT, message or "It cannot be read."))
+    return nullcontext(FixedEvidence([seen], options.level))
 
 
-def _checked(stage: Stage, file: Path) -> Recording:
+def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     """The recording, if it is one of a drive at the right place. Raises RecordingError."""
     data = file.read_bytes()
     if not data:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
     _check_size(data, file.name)
     recording = load(file)
-    place = stage.place
+    place = task.place
     assert place is not None  # the sheet is right
     case = None if place.case is None else place.case.name
     if recording.place != place.name or recording.case != case:
@@ -116,12 +127,12 @@ def _checked(stage: Stage, file: Path) -> Recording:
         raise RecordingError(f"Its ticks last {recording.step_size} s; those of the kit last {STEP} s.")
     if recording.ticks == 0:
         raise RecordingError("Nothing happens in this recording: it was left before the robot could move.")
-    if recording.ticks * STEP > stage.time_s:
+    if recording.ticks * STEP > task.time_s:
         raise RecordingError(
-            f"It lasts {recording.ticks * STEP:.0f} s; at most {stage.time_s:.0f} s are taken. Leave the screen when "
+            f"It lasts {recording.ticks * STEP:.0f} s; at most {task.time_s:.0f} s are taken. Leave the screen when "
             "you have arrived."
         )
-    if len(recording.inputs) > MOST_INPUTS * (1 + recording.ticks * STEP):
+    if len(recording.inputs) > MAX_INPUTS_PER_S * (1 + recording.ticks * STEP):
         raise RecordingError("It holds more commands than anybody can give by hand.")
     names = tuple(model.name for model in place.world.models)
     if recording.models != ((0, names),):
@@ -134,17 +145,17 @@ def _check_size(data: bytes, name: str) -> None:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
-            if sorted(each.filename for each in members) != sorted(PARTS):
-                raise ValueError(f"it must hold {', '.join(PARTS)} and nothing else")
-            if sum(each.file_size for each in members) > MOST_BYTES:
-                raise ValueError(f"it is larger than {MOST_BYTES >> 20} MiB, unpacked")
+            if sorted(each.filename for each in members) != sorted(ARRAYS):
+                raise ValueError(f"it must hold {', '.join(ARRAYS)} and nothing else")
+            if sum(each.file_size for each in members) > MAX_BYTES:
+                raise ValueError(f"it is larger than {MAX_BYTES >> 20} MiB, unpacked")
             for each in members:
                 with archive.open(each) as part:
                     if npy.read_magic(part) != (1, 0):
                         raise ValueError("an array of an unknown version")
                     shape, _, kind = npy.read_array_header_1_0(part)
                     size = math.prod(shape) * kind.itemsize
-                    if kind.hasobject or len(shape) != PARTS[each.filename] or size > each.file_size:
+                    if kind.hasobject or len(shape) != ARRAYS[each.filename] or size > each.file_size:
                         raise ValueError(f"{each.filename} is not what it says")
     except (ValueError, LookupError, TypeError, EOFError, NotImplementedError, RuntimeError) as error:
         raise RecordingError(f"{name}: not a recording of the kit, or a damaged one ({error}).") from None
@@ -168,26 +179,26 @@ class _Attempt:
         return False, -(score.target_m or 0.0), score.distance_m
 
 
-class _Run:
+class _Rerun:
     """The recording in a world of ours; only what a hand at the keys can do is done."""
 
-    def __init__(self, stage: Stage, recording: Recording) -> None:
-        assert stage.place is not None
-        self._place = stage.place
+    def __init__(self, task: HandDriveTask, recording: Recording) -> None:
+        assert task.place is not None
+        self._place = task.place
         self._simulation = Simulation(
-            stage.place.world, seed=recording.seed, step_size=STEP, wanted=lambda topic: False
+            task.place.world, seed=recording.seed, step_size=STEP, wanted=lambda topic: False
         )
         self._recording = recording
-        self._trip = Trip(stage.place.driven, stage.place.case)
-        ends = self._simulation.endpoints_of(stage.place.robot or "")
+        self._trip = Trip(task.place.driven, task.place.case)
+        ends = self._simulation.endpoints_of(task.place.robot or "")
         self._topics = {end.topic for end in ends if end.direction == "subscribe" and end.type is Twist}
         self.fingerprint = Fingerprint()
-        self.poses = np.empty((recording.ticks, len(stage.place.world.models), 3))
+        self.poses = np.empty((recording.ticks, len(task.place.world.models), 3))
 
     def attempts(self) -> list[_Attempt]:
         """Runs it. Raises RecordingError."""
         playback = Playback(self._recording, self._accept, self._tell)
-        resets = {told.tick for told in self._recording.inputs if told.kind == "reset"}
+        resets = {entry.tick for entry in self._recording.inputs if entry.kind == "reset"}
         found, first = [], 0
         for tick in range(self._recording.ticks):
             if tick in resets and tick > first:
@@ -220,42 +231,42 @@ class _Run:
             return False
         name, pose = arguments
         return name == self._place.robot and all(
-            abs(wanted - there) <= HOME_HAIR for wanted, there in zip(pose, home, strict=True)
+            abs(wanted - there) <= HOME_TOLERANCE for wanted, there in zip(pose, home, strict=True)
         )
 
 
-def _again(stage: Stage, recording: Recording) -> HandDrive:
+def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
     """The best attempt, as it comes out here. Raises RecordingError."""
-    assert stage.place is not None
-    run = _Run(stage, recording)
+    assert task.place is not None
+    run = _Rerun(task, recording)
     best = max(run.attempts(), key=lambda attempt: attempt.rank)
     claimed = recording.poses.reshape(recording.ticks, -1, 3)
-    off = float(np.abs(claimed - run.poses).max()) if claimed.shape == run.poses.shape else math.inf
-    some = slice(best.first, best.after)
-    return HandDrive(
+    deviation = float(np.abs(claimed - run.poses).max()) if claimed.shape == run.poses.shape else math.inf
+    ticks = slice(best.first, best.after)
+    return ReplayedDrive(
         trial="drive",
         label="your recording",
         seed=recording.seed,
         secret=False,
-        place=stage.place,
-        limit_s=stage.time_s,
-        recording=_part(recording, run.poses[some], best.first),
+        place=task.place,
+        limit_s=task.time_s,
+        recording=_cut(recording, run.poses[ticks], best.first),
         score=best.score,
         failure=None,
-        talk={},
+        traffic={},
         refused=(),
         printed=(),
         fingerprint=run.fingerprint.text,
         level=0,
-        off_m=off if math.isfinite(off) else math.inf,
+        max_deviation=deviation if math.isfinite(deviation) else math.inf,
     )
 
 
-def _part(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], first: int) -> Recording:
+def _cut(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], first: int) -> Recording:
     """One attempt as a recording of its own, with the poses that came out."""
     ticks, models, _ = poses.shape
     inputs = tuple(
-        told for told in recording.inputs if told.kind == ACCEPT and first <= told.tick < first + ticks
+        entry for entry in recording.inputs if entry.kind == ACCEPT and first <= entry.tick < first + ticks
     )
     return Recording(
         recording.place,
@@ -269,4 +280,4 @@ def _part(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], fi
     )
 
 
-SORT: Final = Sort((".npz",), MappingProxyType({**CHECKS, genuine.name: genuine}), read, gather)
+KIND: Final = Kind((".npz",), MappingProxyType({**CHECKS, genuine.name: genuine}), read_settings, collect)

@@ -25,8 +25,15 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, complaint
-from grader.evidence.environment import Visit, Wish, visit
-from grader.kinds.contract import Conditions, Look, Looks, Sheet, Sort, Task
+from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
+from grader.kinds.contract import (
+    AssignmentFiles,
+    EvidenceOptions,
+    EvidenceRecord,
+    FixedEvidence,
+    Kind,
+    KindSettings,
+)
 from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
@@ -34,81 +41,89 @@ from kit.host.wire import printable
 from kit.world.problems import quoted
 
 if TYPE_CHECKING:
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
 MOST_STEPS: Final = 400
 """Of an episode: one is driven to its very end."""
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """Where the environment lives, and what its actions do."""
-    section = sheet.public.section("environment")
-    place = place_of(section, sheet.folder)
+    section = files.public.section("environment")
+    place = place_of(section, files.folder)
     moves = section.points("moves", at_least=2, at_most=20)
-    seed = sheet.public.integer("seed", 1, minimum=0, maximum=10**6)
-    secret = None if sheet.secret is None else sheet.secret.integer("seed", minimum=0, maximum=10**6)
-    cls = section.name("class")
+    seed = files.public.integer("seed", 1, minimum=0, maximum=10**6)
+    secret = None if files.secret is None else files.secret.integer("seed", minimum=0, maximum=10**6)
+    class_name = section.name("class")
     step_s = section.number("step_time", 0.1, above=0, maximum=2)
     max_steps = section.integer("max_steps", 200, minimum=10, maximum=MOST_STEPS)
-    way = section.points("way", at_least=1, at_most=50)
+    waypoints = section.points("way", at_least=1, at_most=50)
     scan, clip = section.name("scan", "/static_laser"), section.number("clip", 2.0, above=0)
     section.finish()
     if place is None:
-        return Task()
+        return KindSettings()
     if place.case is None or place.robot is None:
         section.error("the place must have a robot and a target: give a case of a map of the kit", "place")
-        return Task()
-    return Task(content=Wish(cls, place, moves, step_s, max_steps, way, scan, clip, seed, secret))
+        return KindSettings()
+    return KindSettings(
+        task=EnvironmentTask(class_name, place, moves, step_s, max_steps, waypoints, scan, clip, seed, secret)
+    )
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """Lives with it once; with the secret seed where secrets are used."""
-    level = conditions.level
+    level = options.level
     while True:
-        look = _look(assignment, file, level, conditions)
-        failure = look.failure
+        evidence = _examine(assignment, file, level, options)
+        failure = evidence.failure
         if (
             failure is None
             or failure.kind is not FailureKind.CONFINEMENT
-            or not conditions.may_fall
+            or not options.may_fall
             or level == Level.LIMITED
         ):
-            return nullcontext(Looks([look], level))
+            return nullcontext(FixedEvidence([evidence], level))
         level = Level(level - 1)
 
 
-def _look(assignment: Assignment, file: Path, level: Level, conditions: Conditions) -> Look:
-    wish: Wish = assignment.task
-    seed = wish.secret_seed if conditions.secret and wish.secret_seed is not None else wish.seed
+def _examine(assignment: Assignment, file: Path, level: Level, options: EvidenceOptions) -> EvidenceRecord:
+    task: EnvironmentTask = assignment.task
+    seed = task.secret_seed if options.secret and task.secret_seed is not None else task.seed
     try:
-        seen = visit(wish, assignment, file, level, seed)
+        record = examine_environment(task, assignment, file, level, seed)
     except GuestError as error:
         failure = error.failure
         if failure.file == "examiner.py":  # where it was asked from is nothing to tell
             failure = replace(failure, file=file.name, line=None)
-        return Look(failure=failure, label="the environment", outcome=f"stopped ({failure.kind.value})")
-    wrong = _no_environment(seen, wish, file.name)
+        return EvidenceRecord(
+            failure=failure, label="the environment", outcome=f"stopped ({failure.kind.value})"
+        )
+    wrong = _missing_environment(record, task, file.name)
     if wrong:
         failure = Failure(FailureKind.IMPORT, printable(wrong), file.name)
-        return Look(failure=failure, label="the environment", printed=seen.printed)
-    return Look(
-        seen,
+        return EvidenceRecord(failure=failure, label="the environment", printed=record.printed)
+    return EvidenceRecord(
+        record,
         label="the environment",
-        steps=seen.steps,
-        printed=seen.printed,
-        remarks=lambda check, params: complaint(seen, check),
+        steps=record.steps,
+        printed=record.printed,
+        explain_with=lambda check, params: complaint(record, check),
     )
 
 
-def _no_environment(seen: Visit, wish: Wish, file: str) -> str:
+def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file: str) -> str:
     """Why there is nothing to live with."""
-    if "missing" in seen.about:
-        missing = seen.about["missing"]
+    if "missing" in record.description:
+        missing = record.description["missing"]
         names: Sequence[str] = [str(each) for each in missing] if isinstance(missing, list) else []
-        return f"there is no class {quoted(wish.cls)} in it. Its classes: {', '.join(names) or 'none'}."
-    if not seen.about.get("is_env"):
-        return f"{wish.cls} is no gymnasium.Env yet: write `class {wish.cls}(gymnasium.Env):`."
+        return (
+            f"there is no class {quoted(task.class_name)} in it. Its classes: {', '.join(names) or 'none'}."
+        )
+    if not record.description.get("is_env"):
+        return f"{task.class_name} is no gymnasium.Env yet: write `class {task.class_name}(gymnasium.Env):`."
     return ""
 
 
-SORT: Final = Sort((".py",), CHECKS, read, gather)
+KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

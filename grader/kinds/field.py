@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from grader.assignment import Assignment, Criterion, Seeds, Trial
+from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.checks.contract import Check, NoParams, check
-from grader.checks.drives import CHECKS as DRIVES
-from grader.evidence.drive_record import Drive
-from grader.evidence.episodes import Bumps, shifted
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
-from grader.kinds.controller import read as read_trials
+from grader.checks.drives import CHECKS as DRIVE_CHECKS
+from grader.evidence.drive_record import DriveRecord
+from grader.evidence.episodes import BumpRecorder, shifted_start
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
+from grader.kinds.controller import read_settings as read_trials
 from kit.fields import adjacency
 from kit.fields.controller_setup import Course
 from kit.fields.derived_charges import derive
@@ -45,20 +45,20 @@ from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
-    from grader.grading import Evidence, Gatherer
+    from grader.grading import Evidence, EvidenceCollector
 
 STEP: Final = 0.01
 """s"""
-LOOK_EVERY: Final = 10
+DECISION_INTERVAL: Final = 10
 """Ticks between two decisions: as often as odometry comes."""
-MOST_BYTES: Final = 64 * 1024
-MOST_CHARGES: Final = 200
-MOST_NUMBER: Final = 1e6
+MAX_BYTES: Final = 64 * 1024
+MAX_CHARGES: Final = 200
+MAX_INTENSITY: Final = 1e6
 """No intensity may be larger, either way."""
 
 
 @dataclass(frozen=True, eq=False)
-class FieldDrive(Drive):
+class FieldDrive(DriveRecord):
     """One drive in the student's field."""
 
     course: Course | None = None
@@ -80,7 +80,7 @@ class FieldDrive(Drive):
         """(ticks, 3) of each robot."""
         return [self.recording.track(name) for name in self.place.partners]
 
-    def remark(self, check: str, params: Any = None) -> str:
+    def explain(self, check: str, params: Any = None) -> str:
         """Where the field leads, if not to the target."""
         if check not in ("arrive", "free_of_traps") or self.secret:
             return ""
@@ -94,13 +94,13 @@ class FieldDrive(Drive):
 
 
 @dataclass(frozen=True, slots=True)
-class Near:
+class CoverageParams:
     within: float = 0.05
     """m, of the wall's ends."""
 
 
 @dataclass(frozen=True, slots=True)
-class At:
+class ForceParams:
     x: float = 0.0
     y: float = 0.0
     """m"""
@@ -127,7 +127,9 @@ def side_by_side(drive: FieldDrive, params: NoParams) -> float:
     tracks = drive.partners
     if len(tracks) != 2 or not len(tracks[0]):
         return math.nan
-    return float(np.mean(adjacency.by_geometry(tracks[0][::LOOK_EVERY], tracks[1][::LOOK_EVERY])))
+    return float(
+        np.mean(adjacency.by_geometry(tracks[0][::DECISION_INTERVAL], tracks[1][::DECISION_INTERVAL]))
+    )
 
 
 @check(none=0.3, full=0.01, unit="%")
@@ -136,23 +138,23 @@ def free_of_traps(drive: FieldDrive, params: NoParams) -> float:
     return float(sum(trap.share for trap in drive.flow.traps()))
 
 
-@check(none=0.5, full=1, unit="%", params=Near)
-def covers(drive: FieldDrive, params: Near) -> float:
+@check(none=0.5, full=1, unit="%", params=CoverageParams)
+def covers(drive: FieldDrive, params: CoverageParams) -> float:
     """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
     assert drive.course is not None
-    own = _lines(drive.course.layout.charges)
-    wanted = _lines(derive(drive.course.floor))
+    own = _line_charges(drive.course.layout.charges)
+    wanted = _line_charges(derive(drive.course.floor))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
         length
         for each, length in zip(wanted, lengths, strict=True)
-        if any(_alike(each, other, params.within) for other in own)
+        if any(_is_same_segment(each, other, params.within) for other in own)
     ]
     return math.fsum(covered) / math.fsum(lengths) if lengths else math.nan
 
 
-@check(none=0.5, full=0.02, unit="%", params=At)
-def force_at(drive: FieldDrive, params: At) -> float:
+@check(none=0.5, full=0.02, unit="%", params=ForceParams)
+def force_at(drive: FieldDrive, params: ForceParams) -> float:
     """At one of the places that are looked at, the force is off by {actual} of what it should be."""
     assert drive.course is not None
     course = drive.course
@@ -163,13 +165,13 @@ def force_at(drive: FieldDrive, params: At) -> float:
 Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
-def _lines(charges: Sequence[Any]) -> list[Segment]:
+def _line_charges(charges: Sequence[Any]) -> list[Segment]:
     from kit.fields.charges import LineCharge, members
 
     return [each.ends for each in members(charges) if isinstance(each, LineCharge)]
 
 
-def _alike(one: Segment, other: Segment, within: float) -> bool:
+def _is_same_segment(one: Segment, other: Segment, within: float) -> bool:
     return any(
         max(math.dist(one[0], end), math.dist(one[1], start)) <= within
         for end, start in (other, (other[1], other[0]))
@@ -178,71 +180,71 @@ def _alike(one: Segment, other: Segment, within: float) -> bool:
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
-        **{name: DRIVES[name] for name in ("bumps", "clearance", "smooth")},
+        **{name: DRIVE_CHECKS[name] for name in ("bumps", "clearance", "smooth")},
         **{each.name: each for each in (arrive, soon, side_by_side, free_of_traps, covers, force_at)},
     }
 )
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The trials."""
-    return read_trials(sheet)
+    return read_trials(files)
 
 
-class _Gathered:
+class FieldDriveCollector:
     """The drives in one charge file, each when a criterion first needs it."""
 
-    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
-        self.level = conditions.level
+    def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
+        self.level = options.level
         self._assignment = assignment
         self._file = file
-        self._secret = conditions.secret
-        self._seen: dict[tuple[str, bool, int], Evidence] = {}
+        self._secret = options.secret
+        self._evidence: dict[tuple[str, bool, int], Evidence] = {}
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        found = []
+        evidence = []
         for name in criterion.trials:
             trial = self._assignment.trial(name)
-            if criterion.seeds is not Seeds.SECRET:
-                found += [
+            if criterion.seeds is not SeedSet.SECRET:
+                evidence += [
                     self._drive(trial, seed, f"{name}, seed {seed}", secret=False) for seed in trial.seeds
                 ]
-            if criterion.seeds is not Seeds.PUBLIC and self._secret:
-                found += [
+            if criterion.seeds is not SeedSet.PUBLIC and self._secret:
+                evidence += [
                     self._drive(trial, seed, f"{name}, secret seed {number}", secret=True)
                     for number, seed in enumerate(trial.secret_seeds, 1)
                 ]
-        return found
+        return evidence
 
     def all(self) -> Sequence[Evidence]:
-        return list(self._seen.values())
+        return list(self._evidence.values())
 
     def _drive(self, trial: Trial, seed: int, label: str, *, secret: bool) -> Evidence:
         key = trial.name, secret, seed
-        if key not in self._seen:
+        if key not in self._evidence:
             try:
-                self._seen[key] = driven(trial, self._file, seed, label, secret=secret)
+                self._evidence[key] = run_field_drive(trial, self._file, seed, label, secret=secret)
             except (WorldError, LookupError, ValueError, OSError) as error:
                 message = printable(str(error).replace(f"{self._file.parent}/", ""))
-                self._seen[key] = Look(
+                self._evidence[key] = EvidenceRecord(
                     failure=Failure(FailureKind.IMPORT, message), label=label, secret=secret
                 )
-        return self._seen[key]
+        return self._evidence[key]
 
 
-def driven(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> FieldDrive:
+def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> FieldDrive:
     """One drive, to its end. Raises WorldError for a wrong file."""
-    if file.stat().st_size > MOST_BYTES:
-        raise ValueError(f"{file.name} is larger than {MOST_BYTES // 1024} KiB.")
-    place = _placed(trial, seed)
+    if file.stat().st_size > MAX_BYTES:
+        raise ValueError(f"{file.name} is larger than {MAX_BYTES // 1024} KiB.")
+    place = _shifted_scenario(trial, seed)
     case = place.case
     if case is None:
         raise LookupError(f"{place.name} has no target.")
     course = Course.open(place.world.file, place.partners, case.target, case.target_radius, derived=True)
-    course = replace(course, layout=_bounded(read_layout(file, course.floor)))
+    course = replace(course, layout=_check_limits(read_layout(file, course.floor)))
     simulation = Simulation(place.world, seed=seed, step_size=STEP, wanted=lambda topic: False)
-    ride = _Ride(place, course, simulation)
-    ride.go(trial)
+    field_run = _FieldRun(place, course, simulation)
+    field_run.run(trial)
     return FieldDrive(
         trial=trial.name,
         label=label,
@@ -250,34 +252,34 @@ def driven(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> 
         secret=secret,
         place=place,
         limit_s=trial.time_s,
-        recording=ride.recording(),
-        score=ride.score(),
+        recording=field_run.recording(),
+        score=field_run.score(),
         failure=None,
-        talk={},
+        traffic={},
         refused=(),
         printed=(),
-        fingerprint=ride.fingerprint.text,
+        fingerprint=field_run.fingerprint.text,
         level=0,
-        bumped=ride.bumps[0].ticks,
+        bump_ticks=field_run.bumps[0].ticks,
         course=course,
-        all_reached_s=ride.reached_s,
+        all_reached_s=field_run.reached_s,
     )
 
 
-def _bounded(layout: Layout) -> Layout:
+def _check_limits(layout: Layout) -> Layout:
     """ValueError for what would only take time or make no sense."""
     numbers = [getattr(layout.intensities, name) for name in ("walls", "target", "robot", "tension")]
-    if len(layout.field.stretches) > MOST_CHARGES:
-        raise ValueError(f"more than {MOST_CHARGES} charges; a map has as many as it has walls and corners")
+    if len(layout.field.stretches) > MAX_CHARGES:
+        raise ValueError(f"more than {MAX_CHARGES} charges; a map has as many as it has walls and corners")
     values = [*numbers, *layout.field.stretches.ravel().tolist()]
-    if any(math.isnan(each) for each in values) or max(map(abs, numbers)) > MOST_NUMBER:
-        raise ValueError(f"an intensity of more than {MOST_NUMBER:g}")
+    if any(math.isnan(each) for each in values) or max(map(abs, numbers)) > MAX_INTENSITY:
+        raise ValueError(f"an intensity of more than {MAX_INTENSITY:g}")
     return layout
 
 
-def _placed(trial: Trial, seed: int) -> Place:
+def _shifted_scenario(trial: Trial, seed: int) -> Place:
     """The place with its robots moved together, as the seed says."""
-    place, home, start = trial.place, trial.home(), shifted(trial, seed)
+    place, home, start = trial.place, trial.home(), shifted_start(trial, seed)
     moved = {
         model.name: start.compose(home.relative(model.pose))
         for model in place.world.models
@@ -287,7 +289,7 @@ def _placed(trial: Trial, seed: int) -> Place:
     return replace(place, world=replace(place.world, models=models))
 
 
-class _Ride:
+class _FieldRun:
     """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
 
     def __init__(self, place: Place, course: Course, simulation: Simulation) -> None:
@@ -296,19 +298,19 @@ class _Ride:
         self._simulation = simulation
         self._recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
         self._trip = Trip(place.driven, place.case)
-        self.bumps = [Bumps(name) for name in place.partners]
+        self.bumps = [BumpRecorder(name) for name in place.partners]
         self.fingerprint = Fingerprint()
         self._observers: list[Observer] = [self._recorder, self._trip, self.fingerprint, *self.bumps]
         self.reached_s: float | None = None
 
-    def go(self, trial: Trial) -> None:
+    def run(self, trial: Trial) -> None:
         for tick in range(round(trial.time_s / STEP)):
-            if tick % LOOK_EVERY == 0:
+            if tick % DECISION_INTERVAL == 0:
                 self._decide()
             self._simulation.step()
             for observer in self._observers:
                 observer.on_step(self._simulation)
-            if self._are_there():
+            if self._have_all_arrived():
                 self.reached_s = self._simulation.time_ns / 1e9
                 break
 
@@ -329,7 +331,7 @@ class _Ride:
             self._recorder.on_message(robot.commands, command)
             self._simulation.accept(robot.commands, command)
 
-    def _are_there(self) -> bool:
+    def _have_all_arrived(self) -> bool:
         course = self._course
         return all(
             self._simulation.hull_distance(name, course.target) <= course.target_radius
@@ -337,8 +339,10 @@ class _Ride:
         )
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
-    return nullcontext(_Gathered(assignment, file, conditions))
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
+    return nullcontext(FieldDriveCollector(assignment, file, options))
 
 
-SORT: Final = Sort((".yaml", ".yml"), CHECKS, read, gather)
+KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)

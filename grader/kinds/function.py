@@ -29,9 +29,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final
 
-from grader.assignment import Assignment, Criterion, Seeds
+from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
@@ -40,18 +40,18 @@ from kit.world.problems import quoted, suggestion
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
 REFERENCE: Final = "reference.py"
-CASES: Final = "_cases"
+CASES_SUFFIX: Final = "_cases"
 """What follows a function's name in the name of what makes its cases."""
-MOST_CASES: Final = 500
-LONGEST_SHOWN: Final = 9
+MAX_CASES: Final = 500
+MAX_SHOWN: Final = 9
 """Entries of a list that are written out."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class FunctionSpec:
     """One function that is to be written."""
 
     name: str
@@ -60,17 +60,17 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Functions:
+class FunctionsTask:
     """The kind's task."""
 
-    wanted: tuple[Wanted, ...]
+    functions: tuple[FunctionSpec, ...]
     reference: Path
     seed: int
     secret_seed: int | None
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class CaseDifference:
     """A case in which the student's function returns something else than ours."""
 
     arguments: Mapping[str, Json]
@@ -78,76 +78,76 @@ class Difference:
     actual: Json
 
     def __str__(self) -> str:
-        return f"should be {shown(self.expected)}, and is {shown(self.actual)}{_where(self.expected, self.actual)}."
+        return f"should be {format_value(self.expected)}, and is {format_value(self.actual)}{_first_difference(self.expected, self.actual)}."
 
 
 @dataclass(frozen=True, slots=True)
-class Called:
+class FunctionComparison:
     """What was found: a function tried on its cases."""
 
     name: str
     cases: int
-    differences: tuple[Difference, ...]
+    differences: tuple[CaseDifference, ...]
 
-    def first(self) -> str:
+    def explain_first(self) -> str:
         """What to say of the first case that differs."""
         if not self.differences:
             return ""
         difference = self.differences[0]
-        arguments = ", ".join(f"{name}={shown(value)}" for name, value in difference.arguments.items())
+        arguments = ", ".join(f"{name}={format_value(value)}" for name, value in difference.arguments.items())
         if difference.actual is None and difference.expected is not None:
             return f"{self.name}({arguments}) returns nothing: does every way through it end in a return?"
         return f"{self.name}({arguments}) {difference}"
 
 
 @dataclass(frozen=True, slots=True)
-class Which:
+class FunctionParams:
     """Which function a criterion is about."""
 
     function: str = ""
     """May be left out where there is one only."""
 
 
-@check(none=0.5, full=1, unit="%", params=Which)
-def agrees(look: Look, params: Which) -> float:
+@check(none=0.5, full=1, unit="%", params=FunctionParams)
+def agrees(evidence: EvidenceRecord, params: FunctionParams) -> float:
     """It returns what it should in {actual} of the cases."""
-    seen: Called = look.found
-    return 1.0 - len(seen.differences) / seen.cases
+    comparison: FunctionComparison = evidence.found
+    return 1.0 - len(comparison.differences) / comparison.cases
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The functions, and whether the reference has them."""
-    file = sheet.folder / REFERENCE
-    wanted = tuple(_wanted(sheet.public))
-    seed = sheet.public.integer("seed", 1, minimum=0)
-    secret = None if sheet.secret is None else sheet.secret.integer("seed", minimum=0)
+    file = files.folder / REFERENCE
+    spec = tuple(_function_specs(files.public))
+    seed = files.public.integer("seed", 1, minimum=0)
+    secret = None if files.secret is None else files.secret.integer("seed", minimum=0)
     try:
-        module = load(file)
+        module = load_reference(file)
     except (OSError, SyntaxError) as error:
-        sheet.public.error(f"{REFERENCE}, which has the functions as they should be, cannot be read: {error}")
-        return Task(content=Functions(wanted, file, seed, secret))
-    for each in wanted:
-        for name in (each.name, each.name + CASES):
+        files.public.error(f"{REFERENCE}, which has the functions as they should be, cannot be read: {error}")
+        return KindSettings(task=FunctionsTask(spec, file, seed, secret))
+    for each in spec:
+        for name in (each.name, each.name + CASES_SUFFIX):
             if not callable(getattr(module, name, None)):
-                sheet.public.error(f"{REFERENCE} has no function {name}()", "functions")
-    return Task(content=Functions(wanted, file, seed, secret))
+                files.public.error(f"{REFERENCE} has no function {name}()", "functions")
+    return KindSettings(task=FunctionsTask(spec, file, seed, secret))
 
 
-def _wanted(section: Section) -> Iterator[Wanted]:
-    seen: set[str] = set()
+def _function_specs(section: Section) -> Iterator[FunctionSpec]:
+    comparison: set[str] = set()
     for each in section.sections("functions", at_least=1):
-        made = Wanted(each.name("name"), each.number("within", 1e-6, minimum=0))
+        made = FunctionSpec(each.name("name"), each.number("within", 1e-6, minimum=0))
         each.finish()
         if not made.name.isidentifier() or made.name.startswith("_"):
             each.error(f"{quoted('name')} must be a function's name", "name")
-        elif made.name in seen:
+        elif made.name in comparison:
             each.error(f"a function named {quoted(made.name)} is asked for already", "name")
         else:
             yield made
-        seen.add(made.name)
+        comparison.add(made.name)
 
 
-def load(file: Path) -> ModuleType:
+def load_reference(file: Path) -> ModuleType:
     """The teacher's reference, as a module of its own every time. Raises what it raises."""
     spec = importlib.util.spec_from_file_location(f"reference_of_{file.parent.name}", file)
     assert spec is not None  # the name ends in .py
@@ -159,88 +159,100 @@ def load(file: Path) -> ModuleType:
 
 def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, Json]]:
     """What a function is tried on with this seed."""
-    make: Callable[[random.Random], Iterator[Mapping[str, Json]]] = getattr(module, name + CASES)
-    return list(make(random.Random(f"{name} {seed}")))[:MOST_CASES]
+    make: Callable[[random.Random], Iterator[Mapping[str, Json]]] = getattr(module, name + CASES_SUFFIX)
+    return list(make(random.Random(f"{name} {seed}")))[:MAX_CASES]
 
 
-class Calls:
+class FunctionCollector:
     """Gathers a look at each function when a criterion first asks for it: a mistake in one costs no other."""
 
-    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
-        self.level = conditions.level
-        self._task: Functions = assignment.task
+    def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
+        self.level = options.level
+        self._task: FunctionsTask = assignment.task
         self._assignment = assignment
         self._file = file
-        self._conditions = conditions
-        self._reference = load(self._task.reference)
-        self._looks: dict[tuple[str, bool], Look] = {}
+        self._conditions = options
+        self._reference = load_reference(self._task.reference)
+        self._records: dict[tuple[str, bool], EvidenceRecord] = {}
 
-    def evidence(self, criterion: Criterion) -> Sequence[Look]:
+    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
         name = self._function(criterion.params.function)
         secret = self._conditions.secret and self._task.secret_seed is not None
-        wanted = {Seeds.PUBLIC: (False,), Seeds.SECRET: (True,), Seeds.ALL: (False, True)}[criterion.seeds]
-        return [self._look(name, hidden) for hidden in wanted if secret or not hidden]
+        spec = {SeedSet.PUBLIC: (False,), SeedSet.SECRET: (True,), SeedSet.ALL: (False, True)}[
+            criterion.seeds
+        ]
+        return [self._record(name, hidden) for hidden in spec if secret or not hidden]
 
-    def all(self) -> Sequence[Look]:
-        return list(self._looks.values())
+    def all(self) -> Sequence[EvidenceRecord]:
+        return list(self._records.values())
 
-    def _function(self, name: str) -> Wanted:
-        known = {each.name: each for each in self._task.wanted}
+    def _function(self, name: str) -> FunctionSpec:
+        known = {each.name: each for each in self._task.functions}
         if not name and len(known) == 1:
-            return self._task.wanted[0]
+            return self._task.functions[0]
         if name not in known:
             raise LookupError(f"no function {quoted(name)}: {suggestion(name, known)}")
         return known[name]
 
-    def _look(self, wanted: Wanted, secret: bool) -> Look:
-        key = wanted.name, secret
-        if key not in self._looks:
-            self._looks[key] = self._tried(wanted, secret)
-        return self._looks[key]
+    def _record(self, spec: FunctionSpec, secret: bool) -> EvidenceRecord:
+        key = spec.name, secret
+        if key not in self._records:
+            self._records[key] = self._compare(spec, secret)
+        return self._records[key]
 
-    def _tried(self, wanted: Wanted, secret: bool) -> Look:
+    def _compare(self, spec: FunctionSpec, secret: bool) -> EvidenceRecord:
         seed = self._task.secret_seed if secret else self._task.seed
         assert seed is not None  # where there is none, no secret look is asked for
-        cases = cases_of(self._reference, wanted.name, seed)
-        blank = Look(label=f"{wanted.name}()" + (" on secret cases" if secret else ""), secret=secret)
+        cases = cases_of(self._reference, spec.name, seed)
+        blank = EvidenceRecord(label=f"{spec.name}()" + (" on secret cases" if secret else ""), secret=secret)
         while True:
-            look = self._called(wanted, cases, blank)
-            failure = look.failure
+            evidence = self._call_all(spec, cases, blank)
+            failure = evidence.failure
             if (
                 failure is None
                 or failure.kind is not FailureKind.CONFINEMENT
                 or not self._conditions.may_fall
                 or self.level == Level.LIMITED
             ):
-                return look
+                return evidence
             self.level = Level(self.level - 1)
 
-    def _called(self, wanted: Wanted, cases: Sequence[Mapping[str, Json]], blank: Look) -> Look:
-        right = getattr(self._reference, wanted.name)
+    def _call_all(
+        self, spec: FunctionSpec, cases: Sequence[Mapping[str, Json]], blank: EvidenceRecord
+    ) -> EvidenceRecord:
+        right = getattr(self._reference, spec.name)
         differences = []
         case: Mapping[str, Json] | None = None
         try:
             with StudentFunctions(self._file, limits=self._assignment.limits, level=self.level) as functions:
                 for case in cases:
-                    expected, actual = _plain(right(**case)), functions.tell(wanted.name, case)
-                    if not alike(expected, actual, wanted.within):
-                        differences.append(Difference(case, expected, actual))
+                    expected, actual = _plain(right(**case)), functions.tell(spec.name, case)
+                    if not is_close(expected, actual, spec.within):
+                        differences.append(CaseDifference(case, expected, actual))
                 printed = tuple(printable(line.text) for line in functions.take_output().lines)
         except GuestError as error:
-            return replace_failure(blank, error.failure, wanted.name, case)
-        found = Called(wanted.name, len(cases), tuple(differences))
-        said = "" if blank.secret else found.first()
-        return Look(
-            found, None, blank.label, blank.secret, printed=printed, steps=len(cases), remarks=lambda *_: said
+            return failed_record(blank, error.failure, spec.name, case)
+        found = FunctionComparison(spec.name, len(cases), tuple(differences))
+        explanation = "" if blank.secret else found.explain_first()
+        return EvidenceRecord(
+            found,
+            None,
+            blank.label,
+            blank.secret,
+            printed=printed,
+            steps=len(cases),
+            explain_with=lambda *_: explanation,
         )
 
 
-def replace_failure(blank: Look, failure: Failure, name: str, case: Mapping[str, Json] | None) -> Look:
+def failed_record(
+    blank: EvidenceRecord, failure: Failure, name: str, case: Mapping[str, Json] | None
+) -> EvidenceRecord:
     """The look at a function that failed: in which call, where that may be told."""
     if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
-        arguments = ", ".join(f"{key}={shown(value)}" for key, value in case.items())
+        arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items())
         failure = replace(failure, message=f"{failure.message} It was called as {name}({arguments}).")
-    return Look(
+    return EvidenceRecord(
         failure=failure, label=blank.label, secret=blank.secret, outcome=f"stopped ({failure.kind.value})"
     )
 
@@ -254,45 +266,47 @@ def _plain(value: Any) -> Json:
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
 
 
-def alike(expected: Json, actual: Json, within: float) -> bool:
+def is_close(expected: Json, actual: Json, within: float) -> bool:
     """Whether two returned values are the same: numbers nearly, texts and truth values to the letter."""
     if isinstance(expected, list):
         return (
             isinstance(actual, list)
             and len(actual) == len(expected)
-            and all(alike(*pair, within) for pair in zip(expected, actual, strict=True))
+            and all(is_close(*pair, within) for pair in zip(expected, actual, strict=True))
         )
     if type(expected) is float and type(actual) is float:
         return math.isclose(expected, actual, rel_tol=within, abs_tol=within)
     return type(expected) is type(actual) and bool(expected == actual)
 
 
-def shown(value: Json) -> str:
+def format_value(value: Json) -> str:
     """A value as one would write it, long lists shortened."""
     if isinstance(value, list):
-        listed = ", ".join(map(shown, value[:LONGEST_SHOWN]))
-        more = f", ... {len(value)} in all" if len(value) > LONGEST_SHOWN else ""
-        return f"[{listed}{more}]"
+        join_faults = ", ".join(map(format_value, value[:MAX_SHOWN]))
+        more = f", ... {len(value)} in all" if len(value) > MAX_SHOWN else ""
+        return f"[{join_faults}{more}]"
     if type(value) is float:
         return f"{value:.6g}"
     return printable(repr(value)[:200])
 
 
-def _where(expected: Json, actual: Json) -> str:
+def _first_difference(expected: Json, actual: Json) -> str:
     """Where in a list the first difference is; nothing for what is short enough to see."""
     if not isinstance(expected, list) or not isinstance(actual, list):
         return ""
     if len(expected) != len(actual):
         return f": {len(actual)} entries instead of {len(expected)}"
     for place, (one, other) in enumerate(zip(expected, actual, strict=True)):
-        if not alike(one, other, 1e-6):
-            return f": [{place}] should be {shown(one)}, and is {shown(other)}"
+        if not is_close(one, other, 1e-6):
+            return f": [{place}] should be {format_value(one)}, and is {format_value(other)}"
     return ""
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """Each function is called when a criterion first asks for it."""
-    return nullcontext(Calls(assignment, file, conditions))
+    return nullcontext(FunctionCollector(assignment, file, options))
 
 
-SORT: Final = Sort((".py",), {agrees.name: agrees}, read, gather)
+KIND: Final = Kind((".py",), {agrees.name: agrees}, read_settings, collect)

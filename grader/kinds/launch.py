@@ -21,173 +21,173 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
-from grader.evidence.launch import Launched, Questions, Run, laid_out, launched
-from grader.kinds.contract import Conditions, Sheet, Sort, Task
+from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, package_copy, run_launch
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.world.problems import quoted
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
 QUOTES: Final = "'\""
-LONGEST_RUN: Final = 60.0
+MAX_RUN_S: Final = 60.0
 """s"""
 
 
 @dataclass(frozen=True, slots=True)
-class Launches:
+class LaunchTask:
     """The kind's task."""
 
     package: Path
-    runs: tuple[Run, ...]
+    runs: tuple[LaunchCase, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Runs:
+class RunParams:
     runs: tuple[str, ...] = ()
     """Which; none: all."""
 
 
 @dataclass(frozen=True, slots=True)
-class Nodes:
+class NodeParams:
     nodes: tuple[str, ...] = ()
     """Full names."""
     runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Arguments:
+class ArgumentParams:
     arguments: tuple[str, ...] = ()
     """Each a name, and after a space its default."""
     runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Parameters:
+class ParameterParams:
     parameters: tuple[str, ...] = ()
     """Each ``/node name value``."""
     runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Ends:
+class EndpointParams:
     ends: tuple[str, ...] = ()
     """Each ``/node publishes /topic`` or ``/node subscribes /topic``."""
     runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class DistanceParams:
     ways: tuple[str, ...] = ()
     """Each ``model least most``: how far it drives [m]."""
     runs: tuple[str, ...] = ()
 
 
-@check(none=0, full=1, words=("something failed", "all runs"), params=Runs)
-def starts(seen: Launched, params: Runs) -> float:
+@check(none=0, full=1, words=("something failed", "all runs"), params=RunParams)
+def starts(record: LaunchRecord, params: RunParams) -> float:
     """Not everything that the launch file started ran to the end ({where})."""
-    return float(not seen.died and bool(seen.nodes))
+    return float(not record.failures and bool(record.nodes))
 
 
-@check(none=0, full=1, unit="%", params=Nodes)
-def nodes(seen: Launched, params: Nodes) -> float:
+@check(none=0, full=1, unit="%", params=NodeParams)
+def nodes(record: LaunchRecord, params: NodeParams) -> float:
     """Of the nodes that were asked for, {actual} are there ({where})."""
-    return _share(params.nodes, lambda name: name in seen.nodes)
+    return _share(params.nodes, lambda name: name in record.nodes)
 
 
-@check(none=0, full=1, unit="%", params=Arguments)
-def arguments(seen: Launched, params: Arguments) -> float:
+@check(none=0, full=1, unit="%", params=ArgumentParams)
+def arguments(record: LaunchRecord, params: ArgumentParams) -> float:
     """Of the arguments that were asked for, {actual} are declared as asked."""
-    return _share(params.arguments, lambda each: each in _declared(seen))
+    return _share(params.arguments, lambda each: each in _declared(record))
 
 
-@check(none=0, full=1, unit="%", params=Parameters)
-def parameters(seen: Launched, params: Parameters) -> float:
+@check(none=0, full=1, unit="%", params=ParameterParams)
+def parameters(record: LaunchRecord, params: ParameterParams) -> float:
     """Of the parameters that were looked at, {actual} have the value they should have ({where})."""
-    return _share(params.parameters, lambda each: _has(seen, *each.split(maxsplit=2)))
+    return _share(params.parameters, lambda each: _has_value(record, *each.split(maxsplit=2)))
 
 
-@check(none=0, full=1, unit="%", params=Ends)
-def wired(seen: Launched, params: Ends) -> float:
+@check(none=0, full=1, unit="%", params=EndpointParams)
+def wired(record: LaunchRecord, params: EndpointParams) -> float:
     """Of the wires that were asked for, {actual} are there ({where})."""
-    return _share(params.ends, lambda each: each in _wires(seen))
+    return _share(params.ends, lambda each: each in _connections(record))
 
 
-@check(none=0, full=1, unit="%", params=Ways)
-def drives(seen: Launched, params: Ways) -> float:
+@check(none=0, full=1, unit="%", params=DistanceParams)
+def drives(record: LaunchRecord, params: DistanceParams) -> float:
     """Of the robots, {actual} drive as far as they should ({where})."""
-    return _share(params.ways, lambda each: _drove(seen, *each.split()))
+    return _share(params.ways, lambda each: _is_distance_right(record, *each.split()))
 
 
 def _share(wanted: Sequence[str], holds: Callable[[str], bool]) -> float:
     return sum(map(holds, wanted)) / len(wanted) if wanted else 1.0
 
 
-def _declared(seen: Launched) -> list[str]:
+def _declared(record: LaunchRecord) -> list[str]:
     # A default is told as ROS 2 shows it: in quotes.
     return [
         each.name if each.default is None else f"{each.name} {each.default.strip(QUOTES)}"
-        for each in seen.arguments
+        for each in record.arguments
     ]
 
 
-def _has(seen: Launched, node: str, name: str, value: str) -> bool:
-    there = seen.parameters.get(f"{node} {name}")
+def _has_value(record: LaunchRecord, node: str, name: str, value: str) -> bool:
+    declared = record.parameters.get(f"{node} {name}")
     try:
-        return there is not None and (there == value or float(there) == float(value))
+        return declared is not None and (declared == value or float(declared) == float(value))
     except ValueError:
         return False
 
 
-def _wires(seen: Launched) -> list[str]:
-    if seen.graph is None:
+def _connections(record: LaunchRecord) -> list[str]:
+    if record.graph is None:
         return []
     return [
         f"{end.node} {verb} {topic.name}"
-        for topic in seen.graph.topics
+        for topic in record.graph.topics
         if not topic.is_infrastructure
         for verb, ends in (("publishes", topic.publishers), ("subscribes", topic.subscriptions))
         for end in ends
     ]
 
 
-def _drove(seen: Launched, model: str, least: str, most: str) -> bool:
-    return float(least) <= seen.ways.get(model, -1.0) <= float(most)
+def _is_distance_right(record: LaunchRecord, model: str, least: str, most: str) -> bool:
+    return float(least) <= record.distances.get(model, -1.0) <= float(most)
 
 
-def _remark(seen: Launched, name: str, params: Any) -> str:
+def _remark(record: LaunchRecord, name: str, params: Any) -> str:
     """The first thing that is not as asked, and what is there instead."""
-    return REMARKS[name](seen, params)
+    return EXPLANATIONS[name](record, params)
 
 
-def _missing_node(seen: Launched, params: Nodes) -> str:
-    missing = next((each for each in params.nodes if each not in seen.nodes), None)
-    there = ", ".join(seen.nodes) or "none"
+def _explain_node(record: LaunchRecord, params: NodeParams) -> str:
+    missing = next((each for each in params.nodes if each not in record.nodes), None)
+    declared = ", ".join(record.nodes) or "none"
     if missing is None:
         return ""
-    died = f" {seen.died[0]}" if seen.died else ""
-    return f"There is no node {missing}; there are: {there}.{died}"
+    died = f" {record.failures[0]}" if record.failures else ""
+    return f"There is no node {missing}; there are: {declared}.{died}"
 
 
-def _missing_argument(seen: Launched, params: Arguments) -> str:
-    there = _declared(seen)
-    missing = next((each for each in params.arguments if each not in there), None)
-    return "" if missing is None else f"Missing: {missing}. Declared: {', '.join(there) or 'none'}."
+def _explain_argument(record: LaunchRecord, params: ArgumentParams) -> str:
+    declared = _declared(record)
+    missing = next((each for each in params.arguments if each not in declared), None)
+    return "" if missing is None else f"Missing: {missing}. Declared: {', '.join(declared) or 'none'}."
 
 
-def _other_value(seen: Launched, params: Parameters) -> str:
+def _explain_value(record: LaunchRecord, params: ParameterParams) -> str:
     for each in params.parameters:
         node, name, value = each.split(maxsplit=2)
-        if not _has(seen, node, name, value):
-            there = seen.parameters.get(f"{node} {name}", "not there")
-            return f"{name} of {node} should be {value}, and is {there}."
+        if not _has_value(record, node, name, value):
+            declared = record.parameters.get(f"{node} {name}", "not there")
+            return f"{name} of {node} should be {value}, and is {declared}."
     return ""
 
 
-def _missing_wire(seen: Launched, params: Ends) -> str:
-    wires = _wires(seen)
+def _explain_wire(record: LaunchRecord, params: EndpointParams) -> str:
+    wires = _connections(record)
     missing = next((each for each in params.ends if each not in wires), None)
     if missing is None:
         return ""
@@ -195,53 +195,53 @@ def _missing_wire(seen: Launched, params: Ends) -> str:
     return f"{missing}: not so. {'; '.join(of_node) or 'That node is not there'}."
 
 
-def _other_way(seen: Launched, params: Ways) -> str:
+def _explain_distance(record: LaunchRecord, params: DistanceParams) -> str:
     for each in params.ways:
         model, least, most = each.split()
-        if not _drove(seen, model, least, most):
-            way = seen.ways.get(model)
+        if not _is_distance_right(record, model, least, most):
+            way = record.distances.get(model)
             drove = "is not in the world" if way is None else f"drove {way:.2f} m"
             return f"{model} {drove}; it should be {least} to {most} m."
     return ""
 
 
-REMARKS: Final[Mapping[str, Callable[[Launched, Any], str]]] = MappingProxyType(
+EXPLANATIONS: Final[Mapping[str, Callable[[LaunchRecord, Any], str]]] = MappingProxyType(
     {
-        starts.name: lambda seen, params: seen.died[0] if seen.died else "",
-        nodes.name: _missing_node,
-        arguments.name: _missing_argument,
-        parameters.name: _other_value,
-        wired.name: _missing_wire,
-        drives.name: _other_way,
+        starts.name: lambda record, params: record.failures[0] if record.failures else "",
+        nodes.name: _explain_node,
+        arguments.name: _explain_argument,
+        parameters.name: _explain_value,
+        wired.name: _explain_wire,
+        drives.name: _explain_distance,
     }
 )
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The package, and how the launch file is launched."""
-    section = sheet.public.section("launch")
+    section = files.public.section("launch")
     name = section.name("package", "starter")
-    folder = (sheet.folder / name).resolve()
-    if not folder.is_relative_to(sheet.folder.resolve()) or not (folder / "package.xml").is_file():
+    folder = (files.folder / name).resolve()
+    if not folder.is_relative_to(files.folder.resolve()) or not (folder / "package.xml").is_file():
         section.error(
             f"no package {quoted(name)}: there is no {name}/package.xml beside the sheet", "package"
         )
     runs = list(_runs(section.sections("runs", at_least=1), secret=False))
     section.finish()
-    if sheet.secret is not None:
-        runs += _runs(sheet.secret.sections("runs", ()), secret=True)
-    return Task(content=Launches(folder, tuple(runs)))
+    if files.secret is not None:
+        runs += _runs(files.secret.sections("runs", ()), secret=True)
+    return KindSettings(task=LaunchTask(folder, tuple(runs)))
 
 
-def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[Run]:
+def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
     for each in sections:
         given = each.section("arguments", None)
         values = {} if given is None else {key: given.text(key) for key in given.keys()}  # noqa: SIM118 - no mapping
         if given is not None:
             given.finish()
-        made = Run(
+        made = LaunchCase(
             each.name("name"),
-            each.number("time", 4.0, above=0, maximum=LONGEST_RUN),
+            each.number("time", 4.0, above=0, maximum=MAX_RUN_S),
             MappingProxyType(values),
             secret,
         )
@@ -249,19 +249,19 @@ def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[Run]:
         yield made
 
 
-class _Gathered:
+class LaunchCollector:
     """The runs of one launch file, each when a criterion first needs it."""
 
-    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
-        self.level = conditions.level
+    def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
+        self.level = options.level
         self._assignment = assignment
         self._file = file
-        self._secret = conditions.secret
-        self._may_fall = conditions.may_fall and not conditions.secret
-        self._seen: dict[tuple[str, bool], Launched] = {}
-        self._questions = Questions(_asked(assignment.criteria))
+        self._secret = options.secret
+        self._may_fall = options.may_fall and not options.secret
+        self._records: dict[tuple[str, bool], LaunchRecord] = {}
+        self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
-    def evidence(self, criterion: Criterion) -> Sequence[Launched]:
+    def evidence(self, criterion: Criterion) -> Sequence[LaunchRecord]:
         chosen = criterion.params.runs
         return [
             self._run(run)
@@ -269,42 +269,44 @@ class _Gathered:
             if (not chosen or run.name in chosen) and (self._secret or not run.secret)
         ]
 
-    def all(self) -> Sequence[Launched]:
-        return list(self._seen.values())
+    def all(self) -> Sequence[LaunchRecord]:
+        return list(self._records.values())
 
-    def _run(self, run: Run) -> Launched:
+    def _run(self, run: LaunchCase) -> LaunchRecord:
         key = run.name, run.secret
-        while key not in self._seen:
-            with laid_out(self._assignment.task.package, self._file) as target:
-                seen = launched(
-                    run, target, self._questions, level=self.level, limits=self._assignment.limits
+        while key not in self._records:
+            with package_copy(self._assignment.task.package, self._file) as target:
+                record = run_launch(
+                    run, target, self._queries, level=self.level, limits=self._assignment.limits
                 )
-            cannot = seen.failure is not None and seen.failure.kind is FailureKind.CONFINEMENT
+            cannot = record.failure is not None and record.failure.kind is FailureKind.CONFINEMENT
             if cannot and self._may_fall and self.level > Level.LIMITED:
                 self.level = Level(self.level - 1)
                 continue
-            seen = replace(seen, remarks=_remark)
-            self._seen[key] = seen
-        return self._seen[key]
+            record = replace(record, explain_with=_remark)
+            self._records[key] = record
+        return self._records[key]
 
 
-def _asked(criteria: Sequence[Criterion]) -> Mapping[str, tuple[str, ...]]:
+def _requested_parameters(criteria: Sequence[Criterion]) -> Mapping[str, tuple[str, ...]]:
     """By node, the parameters that any criterion looks at."""
     found: dict[str, list[str]] = {}
     for criterion in criteria:
-        if isinstance(criterion.params, Parameters):
+        if isinstance(criterion.params, ParameterParams):
             for each in criterion.params.parameters:
                 node, name, _ = each.split(maxsplit=2)
                 found.setdefault(node, []).append(name)
     return {node: tuple(dict.fromkeys(names)) for node, names in found.items()}
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
-    return nullcontext(_Gathered(assignment, file, conditions))
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
+    return nullcontext(LaunchCollector(assignment, file, options))
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (starts, nodes, arguments, parameters, wired, drives)}
 )
 
-SORT: Final = Sort((".py",), CHECKS, read, gather)
+KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

@@ -22,7 +22,15 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, from_yaml, once
+from grader.kinds.contract import (
+    AssignmentFiles,
+    EvidenceOptions,
+    EvidenceRecord,
+    Kind,
+    KindSettings,
+    collect_once,
+    read_submitted_yaml,
+)
 from kit.host.failure import Failure
 from kit.layers.assignment import Assignment as Plan
 from kit.layers.assignment import Breach, NamedLayer, breaches
@@ -32,14 +40,14 @@ from kit.layers.requirements import Case, Contact, Requirement, Sight, fit_toget
 from kit.world.problems import WorldError, quoted, suggestion
 from kit.world.yaml_section import Section
 
-MOST: Final = 64
+MAX_ENTRIES: Final = 64
 """Layers, and lines of a proof."""
-SEES: Final = " sees "
-MEETS: Final = " - "
+SIGHT_SEPARATOR: Final = " sees "
+CONTACT_SEPARATOR: Final = " - "
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class SubmittedPlan:
     """What was handed in, beside what was asked."""
 
     case: Case
@@ -47,10 +55,10 @@ class Made:
     proof: tuple[Requirement, ...]
 
     @property
-    def wrong(self) -> tuple[Breach, ...]:
+    def breaches(self) -> tuple[Breach, ...]:
         return breaches(self.case, self.plan)
 
-    def fits(self) -> Iterator[str]:
+    def combinable_pairs(self) -> Iterator[str]:
         """Pairs of the proof that one layer could serve, which prove nothing."""
         for one, other in combinations(self.proof, 2):
             if fit_together(self.case, one, other) is None:
@@ -58,95 +66,99 @@ class Made:
 
 
 @check(none=1, full=0, words=("all of them", "not all"))
-def complete(look: Look, params: NoParams) -> float:
+def complete(evidence: EvidenceRecord, params: NoParams) -> float:
     """Not everything that must happen happens in your plan:"""
-    return float(sum(breach.wanted for breach in look.found.wrong))
+    return float(sum(breach.wanted for breach in evidence.found.breaches))
 
 
 @check(none=1, full=0, words=("nothing else", "more than was asked"))
-def nothing_more(look: Look, params: NoParams) -> float:
+def nothing_more(evidence: EvidenceRecord, params: NoParams) -> float:
     """In your plan something happens that must not:"""
-    return float(sum(not breach.wanted for breach in look.found.wrong))
+    return float(sum(not breach.wanted for breach in evidence.found.breaches))
 
 
 @check(none=17, full=16, unit="layers")
-def few_layers(look: Look, params: NoParams) -> float:
+def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """Your plan has {actual}; it can be done with {full}."""
-    return float(len(look.found.plan.layers))
+    return float(len(evidence.found.plan.layers))
 
 
 @check(none=0, full=1, unit="lines")
-def proof(look: Look, params: NoParams) -> float:
+def proof(evidence: EvidenceRecord, params: NoParams) -> float:
     """A proof is a list of things that must happen, no two of which fit one layer: then each needs a layer of its
     own. Yours proves {actual}; {full} are wanted."""
-    made: Made = look.found
-    return 0.0 if next(made.fits(), None) else float(len(made.proof))
+    plan: SubmittedPlan = evidence.found
+    return 0.0 if next(plan.combinable_pairs(), None) else float(len(plan.proof))
 
 
 CHECKS: Final = (complete, nothing_more, few_layers, proof)
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The case."""
-    in_secret = not sheet.public.has("case") and sheet.secret is not None
-    holder = sheet.secret if in_secret and sheet.secret is not None else sheet.public
+    in_secret = not files.public.has("case") and files.secret is not None
+    holder = files.secret if in_secret and files.secret is not None else files.public
     name = holder.name("case")
-    file = sheet.folder / name
+    file = files.folder / name
     if name in EXAMPLES:
-        return Task(content=EXAMPLES[name])
+        return KindSettings(task=EXAMPLES[name])
     try:
-        return Task(content=read_requirements(file).case)
+        return KindSettings(task=read_requirements(file).case)
     except WorldError as error:
         holder.error(f"no case: {error}", "case")
-        return Task()
+        return KindSettings()
 
 
-def look(assignment: Assignment, file: Path, conditions: Conditions) -> Look:
+def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Reads the plan."""
     case: Case = assignment.task
-    made = from_yaml(file, lambda section: _made(section, case))
-    if isinstance(made, Failure):
-        return Look(failure=made)
-    return Look(made, label="your plan", remarks=lambda name, params: _remark(made, name))
+    plan = read_submitted_yaml(file, lambda section: _read_plan(section, case))
+    if isinstance(plan, Failure):
+        return EvidenceRecord(failure=plan)
+    return EvidenceRecord(plan, label="your plan", explain_with=lambda name, params: _remark(plan, name))
 
 
-def _remark(made: Made, name: str) -> str:
+def _remark(plan: SubmittedPlan, name: str) -> str:
     if name == proof.name:
-        return "; ".join(made.fits())
+        return "; ".join(plan.combinable_pairs())
     if name in (complete.name, nothing_more.name):
         wanted = name == complete.name
-        return "; ".join(str(breach) for breach in made.wrong if breach.wanted is wanted)
+        return "; ".join(str(breach) for breach in plan.breaches if breach.wanted is wanted)
     return ""
 
 
-def _made(section: Section, case: Case) -> Made:
+def _read_plan(section: Section, case: Case) -> SubmittedPlan:
     layers = []
-    inner = _inner(section, "layers")
+    inner = _subsection(section, "layers")
     for name in () if inner is None else tuple(inner.keys()):
         assert inner is not None
-        layers.append(NamedLayer(name, frozenset(_known(inner, name, case.names, "thing"))))
+        layers.append(NamedLayer(name, frozenset(_known_names(inner, name, case.names, "thing"))))
     names = [layer.name for layer in layers]
-    watched = _inner(section, "lasers")
+    watched = _subsection(section, "lasers")
     watches = {}
     for laser in () if watched is None else tuple(watched.keys()):
         assert watched is not None
         if laser not in case.laser:
             watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
-        watches[laser] = _known(watched, laser, names, "layer of yours")
-    said = () if section.is_blank("proof") else section.texts("proof", ())
-    lines = tuple(_requirement(section, line, case) for line in said)
-    if max(len(layers), len(lines)) > MOST:
-        section.error(f"at most {MOST} layers and {MOST} lines of proof")
+        watches[laser] = _known_names(watched, laser, names, "layer of yours")
+    lines_given = () if section.is_blank("proof") else section.texts("proof", ())
+    lines = tuple(_requirement(section, line, case) for line in lines_given)
+    if max(len(layers), len(lines)) > MAX_ENTRIES:
+        section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
     section.finish()
-    return Made(case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each)))
+    return SubmittedPlan(
+        case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each))
+    )
 
 
-def _inner(section: Section, key: str) -> Section | None:
+def _subsection(section: Section, key: str) -> Section | None:
     """A mapping; None where nothing is written yet."""
     return None if section.is_blank(key) else section.section(key, None)
 
 
-def _known(section: Section, key: str, known: list[str] | tuple[str, ...], what: str) -> tuple[str, ...]:
+def _known_names(
+    section: Section, key: str, known: list[str] | tuple[str, ...], what: str
+) -> tuple[str, ...]:
     names = () if section.is_blank(key) else section.texts(key, ())
     for name in names:
         if name not in known:
@@ -156,13 +168,15 @@ def _known(section: Section, key: str, known: list[str] | tuple[str, ...], what:
 
 def _requirement(section: Section, line: str, case: Case) -> Requirement | None:
     """What a line of the proof says must happen."""
-    split = SEES if SEES in line else MEETS
+    split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
-    made: Requirement = Sight(one, other) if split == SEES else Contact(one, other)
-    if made in case.requirements:
-        return made
+    plan: Requirement = Sight(one, other) if split == SIGHT_SEPARATOR else Contact(one, other)
+    if plan in case.requirements:
+        return plan
     section.error(f"{quoted(line)} is nothing that must happen here: write A - B, or LASER sees A", "proof")
     return None
 
 
-SORT: Final = Sort((".yaml", ".yml"), {each.name: each for each in CHECKS}, read, once(look))
+KIND: Final = Kind(
+    (".yaml", ".yml"), {each.name: each for each in CHECKS}, read_settings, collect_once(collect_evidence)
+)

@@ -8,27 +8,29 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
-from grader.kinds.contract import Conditions, Sheet, Sort, Task
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
 from kit.world.problems import quoted
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
 LARGEST_PLAN: Final = 40
 """Rows and columns of a grid."""
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The small model of the task."""
-    return Task(content=_grid(sheet.public.section("grid")))
+    return KindSettings(task=_grid(files.public.section("grid")))
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """The function, examined once."""
-    from grader.evidence.reward import Examination
+    from grader.evidence.reward import RewardCollector
 
-    return Examination(assignment, file, level=conditions.level, may_fall=conditions.may_fall)
+    return RewardCollector(assignment, file, level=options.level, may_fall=options.may_fall)
 
 
 def _grid(section: Section) -> GridTask:
@@ -52,4 +54,4 @@ def _grid(section: Section) -> GridTask:
     return made
 
 
-SORT: Final = Sort((".py",), CHECKS, read, gather)
+KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

@@ -22,8 +22,23 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
-from grader.evidence.training import Budget, Order, Plan, Stop, Trainings, train
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task, from_yaml, once
+from grader.evidence.training import (
+    CaseOrder,
+    StopRule,
+    TrainingBudget,
+    TrainingResults,
+    TrainingSettings,
+    run_trainings,
+)
+from grader.kinds.contract import (
+    AssignmentFiles,
+    EvidenceOptions,
+    EvidenceRecord,
+    Kind,
+    KindSettings,
+    collect_once,
+    read_submitted_yaml,
+)
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskChoice
@@ -34,73 +49,75 @@ from kit.learning.training.presets import Falling
 from kit.world.problems import quoted, suggestion
 from kit.world.yaml_section import Section
 
-MOST_STEPS: Final = 5_000_000
-MOST_SEEDS: Final = 20
-MOST_WORLDS: Final = 256
-MOST_TESTED: Final = 2_000
-MOST_LOOKS: Final = 100
+MAX_STEPS: Final = 5_000_000
+MAX_SEEDS: Final = 20
+MAX_WORLDS: Final = 256
+MAX_TEST_EPISODES: Final = 2_000
+MAX_TESTS: Final = 100
 """Tests of one training: more would take longer than the training."""
-MOST_EDGES: Final = 4
+MAX_EDGES: Final = 4
 TABLES: Final = ("q-learning", "sarsa")
 
 
 @dataclass(frozen=True, slots=True)
-class Reliable:
+class ReliableParams:
     """What a single training must reach to count."""
 
     goal: float = 0.9
 
 
 @check(none=0.5, full=0.9, unit="%")
-def succeeds(look: Look, params: object) -> float:
+def succeeds(evidence: EvidenceRecord, params: object) -> float:
     """After these trainings the robot surely reaches its target in {actual} of the episodes; {full} earns all points.
     (“Surely”: the lower end of Wilson's interval, all exams together.)"""
-    seen: Trainings = look.found
-    return seen.surely()
+    results: TrainingResults = evidence.found
+    return results.success_lower_bound()
 
 
 @check(none=0.4, full=0.85, unit="%")
-def every_case(look: Look, params: object) -> float:
+def every_case(evidence: EvidenceRecord, params: object) -> float:
     """In the case that goes worst the robot surely reaches its target in {actual} of the episodes; {full} earns all
     points."""
-    seen: Trainings = look.found
-    return seen.surely(seen.worst_case)
+    results: TrainingResults = evidence.found
+    return results.success_lower_bound(results.worst_case)
 
 
-@check(none=0.3, full=1, unit="%", params=Reliable)
-def reliable(look: Look, params: Reliable) -> float:
+@check(none=0.3, full=1, unit="%", params=ReliableParams)
+def reliable(evidence: EvidenceRecord, params: ReliableParams) -> float:
     """Only {actual} of the trainings led to a policy that is good enough: the others had less luck with their seed."""
-    seen: Trainings = look.found
-    return sum(training.accuracy >= params.goal for training in seen.each) / len(seen.each)
+    results: TrainingResults = evidence.found
+    return sum(training.accuracy >= params.goal for training in results.trainings) / len(results.trainings)
 
 
 @check(none=0.25, full=0.08)
-def honest(look: Look, params: object) -> float:
+def honest(evidence: EvidenceRecord, params: object) -> float:
     """What a training's own last test says of its policy must be true: it promised {actual} more, as a share of
     episodes, than the exam found; {full} is allowed."""
-    seen: Trainings = look.found
-    return max(max(0.0, training.claimed - training.accuracy) for training in seen.each)
+    results: TrainingResults = evidence.found
+    return max(max(0.0, training.claimed - training.accuracy) for training in results.trainings)
 
 
 @check(none=1.0, full=0.7, unit="%")
-def steps_used(look: Look, params: object) -> float:
+def steps_used(evidence: EvidenceRecord, params: object) -> float:
     """The trainings used {actual} of the steps they might; {full} or less earns all points. When is it good enough?"""
-    seen: Trainings = look.found
-    return sum(training.steps for training in seen.each) / (len(seen.each) * seen.budget.steps)
+    results: TrainingResults = evidence.found
+    return sum(training.steps for training in results.trainings) / (
+        len(results.trainings) * results.budget.steps
+    )
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """What is to be learned, and what it may cost."""
-    section = sheet.public.section("training")
+    section = files.public.section("training")
     choice = TaskChoice(
         section.name("task"),
         reward=section.text("reward") if section.has("reward") else None,
         scale=section.number("scale", above=0) if section.has("scale") else None,
     )
     algorithms = section.texts("algorithms", TABLES, at_least=1)
-    steps = section.integer("steps", minimum=1_000, maximum=MOST_STEPS)
+    steps = section.integer("steps", minimum=1_000, maximum=MAX_STEPS)
     episodes = section.integer("episodes", 200, minimum=10, maximum=2_000)
-    seeds, secret = _seeds(section), () if sheet.secret is None else _seeds(sheet.secret)
+    seeds, secret = _seeds(section), () if files.secret is None else _seeds(files.secret)
     for each in algorithms:
         if each not in ALGORITHMS:
             section.error(f"no algorithm {quoted(each)}: {suggestion(each, ALGORITHMS)}", "algorithms")
@@ -109,53 +126,53 @@ def read(sheet: Sheet) -> Task:
         cases = tuple(case.name for _, case in choice.resolve().courses())
     except UnknownTask as error:
         section.error(str(error), "task")
-        return Task()
-    return Task(content=Budget(choice, cases, algorithms, steps, seeds, secret, episodes))
+        return KindSettings()
+    return KindSettings(task=TrainingBudget(choice, cases, algorithms, steps, seeds, secret, episodes))
 
 
 def _seeds(section: Section) -> tuple[int, ...]:
-    numbers = section.numbers("seeds", at_least=1, at_most=MOST_SEEDS)
+    numbers = section.numbers("seeds", at_least=1, at_most=MAX_SEEDS)
     if any(number != int(number) or number < 0 for number in numbers):
         section.error(f"{quoted('seeds')} must be whole numbers from 0 on", "seeds")
     return tuple(int(abs(number)) for number in numbers)
 
 
-def look(assignment: Assignment, file: Path, conditions: Conditions) -> Look:
+def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Trains as the file says, once for each seed."""
-    budget: Budget = assignment.task
-    plan = from_yaml(file, lambda section: _plan(section, budget))
-    if isinstance(plan, Failure):
-        return Look(failure=plan)
+    budget: TrainingBudget = assignment.task
+    settings = read_submitted_yaml(file, lambda section: _settings(section, budget))
+    if isinstance(settings, Failure):
+        return EvidenceRecord(failure=settings)
     try:
-        seeds = budget.secret_seeds if conditions.secret and budget.secret_seeds else budget.seeds
-        found = train(plan, budget, seeds)
+        seeds = budget.secret_seeds if options.secret and budget.secret_seeds else budget.seeds
+        results = run_trainings(settings, budget, seeds)
     except LearnerMissing as error:
         return _failed(str(error))
-    return Look(
-        found,
+    return EvidenceRecord(
+        results,
         label="the trainings",
         outcome="trained",
-        steps=sum(training.steps for training in found.each),
-        remarks=lambda check, params: _remark(found, check),
-        pictures=lambda check: found.picture(),
+        steps=sum(training.steps for training in results.trainings),
+        explain_with=lambda check, params: _remark(results, check),
+        draw_with=lambda check: results.picture(),
     )
 
 
-def _failed(message: str) -> Look:
+def _failed(message: str) -> EvidenceRecord:
     failure = Failure(FailureKind.IMPORT, printable(message))
-    return Look(failure=failure, label="the trainings", outcome="not trained")
+    return EvidenceRecord(failure=failure, label="the trainings", outcome="not trained")
 
 
-def _remark(found: Trainings, check: str) -> str:
+def _remark(results: TrainingResults, check: str) -> str:
     """Which training or case it is about."""
     if check == "every_case":
-        count = found.pooled(found.worst_case)
-        return f"That is {found.worst_case}, reached {count.reached} times in {count.episodes}."
+        count = results.pooled(results.worst_case)
+        return f"That is {results.worst_case}, reached {count.reached} times in {count.episodes}."
     if check in ("succeeds", "reliable"):
-        shares = ", ".join(f"{training.accuracy:.2f}" for training in found.each)
+        shares = ", ".join(f"{training.accuracy:.2f}" for training in results.trainings)
         return f"The exams of the trainings: {shares}."
     if check == "honest":
-        worst = max(found.each, key=lambda training: training.claimed - training.accuracy)
+        worst = max(results.trainings, key=lambda training: training.claimed - training.accuracy)
         tested = sum(count.episodes for count in worst.tests[-1].counts.values()) if worst.tests else 0
         return (
             f"Training {worst.number} claimed {worst.claimed:.2f} by a test of {tested} episodes; the exam, of "
@@ -164,41 +181,41 @@ def _remark(found: Trainings, check: str) -> str:
     return ""
 
 
-def _plan(section: Section, budget: Budget) -> Plan:
+def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     known = budget.cases
     train_on = section.texts("train_on", known, at_least=1)
     for each in train_on:
         if each not in known:
             section.error(f"no case {quoted(each)}: {suggestion(each, known)}", "train_on")
     steps = section.integer("steps", budget.steps, minimum=1_000, maximum=budget.steps)
-    batch = section.integer("batch", minimum=max(500, steps // MOST_LOOKS))
-    edges = section.numbers("edges", (0.2,), at_least=1, at_most=MOST_EDGES)
+    batch = section.integer("batch", minimum=max(500, steps // MAX_TESTS))
+    edges = section.numbers("edges", (0.2,), at_least=1, at_most=MAX_EDGES)
     if list(edges) != sorted(set(edges)) or not all(0 < edge < 1 for edge in edges):
         section.error(f"{quoted('edges')} must rise, each between 0 and 1", "edges")
     algorithm = section.text("algorithm", budget.algorithms[0], choices=budget.algorithms)
-    made = Plan(
+    made = TrainingSettings(
         algorithm=algorithm,
-        learning_rate=_falling(section, "learning_rate", (0.2, 0.02)),
-        exploration=_falling(section, "exploration", (0.3, 0.02)),
+        learning_rate=_schedule(section, "learning_rate", (0.2, 0.02)),
+        exploration=_schedule(section, "exploration", (0.3, 0.02)),
         discount=section.number("discount", 0.99, minimum=0, maximum=1),
         edges=edges,
-        worlds=section.integer("worlds", 16, minimum=1, maximum=MOST_WORLDS),
+        worlds=section.integer("worlds", 16, minimum=1, maximum=MAX_WORLDS),
         train_on=tuple(dict.fromkeys(each for each in train_on if each in known)) or known,
-        order=section.choice("order", {each.value: each for each in Order}, Order.MIXED.value),
+        order=section.choice("order", {each.value: each for each in CaseOrder}, CaseOrder.MIXED.value),
         batch=batch,
-        test_episodes=section.integer("test_episodes", 20, minimum=2, maximum=MOST_TESTED),
-        stop=section.choice("stop", {each.value: each for each in Stop}, Stop.NEVER.value),
+        test_episodes=section.integer("test_episodes", 20, minimum=2, maximum=MAX_TEST_EPISODES),
+        stop=section.choice("stop", {each.value: each for each in StopRule}, StopRule.NEVER.value),
         goal=section.number("goal", 0.8, above=0, maximum=1),
         keeps_best=section.choice("keep", {"best": True, "newest": False}, "newest"),
         steps=steps,
     )
-    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].neural and made.order is Order.APART:
+    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].neural and made.order is CaseOrder.APART:
         section.error("one case after the other is for tables only", "order")
     section.finish()
     return made
 
 
-def _falling(section: Section, key: str, default: tuple[float, float]) -> Falling:
+def _schedule(section: Section, key: str, default: tuple[float, float]) -> Falling:
     """Two numbers between 0 and 1: at the beginning, at the end."""
     first, last = section.numbers(key, default, length=2)
     if not (0 <= first <= 1 and 0 <= last <= 1):
@@ -209,4 +226,4 @@ def _falling(section: Section, key: str, default: tuple[float, float]) -> Fallin
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, reliable, honest, steps_used)}
 )
-SORT: Final = Sort((".yaml", ".yml"), CHECKS, read, once(look))
+KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))

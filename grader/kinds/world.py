@@ -18,12 +18,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
-from grader.assignment import Assignment, Criterion, Seeds, Shift, Trial
-from grader.checks.faults import Run, Seen
-from grader.checks.worlds import CHECKS, RUNS, remark
-from grader.evidence.world.facts import Order, RunFacts, WorldFacts
+from grader.assignment import Assignment, Criterion, SeedSet, Shift, Trial
+from grader.checks.faults import WorldContents, WorldRun
+from grader.checks.worlds import CHECKS, RUNS, explain
+from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
-from grader.kinds.contract import Conditions, Look, Sheet, Sort, Task
+from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
 from kit.controllers import find
 from kit.host.failure import GuestError
 from kit.host.sandbox.confinement import Level
@@ -35,52 +35,52 @@ from kit.world.yaml_section import Section
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    from grader.grading import Gatherer
+    from grader.grading import EvidenceCollector
 
-LONGEST_RUN: Final = 120.0
+MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
-NOWHERE: Final = Place("what was handed in", "", World(Path("world.yaml")), None)
+UNKNOWN_SCENARIO: Final = Place("what was handed in", "", World(Path("world.yaml")), None)
 """Where a run takes place is known only when something was handed in."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plans:
+class WorldRunSpecs:
     """The kind's task: an order for each trial, which lacks only its seed."""
 
-    orders: dict[str, Order] = field(default_factory=dict)
+    specs: dict[str, WorldRunSpec] = field(default_factory=dict)
 
 
-def read(sheet: Sheet) -> Task:
+def read_settings(files: AssignmentFiles) -> KindSettings:
     """The runs."""
-    hidden = None if sheet.secret is None else sheet.secret.section("seeds", None)
-    trials, plans = [], Plans()
-    for each in sheet.public.sections("trials", ()):
-        order = _order(each, sheet.folder)
+    hidden = None if files.secret is None else files.secret.section("seeds", None)
+    trials, plans = [], WorldRunSpecs()
+    for each in files.public.sections("trials", ()):
+        spec = _read_spec(each, files.folder)
         seeds = _seeds(each, "seeds", (1,))
         each.finish()
-        if order.name in plans.orders:
-            each.error(f"a trial named {quoted(order.name)} already exists", "name")
-        secret = _seeds(hidden, order.name, ()) if hidden is not None and order.name else ()
-        plans.orders[order.name] = order
+        if spec.name in plans.specs:
+            each.error(f"a trial named {quoted(spec.name)} already exists", "name")
+        secret = _seeds(hidden, spec.name, ()) if hidden is not None and spec.name else ()
+        plans.specs[spec.name] = spec
         trials.append(
             Trial(
-                order.name,
-                NOWHERE,
-                order.time_s,
+                spec.name,
+                UNKNOWN_SCENARIO,
+                spec.time_s,
                 seeds,
                 secret,
                 Shift(),
                 None,
-                order.until_reached,
+                spec.until_reached,
                 frozenset(),
             )
         )
     if hidden is not None:
         hidden.finish()
-    return Task(trials=tuple(trials), content=plans)
+    return KindSettings(trials=tuple(trials), task=plans)
 
 
-def _order(section: Section, folder: Path) -> Order:
+def _read_spec(section: Section, folder: Path) -> WorldRunSpec:
     driver = section.text("driver", "")
     file = ""
     if driver:
@@ -90,10 +90,10 @@ def _order(section: Section, folder: Path) -> Order:
         except LookupError as error:
             section.error(str(error), "driver")
     target = section.point("target") if section.has("target") else None
-    return Order(
+    return WorldRunSpec(
         name=section.name("name"),
         seed=0,
-        time_s=section.number("time", 10.0, above=0, maximum=LONGEST_RUN),
+        time_s=section.number("time", 10.0, above=0, maximum=MAX_RUN_S),
         driver=file,
         robot=section.text("robot", ""),
         target=target,
@@ -110,17 +110,17 @@ def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, .
     return tuple(map(int, numbers))
 
 
-class WorldLooks:
+class WorldCollector:
     """One world: looked at when it is first asked for, run when a criterion first needs that run."""
 
-    def __init__(self, assignment: Assignment, file: Path, conditions: Conditions) -> None:
-        self.level = Level(conditions.level)
+    def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
+        self.level = Level(options.level)
         self._assignment = assignment
         self._file = file
-        self._secret = conditions.secret
+        self._secret = options.secret
         self._process: WorldProcess | None = None
-        self._looks: dict[tuple[str, bool, int], Look] = {}
-        self._read: Look | None = None
+        self._records: dict[tuple[str, bool, int], EvidenceRecord] = {}
+        self._read: EvidenceRecord | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -131,54 +131,54 @@ class WorldLooks:
         if self._process is not None:
             self._process.close()
 
-    def evidence(self, criterion: Criterion) -> Sequence[Look]:
-        first = self._first()
-        seen: Seen | None = first.found
-        if criterion.check not in RUNS or seen is None or seen.world.problems:
+    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        first = self._read_contents()
+        contents: WorldContents | None = first.found
+        if criterion.check not in RUNS or contents is None or contents.world.problems:
             return [first]
         return [
-            self._run(self._assignment.trial(name), seed, secret, place)
+            self._run(self._assignment.trial(name), seed, secret, number)
             for name in criterion.trials
-            for seed, secret, place in self._seeds(self._assignment.trial(name), criterion.seeds)
+            for seed, secret, number in self._seeds(self._assignment.trial(name), criterion.seeds)
         ]
 
-    def all(self) -> Sequence[Look]:
-        return [*([] if self._read is None else [self._read]), *self._looks.values()]
+    def all(self) -> Sequence[EvidenceRecord]:
+        return [*([] if self._read is None else [self._read]), *self._records.values()]
 
-    def _seeds(self, trial: Trial, which: Seeds) -> Iterator[tuple[int, bool, int]]:
+    def _seeds(self, trial: Trial, which: SeedSet) -> Iterator[tuple[int, bool, int]]:
         """The seed, whether it is secret, and its place among its kind from 1."""
-        if which is not Seeds.SECRET:
-            yield from ((seed, False, place) for place, seed in enumerate(trial.seeds, 1))
-        if which is not Seeds.PUBLIC and self._secret:
-            yield from ((seed, True, place) for place, seed in enumerate(trial.secret_seeds, 1))
+        if which is not SeedSet.SECRET:
+            yield from ((seed, False, number) for number, seed in enumerate(trial.seeds, 1))
+        if which is not SeedSet.PUBLIC and self._secret:
+            yield from ((seed, True, number) for number, seed in enumerate(trial.secret_seeds, 1))
 
-    def _first(self) -> Look:
+    def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
             try:
-                self._read = _look(Seen(self._asked().world()), "what you handed in")
+                self._read = _record(WorldContents(self._running_process().world()), "what you handed in")
             except GuestError as error:
-                self._read = Look(failure=error.failure)
+                self._read = EvidenceRecord(failure=error.failure)
         return self._read
 
-    def _run(self, trial: Trial, seed: int, secret: bool, place: int) -> Look:
+    def _run(self, trial: Trial, seed: int, secret: bool, number: int) -> EvidenceRecord:
         key = trial.name, secret, seed
-        if key not in self._looks:
-            label = f"{trial.name}, secret seed {place}" if secret else f"{trial.name}, seed {seed}"
-            order = self._assignment.task.orders[trial.name]
-            order = replace(order, seed=seed)
+        if key not in self._records:
+            label = f"{trial.name}, secret seed {number}" if secret else f"{trial.name}, seed {seed}"
+            spec = self._assignment.task.specs[trial.name]
+            spec = replace(spec, seed=seed)
             try:
-                first = self._first().found
-                facts = self._asked().run(order, self._assignment.limits.total_s or 120.0)
-                look = _look(Run(first.world, facts, order.target is not None), label)
-                look.steps = round(facts.seconds / 0.01)
+                contents = self._read_contents().found
+                facts = self._running_process().run(spec, self._assignment.limits.total_s or 120.0)
+                record = _record(WorldRun(contents.world, facts, spec.target is not None), label)
+                record.steps = round(facts.seconds / 0.01)
             except GuestError as error:
                 self._process = None  # it has ended
-                look = Look(failure=error.failure, label=label)
-            look.secret = secret
-            self._looks[key] = look
-        return self._looks[key]
+                record = EvidenceRecord(failure=error.failure, label=label)
+            record.secret = secret
+            self._records[key] = record
+        return self._records[key]
 
-    def _asked(self) -> WorldProcess:
+    def _running_process(self) -> WorldProcess:
         """The process; a new one where the last was ended, with its world read."""
         if self._process is None:
             self._process = WorldProcess(self._file)
@@ -187,20 +187,22 @@ class WorldLooks:
         return self._process
 
 
-def _look(found: Seen | Run, label: str) -> Look:
-    facts: WorldFacts | RunFacts = found.run if isinstance(found, Run) else found.world
-    return Look(
+def _record(found: WorldContents | WorldRun, label: str) -> EvidenceRecord:
+    facts: WorldFacts | RunFacts = found.run if isinstance(found, WorldRun) else found.world
+    return EvidenceRecord(
         found,
         label=label,
         outcome=found.outcome,
-        remarks=partial(remark, found),
-        pictures=lambda check: facts.picture,
+        explain_with=partial(explain, found),
+        draw_with=lambda check: facts.picture,
     )
 
 
-def gather(assignment: Assignment, file: Path, conditions: Conditions) -> AbstractContextManager[Gatherer]:
+def collect(
+    assignment: Assignment, file: Path, options: EvidenceOptions
+) -> AbstractContextManager[EvidenceCollector]:
     """Looks at the world, once for all criteria."""
-    return WorldLooks(assignment, file, conditions)
+    return WorldCollector(assignment, file, options)
 
 
-SORT: Final = Sort((".yaml", ".yml"), CHECKS, read, gather)
+KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -34,7 +34,7 @@ FORMATS: Final[Mapping[str, Format]] = MappingProxyType(
 )
 
 
-def writer(name: str) -> Callable[[GradingResult], str]:
+def find_writer(name: str) -> Callable[[GradingResult], str]:
     """The writer of a format. KeyError if there is none."""
     write: Callable[[GradingResult], str] = import_module(f"grader.reports.{FORMATS[name].module}").write
     return write

@@ -10,7 +10,7 @@ from typing import Any, Final
 from grader.reports.cleaning import one_line, plain
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 
-SHOWN: Final[Mapping[Visibility, str]] = MappingProxyType(
+VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
     {
         Visibility.VISIBLE: "visible",
         Visibility.AFTER_DUE: "after_due_date",
@@ -65,5 +65,5 @@ def _test(number: int, test: CriterionResult) -> dict[str, Any]:
         "output_format": "text",
         "name_format": "text",
         "tags": [test.status.value],
-        "visibility": SHOWN[test.visibility],
+        "visibility": VISIBILITY_NAMES[test.visibility],
     }

@@ -23,14 +23,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from grader.cohort.gradebook import Row, rows
+from grader.cohort.gradebook import GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue
+from tests.grader.attacks import ASSIGNMENT_FILE as ATTACKED
 from tests.grader.attacks import ATTACKS, TOKEN, program
-from tests.grader.attacks import SHEET as ATTACKED
 
 ROOT = Path(__file__).parents[2]
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Round the corner
 submit: controller.py
 level: 1
@@ -71,10 +71,10 @@ def hostile(secret: Path) -> Iterator[str]:
 def write_class(folder: Path, secret: Path, count: int) -> dict[str, str]:
     """The submissions; which kind each of them is."""
     chance = random.Random(2026)
-    kinds = chance.choices(list(SHARES), list(SHARES.values()), k=count)
+    kind_names = chance.choices(list(SHARES), list(SHARES.values()), k=count)
     attacks = hostile(secret)
     made = {}
-    for number, kind in enumerate(kinds):
+    for number, kind in enumerate(kind_names):
         name = f"{number:05}"
         source = next(attacks) if kind == "hostile" else PROGRAMS[kind]
         (folder / f"{name}.py").write_text(f"# {number}\n{source}")
@@ -82,10 +82,10 @@ def write_class(folder: Path, secret: Path, count: int) -> dict[str, str]:
     return made
 
 
-def wrong_grades(queue: Queue, table: Sequence[Row], kinds: dict[str, str]) -> Iterator[str]:
+def wrong_grades(queue: Queue, table: Sequence[GradebookRow], kind_names: dict[str, str]) -> Iterator[str]:
     """A line for every grade that is not what it should be, and for every secret that got out."""
     for row in table:
-        kind = kinds[row.name]
+        kind = kind_names[row.name]
         status = row.statuses.get("runs", "none")
         if row.points not in POINTS[kind] or status not in STATUS.get(kind, {status}):
             yield f"{row.name} ({kind}): {row.points} points, runs: {status}. {row.note}"
@@ -180,11 +180,11 @@ def main() -> None:
         folder = Path(name)
         for part in ("in", "assignment"):
             (folder / part).mkdir()
-        (folder / "assignment" / "assignment.yaml").write_text(SHEET)
+        (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_FILE)
         secret = folder / "assignment" / "secret.yaml"
         secret.write_text(f"seeds: {{there: [{TOKEN}]}}\n")
-        kinds = write_class(folder / "in", secret, count)
-        mix = ", ".join(f"{number} {kind}" for kind, number in Counter(kinds.values()).items())
+        kind_names = write_class(folder / "in", secret, count)
+        mix = ", ".join(f"{number} {kind}" for kind, number in Counter(kind_names.values()).items())
         print(f"submissions: {count} ({mix}), {jobs} jobs")
         figure("load of the machine before", os.getloadavg()[0])
         with Memory() as memory:
@@ -196,9 +196,9 @@ def main() -> None:
         figure("largest process [MiB]", usage.ru_maxrss / 1024)
         figure("all processes together, at most [MiB]", memory.peak / 2**20)
         queue = Queue(folder / "queue")
-        table = rows(queue)
+        table = gradebook_rows(queue)
         print(f"points: {dict(sorted(Counter(row.points for row in table).items(), key=str))}")
-        wrong = list(wrong_grades(queue, table, kinds))
+        wrong = list(wrong_grades(queue, table, kind_names))
         print("\n".join(wrong) or f"all {len(table)} grades are as they should be")
         figure("again, from the cache [s]", grade_all(folder, jobs))
     figure("at a desk, three episodes [s]", min(check_one(ROOT) for _ in range(3)), 2)

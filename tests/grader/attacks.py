@@ -20,17 +20,17 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from grader.archives import Refused
+from grader.archives import SubmissionRefused
 from grader.reading import read
-from grader.session import Terms, grade
-from grader.submission import take
+from grader.session import GradingOptions, grade
+from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"
 """A secret: in the assignment, in the grader's environment, in its memory."""
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Nothing here is easy
 submit: controller.py
 budget: {start: 30, reply: 8, total: 20, cpu: 10, memory: 512}
@@ -41,7 +41,9 @@ checks:
   - {check: obeys, points: 1, after: runs}
 """
 
-HASTY = SHEET.replace("start: 30, reply: 8, total: 20, cpu: 10", "start: 2, reply: 0.5, total: 1, cpu: 2")
+HASTY = ASSIGNMENT_FILE.replace(
+    "start: 30, reply: 8, total: 20, cpu: 10", "start: 2, reply: 0.5, total: 1, cpu: 2"
+)
 """For those that never come back: no need to wait for them."""
 
 REWARD_SHEET = """
@@ -130,7 +132,7 @@ class Attack:
     """Handed in beside it."""
     pack: Callable[[Path], None] | None = None
     """Makes what is handed in by itself."""
-    sheet: str = SHEET
+    sheet: str = ASSIGNMENT_FILE
     caught: str = "Exception"
 
 
@@ -296,8 +298,10 @@ def attempt(attack: Attack, level: Level, folder: Path) -> Outcome:
             (handed / name).write_bytes(content)
     assignment = read(assignment_folder)
     try:
-        result = grade(assignment, take(handed, assignment.submit), Terms(level, may_fall=False))
-    except Refused as refused:
+        result = grade(
+            assignment, read_submission(handed, assignment.submit), GradingOptions(level, may_fall=False)
+        )
+    except SubmissionRefused as refused:
         return Outcome(None, str(refused), "")
     printed = "\n".join(f"{test.log}\n{test.rationale}" for test in result.tests)
     got = next((line for line in printed.splitlines() if line.startswith("GOT") or TOKEN in line), "")

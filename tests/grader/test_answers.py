@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Words
 kind: answers
 submit: answers.yaml
@@ -32,14 +32,14 @@ answers:
   rate: {right: [10], within: 0.5}
   nodes: {right: [/one, /two]}
 """
-DESK = Terms(Level.LIMITED, secret=True)
+DESK = GradingOptions(Level.LIMITED, secret=True)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "words"
     made.mkdir()
-    (made / "assignment.yaml").write_text(SHEET)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     (made / "secret.yaml").write_text(KEYS)
     return made
 
@@ -91,7 +91,7 @@ def test_a_file_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
 
 
 def test_without_the_secret_nothing_is_judged(folder: Path) -> None:
-    result = grade(read(folder), handed_in("topic: cmd_vel\n"), Terms(Level.LIMITED))
+    result = grade(read(folder), handed_in("topic: cmd_vel\n"), GradingOptions(Level.LIMITED))
     assert {test.status for test in result.tests} == {CriterionStatus.SKIPPED}
     assert result.verdict is GradingVerdict.FAIL
 

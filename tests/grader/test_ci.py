@@ -18,11 +18,11 @@ import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.ci import WORKFLOWS, Source, workflow
+from grader.ci import WORKFLOWS, GitSource, workflow
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 ROOT = Path(__file__).parents[2]
-KIT = Source("https://example.org/somebody/kit", "v1")
+KIT = GitSource("https://example.org/somebody/kit", "v1")
 
 
 def made(service: str) -> tuple[str, Any]:
@@ -126,4 +126,4 @@ def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 )
 def test_an_address_that_a_shell_would_read_is_refused(address: str) -> None:
     with pytest.raises(ValueError, match="https://HOST/PATH"):
-        Source.read(address)
+        GitSource.read(address)

@@ -22,22 +22,29 @@ from click.testing import CliRunner
 from grader import version
 from grader.__main__ import main
 from grader.cohort import gradebook
-from grader.cohort.choice import RULES, chosen
-from grader.cohort.executors import CannotRun, by_dask, by_slurm, locally, slurm_script, work_key
-from grader.cohort.gradebook import Row, as_csv, as_json, changes, rows
-from grader.cohort.late import Arrival, LatePolicy, moment, read_arrivals, read_policy
-from grader.cohort.queue import Queue, QueueError, key_of, prepare
-from grader.cohort.work import Pool, work
+from grader.cohort.choice import RULES, choose_submissions
+from grader.cohort.executors import (
+    ExecutorUnavailable,
+    grade_job_by_key,
+    run_locally,
+    run_on_dask,
+    run_on_slurm,
+    slurm_script,
+)
+from grader.cohort.gradebook import GradebookRow, as_csv, as_json, changes, gradebook_rows
+from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_policy, read_submission_times
+from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
+from grader.cohort.work import WorkerPool, grade_job
 from grader.reading import read
-from grader.session import Terms
-from grader.submission import take
+from grader.session import GradingOptions
+from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe
 from kit.school.result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
-TERMS = Terms(Level.LIMITED, may_fall=False)
+TERMS = GradingOptions(Level.LIMITED, may_fall=False)
 DUE = datetime(2026, 11, 30, 12, tzinfo=UTC)
 
 
@@ -57,7 +64,7 @@ def submissions(folder: Path, count: int = 3) -> Path:
 def queue(tmp_path: Path) -> Queue:
     assignment = read(write_assignment(tmp_path / "quick"))
     made = Queue(tmp_path / "queue")
-    prepare(made, submissions(tmp_path / "in"), assignment, TERMS)
+    prepare_queue(made, submissions(tmp_path / "in"), assignment, TERMS)
     return made
 
 
@@ -65,8 +72,8 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
     waiting = queue.waiting()
     assert len(waiting) == 4  # six entries, two of them equal, one refused
     for key in waiting:
-        work(queue, key)
-    table = rows(queue)
+        grade_job(queue, key)
+    table = gradebook_rows(queue)
     assert [row.name for row in table] == ["broken", "copy", "link", "s0", "s1", "s2"]
     assert [row.verdict for row in table] == ["fail", "fail", "refused", "fail", "fail", "fail"]
     points = {row.name: row.points for row in table}
@@ -78,15 +85,15 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
 
 def test_processes_and_one_process_give_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
     done: list[str] = []
-    locally(queue, queue.waiting(), 2, done.append)
+    run_locally(queue, queue.waiting(), 2, done.append)
     assert len(done) == 4
-    together = as_json(rows(queue))
+    together = as_json(gradebook_rows(queue))
     other = Queue(tmp_path / "other")
-    prepare(other, tmp_path / "in", queue.assignment(), TERMS)
+    prepare_queue(other, tmp_path / "in", queue.assignment(), TERMS)
     for number in range(3):
         for key in other.waiting((number, 3)):
-            work_key(str(other.folder), key)
-    assert as_json(rows(other)) == together
+            grade_job_by_key(str(other.folder), key)
+    assert as_json(gradebook_rows(other)) == together
 
 
 def test_shards_share_the_work(queue: Queue) -> None:
@@ -97,7 +104,7 @@ def test_shards_share_the_work(queue: Queue) -> None:
 
 def test_a_damaged_result_is_made_again(queue: Queue) -> None:
     key = queue.waiting()[0]
-    work(queue, key)
+    grade_job(queue, key)
     assert key not in queue.waiting()
     for damaged in (b"", b"{", b"[]", b'{"schema": 99}'):
         queue.result_file(key).write_bytes(damaged)
@@ -107,34 +114,34 @@ def test_a_damaged_result_is_made_again(queue: Queue) -> None:
 def test_a_worker_that_dies_is_nobodys_fault(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
     key = queue.waiting()[0]
 
-    def dead(self: Pool) -> subprocess.Popen[str]:
+    def dead(self: WorkerPool) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
 
-    monkeypatch.setattr(Pool, "_start", dead)
-    locally(queue, [key], 1, lambda key: None)
+    monkeypatch.setattr(WorkerPool, "_start", dead)
+    run_locally(queue, [key], 1, lambda key: None)
     result = queue.result(key)
     assert result is not None
     assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
-    assert [row.final for row in rows(queue) if row.verdict == "broken"] in ([None], [None, None])
+    assert [row.final for row in gradebook_rows(queue) if row.verdict == "broken"] in ([None], [None, None])
 
 
 def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> None:
     assignment = queue.assignment()
-    submission = take(tmp_path / "in" / "s0.py", assignment.submit)
-    key = key_of(submission, assignment, TERMS)
-    assert key_of(take(tmp_path / "in" / "copy.py", assignment.submit), assignment, TERMS) == key
-    assert key_of(submission, assignment, Terms(Level.FILTERED)) != key
-    assert key_of(submission, assignment, Terms(Level.LIMITED, secret=True)) != key
+    submission = read_submission(tmp_path / "in" / "s0.py", assignment.submit)
+    key = job_key(submission, assignment, TERMS)
+    assert job_key(read_submission(tmp_path / "in" / "copy.py", assignment.submit), assignment, TERMS) == key
+    assert job_key(submission, assignment, GradingOptions(Level.FILTERED)) != key
+    assert job_key(submission, assignment, GradingOptions(Level.LIMITED, secret=True)) != key
     changed = read(write_assignment(tmp_path / "quick2", QUICK.replace("points: 3", "points: 4")))
-    assert key_of(submission, changed, TERMS) != key
+    assert job_key(submission, changed, TERMS) != key
 
 
 def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
-        work(queue, key)
+        grade_job(queue, key)
     assert version.grader_version() == version.grader_version.__wrapped__()
     seen = list(version._sources())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
@@ -144,27 +151,27 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     other = version.grader_version.__wrapped__()
     assert other != version.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
-    prepare(queue, tmp_path / "in", queue.assignment(), TERMS)
+    prepare_queue(queue, tmp_path / "in", queue.assignment(), TERMS)
     assert len(queue.waiting()) == 4
 
 
 def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
-        work(queue, key)
-    before = rows(queue)
+        grade_job(queue, key)
+    before = gradebook_rows(queue)
     changed = read(write_assignment(tmp_path / "quick", QUICK.replace("full: 0.5", "full: 5")))
-    prepare(queue, tmp_path / "in", changed, TERMS)
+    prepare_queue(queue, tmp_path / "in", changed, TERMS)
     assert len(queue.waiting()) == 4
     for key in queue.waiting():
-        work(queue, key)
-    told = list(changes(before, rows(queue)))
+        grade_job(queue, key)
+    told = list(changes(before, gradebook_rows(queue)))
     assert any(line.startswith("s2: 3 -> ") and "moves pass -> partial" in line for line in told)
     assert not any(line.startswith(("broken", "link")) for line in told)
     assert list(changes(before, gradebook.read_json(as_json(before)))) == []
 
 
 def test_a_spreadsheet_gets_no_formula() -> None:
-    row = Row("=cmd()", "fail", 1.0, 2.0, 1.0, 1.0, {"a": 1.0}, {"a": "pass"}, "@x\n+1", "")
+    row = GradebookRow("=cmd()", "fail", 1.0, 2.0, 1.0, 1.0, {"a": 1.0}, {"a": "pass"}, "@x\n+1", "")
     lines = as_csv([row]).splitlines()
     assert lines[1].startswith("'=cmd()")
     assert "'@x +1" in lines[1]
@@ -181,12 +188,15 @@ def test_lateness(late: float, kept: float) -> None:
 
 def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
-        work(queue, key)
+        grade_job(queue, key)
     policy_file, times_file = tmp_path / "late.yaml", tmp_path / "times.csv"
     policy_file.write_text("due: 2026-11-30T12:00:00\nper_day: 0.5\n")
     times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00\ns1,2026-11-30T11:00:00\n")
     results = {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
-    table = {row.name: row for row in rows(queue, read_policy(policy_file), read_arrivals(times_file))}
+    table = {
+        row.name: row
+        for row in gradebook_rows(queue, read_policy(policy_file), read_submission_times(times_file))
+    }
     assert (table["s2"].kept, table["s1"].kept) == (0.5, 1.0)
     assert table["s2"].final == table["s2"].points / 2  # type: ignore[operator]  # it has a grade
     assert results == {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
@@ -195,12 +205,12 @@ def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: P
         read_policy(policy_file)
     times_file.write_text("name,submitted\ns2,never\n")
     with pytest.raises(ValueError, match=r"times\.csv:2"):
-        read_arrivals(times_file)
-    assert moment("2026-11-30T12:00:00+01:00") == datetime(2026, 11, 30, 11, tzinfo=UTC)
+        read_submission_times(times_file)
+    assert parse_time("2026-11-30T12:00:00+01:00") == datetime(2026, 11, 30, 11, tzinfo=UTC)
 
 
-def handed(name: str, final: float | None, kept: float = 1.0, note: str = "") -> Row:
-    return Row(name, "fail", final, 10.0, kept, final, {}, {}, note, "")
+def handed(name: str, final: float | None, kept: float = 1.0, note: str = "") -> GradebookRow:
+    return GradebookRow(name, "fail", final, 10.0, kept, final, {}, {}, note, "")
 
 
 @pytest.mark.parametrize(("rule", "counts"), [("latest", "ada-3"), ("in-time", "ada-2"), ("best", "ada-1")])
@@ -210,23 +220,23 @@ def test_one_of_several_submissions_counts(rule: str, counts: str) -> None:
         handed("eve-1", 2.0, note="bumps"),
     ]
     arrivals = {
-        row.name: Arrival(DUE + timedelta(hours=hour), row.name.partition("-")[0])
+        row.name: SubmissionTime(DUE + timedelta(hours=hour), row.name.partition("-")[0])
         for hour, row in enumerate(table)
         if row.name != "bob"
     }
-    ada, bob, eve = chosen(table, arrivals, rule)
+    ada, bob, eve = choose_submissions(table, arrivals, rule)
     assert (ada.name, ada.note) == ("ada", f"{counts}, {RULES[rule][0]} of 3")
     assert ada.final == {row.name: row.final for row in table}[counts]
     assert (bob.name, bob.final, eve.name, eve.note) == ("bob", 1.0, "eve", "bumps")
-    assert chosen(table[::-1], arrivals, rule) == (ada, bob, eve)
+    assert choose_submissions(table[::-1], arrivals, rule) == (ada, bob, eve)
     with pytest.raises(ValueError, match="zoe"):
-        chosen(table, arrivals | {"zoe": arrivals["eve-1"]}, rule)
+        choose_submissions(table, arrivals | {"zoe": arrivals["eve-1"]}, rule)
 
 
 def test_a_submission_without_a_grade_is_not_passed_over() -> None:
     table = [handed("ada-1", 9.0), handed("ada-2", None)]
-    arrivals = {row.name: Arrival(DUE, "ada") for row in table}
-    assert chosen(table, arrivals, "best")[0].final is None
+    arrivals = {row.name: SubmissionTime(DUE, "ada") for row in table}
+    assert choose_submissions(table, arrivals, "best")[0].final is None
 
 
 def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_path: Path) -> None:
@@ -258,18 +268,18 @@ def test_an_array_job_works_off_its_shares(
     sbatch.chmod(0o755)
     monkeypatch.setenv("PATH", f"{bin_folder}:{os.environ['PATH']}")
     assert "#SBATCH --array=0-1" in slurm_script(queue, 2)
-    by_slurm(queue, 2)
+    run_on_slurm(queue, 2)
     assert queue.waiting() == ()
     assert (queue.folder / "slurm.sh").is_file()
 
 
 def test_what_a_machine_lacks_is_said(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    with pytest.raises(CannotRun, match="sbatch"):
-        by_slurm(queue, 2)
+    with pytest.raises(ExecutorUnavailable, match="sbatch"):
+        run_on_slurm(queue, 2)
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(CannotRun, match=r"'\.\[cluster\]'"):
-        by_dask(queue, queue.waiting(), "tcp://nowhere:1", lambda key: None)
+    with pytest.raises(ExecutorUnavailable, match=r"'\.\[cluster\]'"):
+        run_on_dask(queue, queue.waiting(), "tcp://nowhere:1", lambda key: None)
     with pytest.raises(QueueError, match="grader cohort"):
         Queue(queue.folder / "none").entries()
 
@@ -318,13 +328,13 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     keys = queue.waiting()
     monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[1]))  # type: ignore[arg-type]  # a stand-in
     done: list[str] = []
-    by_dask(queue, keys, "tcp://cluster:1", done.append)
+    run_on_dask(queue, keys, "tcp://cluster:1", done.append)
     assert sorted(done) == sorted(keys)
     assert queue.waiting() == ()
     verdicts = [result.verdict for key in keys if (result := queue.result(key)) is not None]
     assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
-    with pytest.raises(CannotRun, match="--cluster"):
-        by_dask(queue, keys, "", done.append)
+    with pytest.raises(ExecutorUnavailable, match="--cluster"):
+        run_on_dask(queue, keys, "", done.append)
 
 
 @pytest.mark.skipif(find_spec("distributed") is None, reason="the extra `cluster` is not installed")
@@ -333,14 +343,14 @@ def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> No
     from distributed import LocalCluster
 
     other = Queue(tmp_path / "other")
-    prepare(other, tmp_path / "in", queue.assignment(), TERMS)
-    locally(other, other.waiting(), 1, lambda key: None)
+    prepare_queue(other, tmp_path / "in", queue.assignment(), TERMS)
+    run_locally(other, other.waiting(), 1, lambda key: None)
     done: list[str] = []
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
     with LocalCluster(**options, local_directory=str(tmp_path)) as cluster:
-        by_dask(queue, queue.waiting(), cluster.scheduler_address, done.append)
+        run_on_dask(queue, queue.waiting(), cluster.scheduler_address, done.append)
     assert len(done) == 4
-    assert as_json(rows(queue)) == as_json(rows(other))
+    assert as_json(gradebook_rows(queue)) == as_json(gradebook_rows(other))
 
 
 @LOCKS
@@ -352,10 +362,10 @@ def test_levels_do_not_change_points(tmp_path: Path) -> None:
     assert len(levels) >= 2
     for level in levels:
         made = Queue(tmp_path / f"queue{int(level)}")
-        prepare(made, folder, assignment, Terms(level, may_fall=False))
+        prepare_queue(made, folder, assignment, GradingOptions(level, may_fall=False))
         for key in made.waiting():
-            work(made, key)
-        tables.append([(row.name, row.points, dict(row.tests)) for row in rows(made)])
+            grade_job(made, key)
+        tables.append([(row.name, row.points, dict(row.tests)) for row in gradebook_rows(made)])
     assert all(table == tables[0] for table in tables)
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.evidence.environment import sectors
+from grader.evidence.environment import sector_minima
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.observations import NINE
@@ -19,7 +19,7 @@ from tests.grader.conftest import LOCKS
 
 LESSON = Path(__file__).parents[2] / "lessons" / "10-words-of-learning" / "hallway"
 GOOD = Path(__file__).parents[1] / "solutions" / "10-words-of-learning" / "hallway" / "solution.py"
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Short
 kind: environment
 submit: hallway_env.py
@@ -44,18 +44,18 @@ budget: {start: 15, reply: 2.0}
 """
 """Sixty steps do not lead to the target."""
 SHORT = ("MAX_STEPS = 200", "MAX_STEPS = 60")
-DESK = Terms(Level.LIMITED)
+DESK = GradingOptions(Level.LIMITED)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "short"
     made.mkdir()
-    (made / "assignment.yaml").write_text(SHEET)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     return made
 
 
-def graded(folder: Path, *changes: tuple[str, str], terms: Terms = DESK) -> GradingResult:
+def graded(folder: Path, *changes: tuple[str, str], terms: GradingOptions = DESK) -> GradingResult:
     source = GOOD.read_text()
     for old, new in (SHORT, *changes):
         assert old in source
@@ -71,12 +71,12 @@ def lost(result: GradingResult) -> set[str]:
 
 @LOCKS
 def test_a_good_one_earns_everything_locked_in(folder: Path) -> None:
-    assert lost(graded(folder, terms=Terms(Level.FILTERED))) == set()
+    assert lost(graded(folder, grading_options=GradingOptions(Level.FILTERED))) == set()
 
 
 def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
     (folder / "secret.yaml").write_text("seed: 99\n")
-    assert lost(graded(folder, terms=Terms(Level.LIMITED, secret=True))) == set()
+    assert lost(graded(folder, grading_options=GradingOptions(Level.LIMITED, secret=True))) == set()
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> 
     ],
 )
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
-    (folder / "assignment.yaml").write_text(SHEET.replace(old, new))
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
     with pytest.raises(WorldError, match=message):
         read(folder)
 
@@ -160,5 +160,5 @@ def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, 
 def test_the_sectors_are_those_that_agents_of_the_kit_see() -> None:
     ranges = [1.0 + 0.001 * ray for ray in range(91)]
     wanted = [min(ranges[ray] for ray in range(91) if NINE.sectors[ray] == k) for k in range(9)]
-    assert sectors(ranges, 9, 2.0) == wanted
-    assert sectors([math.nan] * 91, 9, 2.0) == [2.0] * 9
+    assert sector_minima(ranges, 9, 2.0) == wanted
+    assert sector_minima([math.nan] * 91, 9, 2.0) == [2.0] * 9

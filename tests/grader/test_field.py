@@ -8,12 +8,12 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Charges
 kind: field
 submit: charges.yaml
@@ -37,7 +37,7 @@ def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     folder = tmp_path_factory.mktemp("charges")
     # By hand at (0, 0): the end pushes up by 1 / 0.22^2, the two side walls cancel, the target pulls.
     pull = 15 / (2 * 1.6**2) / 2**0.5
-    sheet = SHEET.replace("FX", f"{pull}").replace("FY", f"{pull + 1 / 0.22**2}")
+    sheet = ASSIGNMENT_FILE.replace("FX", f"{pull}").replace("FY", f"{pull + 1 / 0.22**2}")
     (folder / "assignment.yaml").write_text(sheet)
     return read(folder)
 
@@ -46,7 +46,7 @@ def handed_in(assignment: Assignment, text: str) -> GradingResult:
     return grade(
         assignment,
         Submission("ada", "charges.yaml", {"charges.yaml": text.encode()}),
-        Terms(Level.LIMITED, secret=True),
+        GradingOptions(Level.LIMITED, secret=True),
     )
 
 

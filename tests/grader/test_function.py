@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from grader.kinds.function import alike, shown
+from grader.kinds.function import format_value, is_close
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Two functions
 kind: function
 submit: scans.py
@@ -50,33 +50,33 @@ def halves_cases(chance):
 """
 NEAREST = "import math\ndef nearest(ranges):\n    return min((r for r in ranges if not math.isnan(r)), default=2.0)\n"
 HALVES = "def halves(ranges, side):\n    return side, ranges[:2] if side == 'right' else ranges[2:]\n"
-DESK = Terms(Level.LIMITED)
-GRADE = Terms(Level.LIMITED, secret=True)
+DESK = GradingOptions(Level.LIMITED)
+GRADE = GradingOptions(Level.LIMITED, secret=True)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "scans"
     made.mkdir()
-    (made / "assignment.yaml").write_text(SHEET)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     (made / "reference.py").write_text(REFERENCE)
     (made / "secret.yaml").write_text("seed: 77\n")
     return made
 
 
-def graded(folder: Path, source: str, terms: Terms = DESK) -> GradingResult:
+def graded(folder: Path, source: str, terms: GradingOptions = DESK) -> GradingResult:
     return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), terms)
 
 
 @pytest.mark.parametrize("terms", [DESK, GRADE], ids=["practice", "grade"])
-def test_a_good_one_earns_everything(folder: Path, terms: Terms) -> None:
+def test_a_good_one_earns_everything(folder: Path, terms: GradingOptions) -> None:
     result = graded(folder, NEAREST + HALVES, terms)
     assert (result.points, result.verdict) == (3.0, GradingVerdict.PASS)
 
 
 @LOCKS
 def test_it_runs_locked_in(folder: Path) -> None:
-    assert graded(folder, NEAREST + HALVES, Terms(Level.FILTERED, secret=True)).points == 3.0
+    assert graded(folder, NEAREST + HALVES, GradingOptions(Level.FILTERED, secret=True)).points == 3.0
 
 
 def test_numpy_is_taken_for_what_it_is(folder: Path) -> None:
@@ -94,7 +94,9 @@ def test_the_first_difference_is_told(folder: Path) -> None:
 
 
 def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
-    (folder / "assignment.yaml").write_text(SHEET.replace("share: {none: 0.9, full: 1}", "seeds: secret"))
+    (folder / "assignment.yaml").write_text(
+        ASSIGNMENT_FILE.replace("share: {none: 0.9, full: 1}", "seeds: secret")
+    )
     source = NEAREST + "def halves(ranges, side):\n    return [side, [0.0, 0.0]]\n"
     test = graded(folder, source, GRADE).tests[1]
     assert test.status is CriterionStatus.FAIL
@@ -178,8 +180,8 @@ def test_a_teachers_mistake_is_told_when_read(
     ],
 )
 def test_what_is_the_same(expected: object, actual: object, same: bool) -> None:
-    assert alike(expected, actual, 0.001) is same
+    assert is_close(expected, actual, 0.001) is same
 
 
 def test_long_lists_are_shortened() -> None:
-    assert shown([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
+    assert format_value([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"

@@ -16,10 +16,10 @@ from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.checks import contract, drives
 from grader.kinds import controller
-from grader.kinds.contract import kinds, sort_of
+from grader.kinds.contract import find_kind, kind_names
 from grader.reading import read
-from grader.self_test import odds, prove
-from grader.session import LevelTooLow, Terms, grade, opened
+from grader.self_test import try_works, unfair_fail_odds
+from grader.session import GradingOptions, LevelTooLow, grade, open_grading
 from grader.submission import Submission
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
@@ -27,7 +27,7 @@ from kit.run.recording import load
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
-DESK = Terms(Level.LIMITED)
+DESK = GradingOptions(Level.LIMITED)
 
 
 def handed_in(source: str) -> Submission:
@@ -99,13 +99,13 @@ SECRET = QUICK.replace("level: 0", "level: 1")
 def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     text = SECRET.replace("check: reached, points: 3", "check: reached, seeds: secret, points: 3")
     assignment = read(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [123456789]}"))
-    practice = grade(assignment, handed_in(FORWARD), Terms(Level.LIMITED))
+    practice = grade(assignment, handed_in(FORWARD), GradingOptions(Level.LIMITED))
     assert statuses(practice)["reached"] == "skipped"
     assert any("1 more tests" in notice for notice in practice.notices)
     with pytest.raises(LevelTooLow, match="level 1"):
-        grade(assignment, handed_in(FORWARD), Terms(Level.LIMITED, secret=True))
+        grade(assignment, handed_in(FORWARD), GradingOptions(Level.LIMITED, secret=True))
     trusting = dataclasses.replace(assignment, level=Level.LIMITED)
-    final = grade(trusting, handed_in(FORWARD), Terms(Level.LIMITED, secret=True))
+    final = grade(trusting, handed_in(FORWARD), GradingOptions(Level.LIMITED, secret=True))
     assert statuses(final)["reached"] == "fail"
     assert final.seeds == "public+secret"
     assert "123456789" not in json.dumps(final.as_dict())
@@ -119,7 +119,7 @@ def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None
     source = FORWARD.replace(
         "        self.drive.publish", "        raise ValueError('what I saw')\n        self.drive.publish"
     )
-    result = grade(assignment, handed_in(source), Terms(Level.LIMITED, secret=True))
+    result = grade(assignment, handed_in(source), GradingOptions(Level.LIMITED, secret=True))
     assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     assert "what I saw" not in result.tests[0].rationale + result.tests[0].log
 
@@ -132,7 +132,7 @@ def test_a_check_that_breaks_costs_nobody_anything(
 
     table = dict(drives.CHECKS)
     table["moves"] = dataclasses.replace(table["moves"], measure=broken)
-    monkeypatch.setattr(controller, "SORT", dataclasses.replace(controller.SORT, checks=table))
+    monkeypatch.setattr(controller, "SORT", dataclasses.replace(controller.KIND, checks=table))
     result = grade(quick, handed_in(FORWARD), DESK)
     assert statuses(result)["moves"] == "grader_error"
     assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
@@ -153,7 +153,7 @@ def test_a_docstring_is_the_feedback() -> None:
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_prove_themselves(kind: str) -> None:
     assignment = dataclasses.replace(read(TEMPLATES / kind), level=Level.LIMITED)
-    proofs = list(prove(assignment, DESK))
+    proofs = list(try_works(assignment, DESK))
     assert {proof.name: proof.problems for proof in proofs if proof.problems} == {}
     assert len(proofs) >= 4
 
@@ -167,7 +167,7 @@ def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Pa
     (wrong / "moves.py").write_text(FORWARD)
     (wrong / "nothing.py").write_text(FORWARD)
     (wrong / "reached__ok.py").write_text(FORWARD)
-    problems = {proof.name: "\n".join(proof.problems) for proof in prove(read(folder), DESK)}
+    problems = {proof.name: "\n".join(proof.problems) for proof in try_works(read(folder), DESK)}
     assert "student_error" in problems["starter.py"]
     assert "reached: fail" in problems["solution.py"]
     assert "should lose moves, and does not" in problems["wrong/moves.py"]
@@ -184,7 +184,7 @@ def test_chance_is_found_out(tmp_path: Path) -> None:
                 "SPEED = 0.3", "import os\nSPEED = 0.1 + int.from_bytes(os.urandom(2), 'big') / 2**18"
             )
         )
-    problems = {proof.name: "\n".join(proof.problems) for proof in prove(read(folder), DESK)}
+    problems = {proof.name: "\n".join(proof.problems) for proof in try_works(read(folder), DESK)}
     assert "does not do the same twice" in problems["solution.py"]
 
 
@@ -192,13 +192,16 @@ def test_the_odds_are_told(tmp_path: Path) -> None:
     text = QUICK.replace("seeds: [1]", f"seeds: {list(range(10))}").replace(
         "check: reached,", "check: reached, need: 0.9,"
     )
-    told = {each.criterion: each for each in odds(read(write_assignment(tmp_path / "q", text)), secret=False)}
+    told = {
+        each.criterion: each
+        for each in unfair_fail_odds(read(write_assignment(tmp_path / "q", text)), secret=False)
+    }
     assert (told["reached"].passes, told["reached"].episodes) == (9, 10)
     assert told["reached"].unfair[1] == pytest.approx(0.086, abs=1e-3)
 
 
 def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
-    with opened(quick, handed_in(FORWARD), DESK) as grading:
+    with open_grading(quick, handed_in(FORWARD), DESK) as grading:
         (drive,) = grading.evidence("moves")
         assert drive.steps == 400
         assert grading.result().verdict is GradingVerdict.FAIL
@@ -314,11 +317,11 @@ def test_every_verb_explains_itself() -> None:
     assert "Did you mean `grader check`?" in text
 
 
-@pytest.mark.parametrize("kind", kinds())
+@pytest.mark.parametrize("kind", kind_names())
 def test_what_can_be_checked_is_listed(kind: str) -> None:
     code, text = invoke("checks", kind)
     assert code == 0
-    assert all(f"\n{name}" in f"\n{text}" for name in sort_of(kind).checks)
+    assert all(f"\n{name}" in f"\n{text}" for name in find_kind(kind).checks)
     assert max(map(len, text.splitlines())) <= 80
     assert invoke("checks", f"{kind}x")[0] == 2
 

@@ -9,7 +9,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
@@ -20,7 +20,7 @@ LESSON = Path(__file__).parents[2] / "lessons" / "04-launch-files" / "driver"
 SOLUTION = (
     Path(__file__).parents[1] / "solutions" / "04-launch-files" / "driver" / "solution.py"
 ).read_text()
-DESK = Terms(Level.LIMITED, secret=True)
+DESK = GradingOptions(Level.LIMITED, secret=True)
 
 HEAD = """
 from launch import LaunchDescription
@@ -42,7 +42,7 @@ def assignment() -> Assignment:
     return read(LESSON)
 
 
-def handed_in(assignment: Assignment, text: str, terms: Terms = DESK) -> GradingResult:
+def handed_in(assignment: Assignment, text: str, terms: GradingOptions = DESK) -> GradingResult:
     name = assignment.submit
     return grade(assignment, Submission("ada", name, {name: text.encode()}), terms)
 
@@ -53,7 +53,7 @@ def test_a_right_one_earns_everything(assignment: Assignment) -> None:
 
 @LOCKS
 def test_a_right_one_earns_everything_locked_in(assignment: Assignment) -> None:
-    result = handed_in(assignment, SOLUTION, Terms(Level.FILTERED, secret=True))
+    result = handed_in(assignment, SOLUTION, GradingOptions(Level.FILTERED, secret=True))
     assert [test.rationale for test in result.tests if test.status is not CriterionStatus.PASS] == []
 
 
@@ -113,6 +113,6 @@ def test_a_launch_file_cannot_read_what_is_not_its_own(assignment: Assignment, t
     secret = tmp_path / "secret"
     secret.write_text("42")
     text = HEAD % f"LogInfo(msg=open({str(secret)!r}).read())"
-    result = handed_in(assignment, text, Terms(Level.FILTERED, secret=True))
+    result = handed_in(assignment, text, GradingOptions(Level.FILTERED, secret=True))
     assert result.points == 0
     assert "PermissionError" in result.tests[0].rationale

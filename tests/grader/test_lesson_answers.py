@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from grader.evidence.world.facts import WorldFacts
-from grader.evidence.world.world_reading import facts_of
-from grader.kinds.answers import Key, Questions
+from grader.evidence.world.world_reading import read_world_facts
+from grader.kinds.answers import AnswerKey, AnswersTask
 from grader.reading import read
 
 LESSONS = Path(__file__).parents[2] / "lessons"
@@ -26,14 +26,14 @@ PLUGINS = {
 }
 
 
-def keys_of(folder: Path) -> Mapping[str, Key]:
-    task: Questions = read(folder).task
+def keys_of(folder: Path) -> Mapping[str, AnswerKey]:
+    task: AnswersTask = read(folder).task
     return task.keys
 
 
 @pytest.fixture(scope="module")
 def yard() -> WorldFacts:
-    facts, _ = facts_of(YARD / "starter" / "world.yaml")
+    facts, _ = read_world_facts(YARD / "starter" / "world.yaml")
     assert facts.problems == ()
     return facts
 
@@ -68,7 +68,7 @@ def test_who_speaks_and_who_listens(tmp_path: Path, plugin: str) -> None:
         "bodies: [{name: base, footprints: [{type: circle, radius: 1, density: 1}]}]\n"
         f"plugins:\n  - {PLUGINS[plugin]}\n"
     )
-    facts, _ = facts_of(tmp_path / "world.yaml")
+    facts, _ = read_world_facts(tmp_path / "world.yaml")
     assert facts.problems == ()
     ways = {end.publishes for end in facts.ends if end.topic != "/tf"}
     right = {frozenset({True}): "publishes", frozenset({False}): "subscribes"}.get(frozenset(ways), "both")

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: A hangar
 kind: plan
 submit: plan.yaml
@@ -35,14 +35,14 @@ layers: {floor: [robot, walls], air: [drone, walls]}
 lasers: {lidar: [air]}
 proof: [robot - walls, walls - drone]
 """
-DESK = Terms(Level.LIMITED, secret=True)
+DESK = GradingOptions(Level.LIMITED, secret=True)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "hangar"
     made.mkdir()
-    (made / "assignment.yaml").write_text(SHEET)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     (made / "secret.yaml").write_text("case: hangar.layers.yaml\n")
     (made / "hangar.layers.yaml").write_text(CASE)
     return made

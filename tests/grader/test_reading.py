@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.reading import digest, read
+from grader.reading import folder_digest, read
 from grader.scoring import Anchors
 from kit.world.problems import WorldError
 from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
@@ -97,12 +97,12 @@ def test_a_grid_that_is_no_map(tmp_path: Path, rows: str, said: str) -> None:
 
 def test_the_version_changes_with_what_is_graded_and_with_nothing_else(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
-    before = digest(folder)
+    before = folder_digest(folder)
     (folder / "README.md").write_text("new words")
     (folder / "starter.py").write_text("pass")
-    assert digest(folder) == before
+    assert folder_digest(folder) == before
     (folder / "secret.yaml").write_text("seeds: {turn: [5]}")
-    assert digest(folder) != before
+    assert folder_digest(folder) != before
 
 
 def test_a_world_of_the_teachers_own(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.evidence.exploit import TICKS
+from grader.evidence.exploit import TICKS_PER_MOVE
 from kit.run.recording import load, rerun
 from kit.run.scenario import find_place
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
@@ -58,7 +58,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     kept = load(out)
     place = find_place(kept.place)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
-    assert kept.ticks >= 10 * TICKS
+    assert kept.ticks >= 10 * TICKS_PER_MOVE
     way, (target,) = kept.track("robot"), np.unique(kept.track("target"), axis=0)
     assert np.hypot(*np.diff(way[:, :2], axis=0).T).max() < 0.02
     assert np.hypot(*(way[:, :2] - target[:2]).T).min() > 0.1

@@ -13,11 +13,11 @@ import pytest
 
 from grader.assignment import Assignment, GridTask
 from grader.evidence import behaviours, value_iteration
-from grader.evidence.reward import Exam
-from grader.evidence.reward_training import Budget
+from grader.evidence.reward import RewardEvidence
+from grader.evidence.reward_training import RewardTrainingParams
 from grader.evidence.symmetry import mirrored, rotated
-from grader.evidence.task_model import FORWARD, HEADINGS, LASTS, LEFT, NO_MOVE, Model, build
-from grader.evidence.transitions import KNOWN, Steps, rewards_of, transition
+from grader.evidence.task_model import FORWARD, HEADINGS, LAST_MOVES, LEFT, NO_MOVE, GridModel, build_model
+from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, rewards_of, to_transition
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER
@@ -82,74 +82,82 @@ def source(name: str) -> str:
 
 
 @cache
-def room(task: GridTask = ROOM) -> Model:
-    return build(task)
+def room(task: GridTask = ROOM) -> GridModel:
+    return build_model(task)
 
 
-def examine(folder: Path, text: str, task: GridTask = SMALL) -> Exam:
+def examine(folder: Path, text: str, task: GridTask = SMALL) -> RewardEvidence:
     file = folder / "reward.py"
     file.write_text(textwrap.dedent(text))
     assignment = Assignment(
         folder, "r", "R", "reward", "reward.py", Level.LIMITED, GRADER, (), (), task, "v", False
     )
-    return Exam(file, assignment, Level.LIMITED)
+    return RewardEvidence(file, assignment, Level.LIMITED)
 
 
 @pytest.fixture(scope="module")
-def examined(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Exam]:
+def examined(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], RewardEvidence]:
     """Each of the nine in the wide room, examined once."""
     return cache(lambda name: examine(tmp_path_factory.mktemp("nine"), source(name), ROOM))
 
 
 @pytest.mark.parametrize("name", REWARDS)
-def test_nine_rewards_are_judged_by_what_they_ask_for(examined: Callable[[str], Exam], name: str) -> None:
+def test_nine_rewards_are_judged_by_what_they_ask_for(
+    examined: Callable[[str], RewardEvidence], name: str
+) -> None:
     exam = examined(name)
     assert exam.failure is None
     if name in GOOD:
-        assert exam.judged.success == pytest.approx(1.0)
-        assert exam.judged.exploit is None
+        assert exam.plan_outcome.success == pytest.approx(1.0)
+        assert exam.plan_outcome.exploit_start is None
         assert exam.picture() == ""
-        assert exam.judged.steps < 20
+        assert exam.plan_outcome.steps < 20
     else:
-        assert exam.judged.success < 0.5
+        assert exam.plan_outcome.success < 0.5
         shown = exam.picture()
         assert "S start" in shown
         assert "G target" in shown
 
 
 @pytest.mark.parametrize("name", sorted(set(REWARDS) - set(GOOD)))
-def test_the_exploit_is_a_way_that_never_arrives(examined: Callable[[str], Exam], name: str) -> None:
+def test_the_exploit_is_a_way_that_never_arrives(
+    examined: Callable[[str], RewardEvidence], name: str
+) -> None:
     exam = examined(name)
-    assert exam.judged.exploit is not None
-    way = value_iteration.follow(exam.plan, exam.judged.exploit, ROOM.max_steps)
+    assert exam.plan_outcome.exploit_start is not None
+    way = value_iteration.rollout(exam.value_iteration, exam.plan_outcome.exploit_start, ROOM.max_steps)
     assert len(way) == ROOM.max_steps + 1
     assert exam.model.target not in exam.model.cell_of(way)
     # Replayed move by move, no other way pays as well: it is what the reward asks for.
-    moves = (way[1:] % LASTS).tolist()
-    own = behaviours.paid(exam.model, exam.rewards, int(way[0]), moves)
-    best = float(exam.plan.values[way[0]].max())
+    moves = (way[1:] % LAST_MOVES).tolist()
+    own = behaviours.discounted_return(exam.model, exam.rewards, int(way[0]), moves)
+    best = float(exam.value_iteration.values[way[0]].max())
     assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
 
 
 @pytest.mark.parametrize("rows", HALLS, ids=["hall", "turn", "room"])
 @pytest.mark.parametrize("reward", [ALGORITHM_1, ALGORITHM_3], ids=lambda each: each.name)
 def test_the_seeds_own_algorithms_teach_what_they_should(reward: Reward, rows: tuple[str, ...]) -> None:
-    model = build(GridTask(rows, 0.98, 200))
-    outcome = value_iteration.judge(value_iteration.plan(model, rewards_of(reward, model)))
+    model = build_model(GridTask(rows, 0.98, 200))
+    outcome = value_iteration.evaluate_policy(
+        value_iteration.value_iteration(model, rewards_of(reward, model))
+    )
     assert outcome.success == pytest.approx(1.0)
 
 
 def test_a_reward_that_says_nothing_does_not_pass() -> None:
     """Every move is as good as every other one; some luck does not make it a reward."""
     model = room()
-    outcome = value_iteration.judge(value_iteration.plan(model, np.zeros((model.states, 4))))
+    outcome = value_iteration.evaluate_policy(
+        value_iteration.value_iteration(model, np.zeros((model.states, 4)))
+    )
     assert outcome.success < 0.5
 
 
 def test_values_satisfy_bellmans_equation() -> None:
     model = room(SMALL)
     rewards = np.random.default_rng(3).normal(size=(model.states, 4))
-    made = value_iteration.plan(model, rewards)
+    made = value_iteration.value_iteration(model, rewards)
     ahead = made.values.max(axis=1)[model.next] * ~model.done
     assert made.values == pytest.approx(rewards + SMALL.discount * ahead, abs=1e-7)
 
@@ -159,29 +167,29 @@ def test_the_model_drives_as_the_map_says() -> None:
     east = model.state_at(1, 3, 0)
     assert model.cells[model.cell_of(model.next[east, FORWARD])].tolist() == [2, 3]
     assert model.heading_of(model.next[east, LEFT]) == 1
-    assert model.next[east, LEFT] % LASTS == LEFT
+    assert model.next[east, LEFT] % LAST_MOVES == LEFT
     # Between two walls that touch at a corner nothing passes.
     assert model.hit[model.state_at(1, 3, HEADINGS - 1), FORWARD]
     beside = model.state_at(4, 1, 0)
     assert model.reached[beside, FORWARD]
     assert not model.hit[beside, FORWARD]
-    assert (model.starts % LASTS == NO_MOVE).all()
+    assert (model.starts % LAST_MOVES == NO_MOVE).all()
 
 
 def test_every_fact_that_the_model_knows_is_told() -> None:
-    steps = Steps.all(room(SMALL))
-    for name, column in columns_of(transition(steps), KNOWN).items():
+    steps = TransitionBatch.all(room(SMALL))
+    for name, column in columns_of(to_transition(steps), MODEL_FACTS).items():
         assert len(column) == len(steps), name
 
 
 @pytest.mark.parametrize("turned", [mirrored, rotated])
-def test_a_turned_task_is_the_same_task(turned: Callable[[Steps], Steps]) -> None:
-    steps = Steps.all(room(SMALL))
+def test_a_turned_task_is_the_same_task(turned: Callable[[TransitionBatch], TransitionBatch]) -> None:
+    steps = TransitionBatch.all(room(SMALL))
     other = turned(steps)
     assert np.array_equal(other.hit, steps.hit)
     assert np.array_equal(other.reached, steps.reached)
     for name in ("distance", "to_go", "front"):
-        assert np.allclose(getattr(transition(other), name), getattr(transition(steps), name)), name
+        assert np.allclose(getattr(to_transition(other), name), getattr(to_transition(steps), name)), name
 
 
 @pytest.mark.parametrize(
@@ -238,39 +246,41 @@ def test_a_broken_contract_is_told_in_words(tmp_path: Path, text: str, kind: Fai
     assert said in exam.failure.message
 
 
-def test_better_drives_are_paid_more(examined: Callable[[str], Exam]) -> None:
-    assert all(pair.is_right for pair in examined("progress").pairs)
+def test_better_drives_are_paid_more(examined: Callable[[str], RewardEvidence]) -> None:
+    assert all(pair.is_ordered for pair in examined("progress").behaviours)
     wrong = examined("alive")
-    assert not all(pair.is_right for pair in wrong.pairs)
-    assert "spinning" in wrong.remark("ordered") or "turning" in wrong.remark("ordered")
+    assert not all(pair.is_ordered for pair in wrong.behaviours)
+    assert "spinning" in wrong.explain("ordered") or "turning" in wrong.explain("ordered")
 
 
 @pytest.mark.parametrize(
     ("name", "loop"),
     [("one-sided", "forward and back"), ("turning", "spinning"), ("moving", "forward and back")],
 )
-def test_loops_that_pay_are_named(examined: Callable[[str], Exam], name: str, loop: str) -> None:
+def test_loops_that_pay_are_named(examined: Callable[[str], RewardEvidence], name: str, loop: str) -> None:
     exam = examined(name)
-    assert any(loop in each.name for each in exam.loops if each.pays)
-    assert "for ever is paid" in exam.remark("loops")
-    assert not any(each.pays for each in examined("shaped").loops)
+    assert any(loop in each.name for each in exam.loops if each.is_profitable)
+    assert "for ever is paid" in exam.explain("loops")
+    assert not any(each.is_profitable for each in examined("shaped").loops)
 
 
 def test_a_longer_horizon_changes_what_pays() -> None:
     """Why the discount belongs to the task: staying alive pays 50 at 0.98 and 2 at 0.5."""
     short = replace(ROOM, discount=0.5)
-    model = build(short)
+    model = build_model(short)
     rewards = np.where(model.reached, 10.0, np.where(model.hit, 0.0, 1.0))
-    assert value_iteration.judge(value_iteration.plan(model, rewards)).success == pytest.approx(1.0)
+    assert value_iteration.evaluate_policy(
+        value_iteration.value_iteration(model, rewards)
+    ).success == pytest.approx(1.0)
 
 
-BRIEF = Budget(steps=20_000, seeds=1, episodes=30)
+BRIEF = RewardTrainingParams(steps=20_000, seeds=1, episodes=30)
 
 
 def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: Path) -> None:
     """Judged by the true goal: being paid for being there teaches nothing."""
-    good = examine(tmp_path, source("progress")).trained(BRIEF)
-    bad = examine(tmp_path, source("alive")).trained(BRIEF)
+    good = examine(tmp_path, source("progress")).success_after_training(BRIEF)
+    bad = examine(tmp_path, source("alive")).success_after_training(BRIEF)
     assert good > 0.25
     assert bad < 0.1
 
@@ -278,4 +288,4 @@ def test_training_tells_a_reward_that_teaches_from_one_that_does_not(tmp_path: P
 def test_training_ends_where_the_reward_fails(tmp_path: Path) -> None:
     broken = examine(tmp_path, "n = [0]\ndef reward(distance):\n    n[0] += 1\n    return 1 / (n[0] != 5000)")
     assert broken.failure is None
-    assert broken.trained(BRIEF) == 0.0
+    assert broken.success_after_training(BRIEF) == 0.0

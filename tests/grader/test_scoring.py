@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.scoring import Anchors, least_passes, unfair_fail, wilson
+from grader.scoring import Anchors, required_passes, unfair_fail_probability, wilson_interval
 
 
 @pytest.mark.parametrize("measure", [math.nan])
@@ -50,11 +50,16 @@ def test_a_share_is_a_share(none: float, full: float, measure: float) -> None:
     ],
 )
 def test_the_odds_are_binomial(success: float, count: int, passes: int, odds: float) -> None:
-    assert unfair_fail(success, count, passes) == pytest.approx(odds, abs=6e-4)
+    assert unfair_fail_probability(success, count, passes) == pytest.approx(odds, abs=6e-4)
 
 
 def test_a_share_of_episodes_as_a_count() -> None:
-    assert [least_passes(10, 0.9), least_passes(3, 0.9), least_passes(10, 0.3), least_passes(5, 0.0)] == [
+    assert [
+        required_passes(10, 0.9),
+        required_passes(3, 0.9),
+        required_passes(10, 0.3),
+        required_passes(5, 0.0),
+    ] == [
         9,
         3,
         3,
@@ -63,6 +68,6 @@ def test_a_share_of_episodes_as_a_count() -> None:
 
 
 def test_wilson() -> None:
-    assert wilson(10, 10) == pytest.approx((0.722, 1.0), abs=1e-3)
-    assert wilson(45, 50) == pytest.approx((0.786, 0.957), abs=1e-3)
-    assert wilson(0, 0) == (0.0, 1.0)
+    assert wilson_interval(10, 10) == pytest.approx((0.722, 1.0), abs=1e-3)
+    assert wilson_interval(45, 50) == pytest.approx((0.786, 0.957), abs=1e-3)
+    assert wilson_interval(0, 0) == (0.0, 1.0)

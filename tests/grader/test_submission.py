@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.archives import MOST_BYTES, Refused, unpacked
-from grader.submission import take
+from grader.archives import MAX_BYTES, SubmissionRefused, unpack_archive
+from grader.submission import read_submission
 
 
 def zipped(entries: dict[str, bytes]) -> bytes:
@@ -35,9 +35,9 @@ def tarred(entries: dict[str, bytes], mode: str = "w:gz") -> bytes:
 def test_a_file_by_any_name_is_what_was_asked_for(tmp_path: Path) -> None:
     (tmp_path / "ada.py").write_bytes(b"x = 1")
     (tmp_path / "other.py").write_bytes(b"y = 1")
-    taken = take(tmp_path / "ada.py", "controller.py")
+    taken = read_submission(tmp_path / "ada.py", "controller.py")
     assert taken.files == {"controller.py": b"x = 1"}
-    with taken.laid_out() as file:
+    with taken.in_temporary_folder() as file:
         assert file.read_bytes() == b"x = 1"
         assert [path.name for path in file.parent.iterdir()] == ["controller.py"]
     assert not file.exists()
@@ -54,7 +54,7 @@ def test_an_archive_with_the_file_in_a_folder(tmp_path: Path, make: object) -> N
         "notes.txt": b"n",
     }
     path.write_bytes(make(content))  # type: ignore[operator]  # one of the two
-    taken = take(path, "controller.py")
+    taken = read_submission(path, "controller.py")
     assert taken.name == "ada"
     assert set(taken.files) == {"controller.py", "friend.py"}
 
@@ -64,23 +64,23 @@ def test_equal_content_has_an_equal_digest(tmp_path: Path) -> None:
     folder = tmp_path / "b"
     folder.mkdir()
     (folder / "controller.py").write_bytes(b"x = 1")
-    one, two = take(tmp_path / "a.py", "controller.py"), take(folder, "controller.py")
+    one, two = read_submission(tmp_path / "a.py", "controller.py"), read_submission(folder, "controller.py")
     assert one.digest == two.digest
     (folder / "controller.py").write_bytes(b"x = 2")
-    assert take(folder, "controller.py").digest != one.digest
+    assert read_submission(folder, "controller.py").digest != one.digest
 
 
 def test_what_is_missing_or_twice_is_told(tmp_path: Path) -> None:
     folder = tmp_path / "a"
     folder.mkdir()
     (folder / "main.py").write_text("")
-    with pytest.raises(Refused, match=r"controller\.py is missing.*main\.py"):
-        take(folder, "controller.py")
+    with pytest.raises(SubmissionRefused, match=r"controller\.py is missing.*main\.py"):
+        read_submission(folder, "controller.py")
     for each in ("one", "two"):
         (folder / each).mkdir()
         (folder / each / "controller.py").write_text("")
-    with pytest.raises(Refused, match="more than once"):
-        take(folder, "controller.py")
+    with pytest.raises(SubmissionRefused, match="more than once"):
+        read_submission(folder, "controller.py")
 
 
 @pytest.mark.parametrize(
@@ -100,8 +100,8 @@ def test_what_is_missing_or_twice_is_told(tmp_path: Path) -> None:
     ],
 )
 def test_names_that_lead_elsewhere(name: str) -> None:
-    with pytest.raises(Refused):
-        unpacked(tarred({name: b"x"}), "a.tar.gz")
+    with pytest.raises(SubmissionRefused):
+        unpack_archive(tarred({name: b"x"}), "a.tar.gz")
 
 
 @pytest.mark.parametrize("name", ["a.zip", "a.tar", "a.tar.gz"])
@@ -111,15 +111,15 @@ def test_names_that_lead_elsewhere(name: str) -> None:
     ids=["empty", "signature", "text", "cut off"],  # an archive holds the time: it is no name for a test
 )
 def test_damaged_archives(name: str, content: bytes) -> None:
-    with pytest.raises(Refused):
-        unpacked(content, name)
+    with pytest.raises(SubmissionRefused):
+        unpack_archive(content, name)
 
 
 def test_a_bomb_goes_off_in_nobodys_hands() -> None:
-    with pytest.raises(Refused, match="bomb"):
-        unpacked(zipped({"a": bytes(MOST_BYTES * 4)}), "a.zip")
-    with pytest.raises(Refused, match="bomb"):
-        unpacked(tarred({"a": bytes(MOST_BYTES * 4)}), "a.tar.gz")
+    with pytest.raises(SubmissionRefused, match="bomb"):
+        unpack_archive(zipped({"a": bytes(MAX_BYTES * 4)}), "a.zip")
+    with pytest.raises(SubmissionRefused, match="bomb"):
+        unpack_archive(tarred({"a": bytes(MAX_BYTES * 4)}), "a.tar.gz")
 
 
 @pytest.mark.parametrize("kind", ["link", "folder link", "pipe", "device"])
@@ -135,5 +135,5 @@ def test_only_plain_files(tmp_path: Path, kind: str) -> None:
         os.mkfifo(folder / "x.py")
     else:
         (folder / "x.py").symlink_to("/dev/zero")
-    with pytest.raises(Refused):
-        take(folder, "controller.py")
+    with pytest.raises(SubmissionRefused):
+        read_submission(folder, "controller.py")

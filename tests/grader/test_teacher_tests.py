@@ -6,20 +6,20 @@ from pathlib import Path
 
 import pytest
 
-from grader.cohort.gradebook import rows
-from grader.cohort.queue import Queue, prepare
-from grader.cohort.work import work
+from grader.cohort.gradebook import gradebook_rows
+from grader.cohort.queue import Queue, prepare_queue
+from grader.cohort.work import grade_job
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
-from grader.teacher_tests import declared
+from grader.teacher_tests import read_declared
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 from tests.grader.test_grading import run_pytest
 
-DESK = Terms(Level.LIMITED)
+DESK = GradingOptions(Level.LIMITED)
 
 OWN = '''
 import pytest
@@ -132,7 +132,7 @@ def test_marks_are_read_without_running_anything(tmp_path: Path) -> None:
     file.write_text(
         "raise SystemExit\n@pytest.mark.points(2.5)\ndef test_a_b(): 'Say so.'\ndef test_c(): pass\n"
     )
-    assert [(each.title, each.points, each.feedback) for each in declared(file)] == [
+    assert [(each.title, each.points, each.feedback) for each in read_declared(file)] == [
         ("A b", 2.5, "Say so."),
         ("C", 0.0, ""),
     ]
@@ -144,9 +144,11 @@ def test_a_cohort_counts_them(tmp_path: Path) -> None:
     handed.mkdir()
     (handed / "ada.py").write_text(FORWARD)
     (handed / "link.py").symlink_to("/etc/passwd")
-    prepare(queue, handed, read(folder_with(tmp_path, OWN)), Terms(Level.LIMITED, may_fall=False))
-    work(queue, *queue.waiting())
-    ada, link = rows(queue)
+    prepare_queue(
+        queue, handed, read(folder_with(tmp_path, OWN)), GradingOptions(Level.LIMITED, may_fall=False)
+    )
+    grade_job(queue, *queue.waiting())
+    ada, link = gradebook_rows(queue)
     assert (ada.max_points, link.max_points) == (17.0, 17.0)
     assert (ada.tests["test_it_drives"], ada.tests["test_it_turns"]) == (2.0, 0.0)
 

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from grader.evidence.training import Order, Stop, Trainings
-from grader.kinds.contract import Conditions, Look
-from grader.kinds.training import look
+from grader.evidence.training import CaseOrder, StopRule, TrainingResults
+from grader.kinds.contract import EvidenceOptions, EvidenceRecord
+from grader.kinds.training import collect_evidence
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus
 from kit.world.problems import WorldError
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: A table
 kind: training
 submit: training.yaml
@@ -29,63 +29,63 @@ checks:
   - {check: honest, points: 1}
   - {check: steps_used, points: 1}
 """
-DESK = Conditions(Level.LIMITED, secret=False, may_fall=True)
+DESK = EvidenceOptions(Level.LIMITED, secret=False, may_fall=True)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "table"
     made.mkdir()
-    (made / "assignment.yaml").write_text(SHEET)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     return made
 
 
-def trained(folder: Path, text: str, conditions: Conditions = DESK) -> Look:
+def trained(folder: Path, text: str, conditions: EvidenceOptions = DESK) -> EvidenceRecord:
     file = folder.parent / "training.yaml"
     file.write_text(text)
-    return look(read(folder), file, conditions)
+    return collect_evidence(read(folder), file, conditions)
 
 
 def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
     one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").found for _ in range(2))
     assert one == two
-    assert [training.steps for training in one.each] == [10_000, 10_000]
-    assert all(len(training.tests) == 2 for training in one.each)
+    assert [training.steps for training in one.trainings] == [10_000, 10_000]
+    assert all(len(training.tests) == 2 for training in one.trainings)
 
 
 def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     text = "batch: 5000\nsteps: 5000\n"
     public = trained(folder, text).found
     (folder / "secret.yaml").write_text("seeds: [7]\n")
-    secret = trained(folder, text, Conditions(Level.LIMITED, secret=True, may_fall=False)).found
-    assert len(secret.each) == 1
-    assert secret.each[0].tests != public.each[0].tests
+    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True, may_fall=False)).found
+    assert len(secret.trainings) == 1
+    assert secret.trainings[0].tests != public.trainings[0].tests
 
 
 def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
-    seen: Trainings = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").found
+    seen: TrainingResults = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").found
     assert seen.worst_case == "turn_b_to_a"
     assert seen.pooled("turn_a_to_b").share - seen.pooled("turn_b_to_a").share > 0.2
-    assert seen.surely() < sum(seen.pooled(case).share for case in seen.budget.cases) / 2
+    assert seen.success_lower_bound() < sum(seen.pooled(case).share for case in seen.budget.cases) / 2
 
 
 def test_a_first_good_test_stops(folder: Path) -> None:
-    seen: Trainings = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").found
-    assert seen.plan.stop is Stop.FIRST
-    assert any(training.steps < 20_000 for training in seen.each)
-    assert all(training.claimed >= 0.5 for training in seen.each if training.steps < 20_000)
+    seen: TrainingResults = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").found
+    assert seen.settings.stop is StopRule.FIRST
+    assert any(training.steps < 20_000 for training in seen.trainings)
+    assert all(training.claimed >= 0.5 for training in seen.trainings if training.steps < 20_000)
 
 
 def test_the_best_policy_is_the_one_of_the_best_test(folder: Path) -> None:
     text = "batch: 2000\ntest_episodes: 100\nlearning_rate: [0.9, 0.9]\nkeep: {}\n"
     best, newest = (trained(folder, text.format(keep)).found for keep in ("best", "newest"))
-    assert sum(each.accuracy for each in best.each) > sum(each.accuracy for each in newest.each)
+    assert sum(each.accuracy for each in best.trainings) > sum(each.accuracy for each in newest.trainings)
 
 
 def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> None:
-    seen: Trainings = trained(folder, "batch: 5000\norder: apart\n").found
-    assert seen.plan.order is Order.APART
-    first, last = seen.each[0].tests[0], seen.each[0].tests[-1]
+    seen: TrainingResults = trained(folder, "batch: 5000\norder: apart\n").found
+    assert seen.settings.order is CaseOrder.APART
+    first, last = seen.trainings[0].tests[0], seen.trainings[0].tests[-1]
     assert last.counts["turn_b_to_a"].share > first.counts["turn_b_to_a"].share
     assert "turn_a_to_b" in seen.picture()
 
@@ -113,7 +113,7 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
     result = grade(
         read(folder),
         Submission("ada", "training.yaml", {"training.yaml": text.encode()}),
-        Terms(Level.LIMITED),
+        GradingOptions(Level.LIMITED),
     )
     assert {test.status for test in result.tests} == {CriterionStatus.STUDENT_ERROR}
     assert word in result.tests[0].rationale
@@ -130,6 +130,6 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
     ],
 )
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
-    (folder / "assignment.yaml").write_text(SHEET.replace(old, new))
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
     with pytest.raises(WorldError, match=message):
         read(folder)

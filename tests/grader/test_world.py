@@ -13,17 +13,17 @@ import pytest
 from PIL import Image
 
 from grader.checks.contract import NoParams
-from grader.checks.faults import Run, Seen
-from grader.checks.worlds import CHECKS, FAULTS, RUNS, remark
-from grader.evidence.world.facts import Order, RunFacts, WorldFacts
-from grader.evidence.world.path_search import flood
+from grader.checks.faults import WorldContents, WorldRun
+from grader.checks.worlds import CHECKS, FAULTS, RUNS, explain
+from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
+from grader.evidence.world.path_search import search_path
 from grader.evidence.world.process import WorldProcess
-from grader.evidence.world.world_reading import facts_of
-from grader.evidence.world.world_run import run
-from grader.kinds.contract import Look
+from grader.evidence.world.world_reading import read_world_facts
+from grader.evidence.world.world_run import run_world
+from grader.kinds.contract import EvidenceRecord
 from grader.reading import read
-from grader.session import Terms, grade
-from grader.submission import take
+from grader.session import GradingOptions, grade
+from grader.submission import read_submission
 from kit.host.failure import FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict
@@ -31,8 +31,8 @@ from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES
 
 TEMPLATE = TEMPLATES / "world"
-DESK = Terms(Level.LIMITED, secret=True)
-DRIVE = Order("room", 1, 20.0, str(TEMPLATE / "driver.py"), "", (3.0, 1.5), 0.2, True)
+DESK = GradingOptions(Level.LIMITED, secret=True)
+DRIVE = WorldRunSpec("room", 1, 20.0, str(TEMPLATE / "driver.py"), "", (3.0, 1.5), 0.2, True)
 REST = replace(DRIVE, driver="", target=None, time_s=3.0)
 
 
@@ -48,20 +48,20 @@ def change(folder: Path, name: str, old: str, new: str) -> None:
     (folder / name).write_text(text.replace(old, new))
 
 
-def seen(folder: Path, order: Order | None = None) -> Seen | Run:
-    facts, world = facts_of(folder / "world.yaml")
+def seen(folder: Path, order: WorldRunSpec | None = None) -> WorldContents | WorldRun:
+    facts, world = read_world_facts(folder / "world.yaml")
     if order is None:
-        return Seen(facts)
+        return WorldContents(facts)
     assert world is not None, facts.problems
-    return Run(facts, run(world, order), order.target is not None)
+    return WorldRun(facts, run_world(world, order), order.target is not None)
 
 
-def judged(found: Seen | Run, name: str, **params: Any) -> tuple[bool, str]:
+def judged(found: WorldContents | WorldRun, name: str, **params: Any) -> tuple[bool, str]:
     """Whether a check is passed with these params, and what is said of it."""
     check = CHECKS[name]
     given = check.params(**params)
-    share = check.anchors.share(check.measure(Look(found), given))
-    return share == 1.0, remark(found, name, given)
+    share = check.anchors.share(check.measure(EvidenceRecord(found), given))
+    return share == 1.0, explain(found, name, given)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_what_is_right_passes(folder: Path) -> None:
     assert judged(found, "laser", rays=91, first=-3.14159, last=3.14159, range=5.0, body="base")[0]
     assert judged(found, "publishes", topics=("/scan sensor_msgs/msg/LaserScan",))[0]
     assert judged(found, "subscribes", topics=("/cmd_vel geometry_msgs/msg/Twist",))[0]
-    assert isinstance(found, Seen)
+    assert isinstance(found, WorldContents)
     assert "#" in found.world.picture
 
 
@@ -118,8 +118,8 @@ def test_a_world_that_does_not_load_earns_nothing_and_breaks_nothing(folder: Pat
     for name, check in CHECKS.items():
         given = check.params()
         if name not in RUNS:
-            assert not check.anchors.share(check.measure(Look(found), given)) > 0
-        assert remark(found, name, given)
+            assert not check.anchors.share(check.measure(EvidenceRecord(found), given)) > 0
+        assert explain(found, name, given)
 
 
 def test_a_drive_is_run_and_measured(folder: Path) -> None:
@@ -197,16 +197,16 @@ def test_a_way_is_found_where_there_is_one(
     walls: list[tuple[float, ...]], radius: float, way: bool, closed: bool
 ) -> None:
     segments = np.array(walls, dtype=np.float64).reshape(-1, 4)
-    assert flood(segments, (1.0, 1.0), (3.0, 1.0), radius) == (way, closed)
+    assert search_path(segments, (1.0, 1.0), (3.0, 1.0), radius) == (way, closed)
 
 
 def test_facts_travel_as_json(folder: Path) -> None:
     import json
 
-    facts, world = facts_of(folder / "world.yaml")
+    facts, world = read_world_facts(folder / "world.yaml")
     assert world is not None
     assert WorldFacts.told(json.loads(json.dumps(asdict(facts)))) == facts
-    told = run(world, REST)
+    told = run_world(world, REST)
     assert RunFacts.told(json.loads(json.dumps(asdict(told)))) == told
 
 
@@ -271,7 +271,7 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
         for n in range(60)
     )
     (folder / "robot.model.yaml").write_text((folder / "robot.model.yaml").read_text() + eyes)
-    result = grade(read(sheet), take(folder, "world.yaml"), Terms(Level.LIMITED))
+    result = grade(read(sheet), read_submission(folder, "world.yaml"), GradingOptions(Level.LIMITED))
     status = {test.id: test.status for test in result.tests}
     assert status == {
         "loads": CriterionStatus.PASS,
@@ -285,7 +285,9 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
 
 def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
     result = grade(
-        read(TEMPLATE), take(folder / "world.yaml", "world.yaml"), replace(DESK, level=Level.FILTERED)
+        read(TEMPLATE),
+        read_submission(folder / "world.yaml", "world.yaml"),
+        replace(DESK, level=Level.FILTERED),
     )
     assert result.verdict is GradingVerdict.FAIL
     assert "room.yaml" in result.tests[0].rationale

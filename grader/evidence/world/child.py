@@ -15,9 +15,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from grader.evidence.world.facts import Order
-from grader.evidence.world.world_reading import facts_of
-from grader.evidence.world.world_run import run
+from grader.evidence.world.facts import WorldRunSpec
+from grader.evidence.world.world_reading import read_world_facts
+from grader.evidence.world.world_run import run_world
 from kit.world.records import World
 
 
@@ -27,10 +27,10 @@ def main() -> None:
     _limit(memory)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever else prints, it does not print into the answers
-    facts, world = facts_of(file)
+    facts, world = read_world_facts(file)
     _say(answers, asdict(facts))
     for line in sys.stdin:
-        _say(answers, asdict(run(_there(world), Order(**json.loads(line)))))
+        _say(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
 
 
 def _there(world: World | None) -> World:

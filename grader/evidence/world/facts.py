@@ -11,22 +11,22 @@ Box = tuple[float, float, float, float]
 Triple = tuple[float, float, float]
 
 
-class Told:
+class JsonRecord:
     """A record whose fields are plain values and tuples of them; those that hold records say so in ``PARTS``."""
 
-    PARTS: Mapping[str, type[Told]] = {}
+    PARTS: Mapping[str, type[JsonRecord]] = {}
 
     @classmethod
-    def told(cls, said: Mapping[str, Any]) -> Self:
+    def from_json(cls, content: Mapping[str, Any]) -> Self:
         """The record that ``dataclasses.asdict`` and JSON made of one."""
         names = [field.name for field in fields(cls)]  # type: ignore[arg-type]  # every heir is a dataclass
-        return cls(**{name: cls._part(name, said[name]) for name in names})
+        return cls(**{name: cls._part(name, content[name]) for name in names})
 
     @classmethod
     def _part(cls, name: str, value: Any) -> Any:
         part = cls.PARTS.get(name)
         if part is not None:
-            return tuple(map(part.told, value))
+            return tuple(map(part.from_json, value))
         return _frozen(value)
 
 
@@ -35,7 +35,7 @@ def _frozen(value: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Walls(Told):
+class WallFacts(JsonRecord):
     """One entry of ``layers`` that has a map."""
 
     map: str
@@ -49,7 +49,7 @@ class Walls(Told):
 
 
 @dataclass(frozen=True)
-class Shape(Told):
+class ShapeFacts(JsonRecord):
     """One footprint."""
 
     kind: str
@@ -62,15 +62,15 @@ class Shape(Told):
 
 
 @dataclass(frozen=True)
-class Part(Told):
+class BodyFacts(JsonRecord):
     """One body of a model."""
 
-    PARTS = {"shapes": Shape}  # noqa: RUF012  # read only
+    PARTS = {"shapes": ShapeFacts}  # noqa: RUF012  # read only
     name: str
     kind: str
     pose: Triple
     """In the model's frame."""
-    shapes: tuple[Shape, ...]
+    shapes: tuple[ShapeFacts, ...]
 
     @property
     def box(self) -> Box | None:
@@ -82,7 +82,7 @@ class Part(Told):
 
 
 @dataclass(frozen=True)
-class Joint(Told):
+class JointFacts(JsonRecord):
     """One joint, and where its two ends are in the model's frame at the start."""
 
     name: str
@@ -92,7 +92,7 @@ class Joint(Told):
 
 
 @dataclass(frozen=True)
-class Device(Told):
+class PluginFacts(JsonRecord):
     """One plugin of a model."""
 
     name: str
@@ -107,18 +107,18 @@ class Device(Told):
 
 
 @dataclass(frozen=True)
-class Model(Told):
-    PARTS = {"parts": Part, "joints": Joint, "devices": Device}  # noqa: RUF012  # read only
+class ModelFacts(JsonRecord):
+    PARTS = {"bodies": BodyFacts, "joints": JointFacts, "plugins": PluginFacts}  # noqa: RUF012  # read only
     name: str
     namespace: str
     pose: Triple
-    parts: tuple[Part, ...]
-    joints: tuple[Joint, ...]
-    devices: tuple[Device, ...]
+    bodies: tuple[BodyFacts, ...]
+    joints: tuple[JointFacts, ...]
+    plugins: tuple[PluginFacts, ...]
 
 
 @dataclass(frozen=True)
-class Meeting(Told):
+class CollisionFacts(JsonRecord):
     """What two things do where they meet. A thing is (model, body), or ("", map) for walls."""
 
     a: tuple[str, str]
@@ -128,7 +128,7 @@ class Meeting(Told):
 
 
 @dataclass(frozen=True)
-class View(Told):
+class SightFacts(JsonRecord):
     """Whether a laser, ``model/plugin``, sees a thing."""
 
     laser: str
@@ -138,7 +138,7 @@ class View(Told):
 
 
 @dataclass(frozen=True)
-class Ends(Told):
+class EndpointFacts(JsonRecord):
     """One topic of a device."""
 
     model: str
@@ -148,32 +148,32 @@ class Ends(Told):
 
 
 @dataclass(frozen=True)
-class WorldFacts(Told):
+class WorldFacts(JsonRecord):
     """A world as it was read; or the problems that kept it from being read, and nothing else."""
 
     PARTS = {  # noqa: RUF012  # read only
-        "walls": Walls,
-        "models": Model,
-        "meetings": Meeting,
-        "views": View,
-        "ends": Ends,
+        "walls": WallFacts,
+        "models": ModelFacts,
+        "collisions": CollisionFacts,
+        "sights": SightFacts,
+        "endpoints": EndpointFacts,
     }
     problems: tuple[str, ...] = ()
     layers: tuple[str, ...] = ()
     """Every layer name."""
-    walls: tuple[Walls, ...] = ()
-    models: tuple[Model, ...] = ()
-    meetings: tuple[Meeting, ...] = ()
-    views: tuple[View, ...] = ()
-    ends: tuple[Ends, ...] = ()
+    walls: tuple[WallFacts, ...] = ()
+    models: tuple[ModelFacts, ...] = ()
+    collisions: tuple[CollisionFacts, ...] = ()
+    sights: tuple[SightFacts, ...] = ()
+    endpoints: tuple[EndpointFacts, ...] = ()
     picture: str = ""
 
-    def model(self, name: str) -> Model | None:
+    def model(self, name: str) -> ModelFacts | None:
         return next((each for each in self.models if each.name == name), None)
 
 
 @dataclass(frozen=True)
-class Heard(Told):
+class TopicStatistics(JsonRecord):
     """What was said on one topic while the world ran."""
 
     topic: str
@@ -184,26 +184,26 @@ class Heard(Told):
 
 
 @dataclass(frozen=True)
-class RunFacts(Told):
+class RunFacts(JsonRecord):
     """A world that ran for some seconds, or the reason why it could not."""
 
-    PARTS = {"heard": Heard}  # noqa: RUF012  # read only
+    PARTS = {"topics": TopicStatistics}  # noqa: RUF012  # read only
     problem: str = ""
     """Why it did not run to its end: our driver failed, or there is nobody to drive."""
     seconds: float = 0.0
-    heard: tuple[Heard, ...] = ()
+    topics: tuple[TopicStatistics, ...] = ()
     reached_s: float | None = None
-    away: float | None = None
+    target_distance: float | None = None
     """From the robot's hull to the target at the end [m]."""
     distance: float = 0.0
     bumps: int = 0
-    gap: float = 0.0
+    joint_gap: float = 0.0
     """How far apart two ends of one joint have been at most, after the first half second [m]."""
-    widest: str = ""
+    widest_joint: str = ""
     """That joint's name."""
-    way: bool = False
+    is_reachable: bool = False
     """Whether a robot of this size finds a way from the start to the target."""
-    closed: bool = False
+    is_enclosed: bool = False
     """Whether the walls hold the robot in."""
     picture: str = ""
     finished: bool = True
@@ -211,7 +211,7 @@ class RunFacts(Told):
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class WorldRunSpec:
     """A run to make."""
 
     name: str

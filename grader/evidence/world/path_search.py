@@ -16,7 +16,7 @@ RIM: Final = 4
 """Cells around everything."""
 
 
-def flood(
+def search_path(
     walls: NDArray[np.float64], start: tuple[float, float], target: tuple[float, float] | None, radius: float
 ) -> tuple[bool, bool]:
     """(whether a disc of this radius [m] comes from the start to the target, whether the walls hold it in).

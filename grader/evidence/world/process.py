@@ -16,7 +16,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self
 
-from grader.evidence.world.facts import Order, RunFacts, WorldFacts
+from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.limits import GIB
 
@@ -51,9 +51,9 @@ class WorldProcess:
 
     def world(self, seconds: float = READ_S) -> WorldFacts:
         """What was read; to be asked first, once."""
-        return WorldFacts.told(self._answer(seconds, "The world takes too long to read"))
+        return WorldFacts.from_json(self._answer(seconds, "The world takes too long to read"))
 
-    def run(self, order: Order, seconds: float) -> RunFacts:
+    def run(self, order: WorldRunSpec, seconds: float) -> RunFacts:
         """One run, which may take so many seconds of the wall clock."""
         assert self._child.stdin is not None
         try:
@@ -62,7 +62,7 @@ class WorldProcess:
         except OSError:
             raise self._ended() from None
         slow = f"{order.time_s:g} simulated seconds of this world take longer than {seconds:g} s"
-        return RunFacts.told(self._answer(seconds, slow))
+        return RunFacts.from_json(self._answer(seconds, slow))
 
     def close(self) -> None:
         """Ends the process and all that it started. May be called twice."""

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from grader.evidence.world.facts import (
+    BodyFacts,
     Box,
-    Device,
-    Ends,
-    Joint,
-    Meeting,
-    Model,
-    Part,
-    Shape,
+    CollisionFacts,
+    EndpointFacts,
+    JointFacts,
+    ModelFacts,
+    PluginFacts,
+    ShapeFacts,
+    SightFacts,
     Triple,
-    View,
-    Walls,
+    WallFacts,
     WorldFacts,
 )
 from kit.geometry import Pose
@@ -37,7 +37,7 @@ COLUMNS, ROWS = 60, 16
 """Of the picture."""
 
 
-def facts_of(file: Path) -> tuple[WorldFacts, World | None]:
+def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
     """The world's facts, and the world itself if it can be read."""
     try:
         world = load(file)
@@ -66,16 +66,16 @@ def _facts(world: World, simulation: Simulation) -> WorldFacts:
         layers=tuple(world.layer_bits),
         walls=tuple(_walls(layer) for layer in world.layers if layer.walls is not None),
         models=tuple(map(_model, world.models)),
-        meetings=tuple(
-            Meeting(called(a), called(b), verdict.touch is Touch.COLLIDES, verdict.why)
+        collisions=tuple(
+            CollisionFacts(called(a), called(b), verdict.touch is Touch.COLLIDES, verdict.why)
             for a, b, verdict in touching.pairs()
         ),
-        views=tuple(
-            View(laser.name, called(thing), seeing.sees, seeing.why)
+        sights=tuple(
+            SightFacts(laser.name, called(thing), seeing.sees, seeing.why)
             for laser, thing, seeing in touching.views()
         ),
-        ends=tuple(
-            Ends(model.name, end.topic, type_name(end.type), end.direction == "publish")
+        endpoints=tuple(
+            EndpointFacts(model.name, end.topic, type_name(end.type), end.direction == "publish")
             for model in world.models
             for end in simulation.endpoints_of(model.name)
         ),
@@ -88,24 +88,24 @@ def _map(layer: Layer) -> str:
     return layer.walls.file.name.partition(".")[0]
 
 
-def _walls(layer: Layer) -> Walls:
+def _walls(layer: Layer) -> WallFacts:
     assert layer.walls is not None
     points = layer.walls.segments.reshape(-1, 2)
     box: Box | None = None
     if len(points):
         (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         box = left, bottom, right, top
-    return Walls(_map(layer), layer.walls.source.name, layer.names, box, len(layer.walls.local))
+    return WallFacts(_map(layer), layer.walls.source.name, layer.names, box, len(layer.walls.local))
 
 
-def _model(model: records.Model) -> Model:
+def _model(model: records.Model) -> ModelFacts:
     poses = {body.name: body.pose for body in model.bodies}
-    return Model(
+    return ModelFacts(
         model.name,
         model.namespace,
         _three(model.pose),
         tuple(
-            Part(body.name, body.kind, _three(body.pose), tuple(map(_shape, body.footprints)))
+            BodyFacts(body.name, body.kind, _three(body.pose), tuple(map(_shape, body.footprints)))
             for body in model.bodies
         ),
         tuple(_joint(joint, poses) for joint in model.joints),
@@ -113,7 +113,7 @@ def _model(model: records.Model) -> Model:
     )
 
 
-def _shape(footprint: records.Footprint) -> Shape:
+def _shape(footprint: records.Footprint) -> ShapeFacts:
     shape = footprint.shape
     if isinstance(shape, Circle):
         (x, y), radius = shape.center, shape.radius
@@ -121,12 +121,12 @@ def _shape(footprint: records.Footprint) -> Shape:
     else:
         xs, ys = zip(*shape.points, strict=True)
         kind, box = "polygon", (min(xs), min(ys), max(xs), max(ys))
-    return Shape(kind, box, footprint.sensor, footprint.collision, footprint.density)
+    return ShapeFacts(kind, box, footprint.sensor, footprint.collision, footprint.density)
 
 
-def _joint(joint: records.Joint, poses: dict[str, Pose]) -> Joint:
+def _joint(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
     one, other = joint.anchors
-    return Joint(
+    return JointFacts(
         joint.name,
         joint.kind,
         (one.body, other.body),
@@ -134,15 +134,17 @@ def _joint(joint: records.Joint, poses: dict[str, Pose]) -> Joint:
     )
 
 
-def _device(plugin: records.PluginSpec) -> Device:
+def _device(plugin: records.PluginSpec) -> PluginFacts:
     params = plugin.params
     if isinstance(params, LaserParams):
         rays = params.directions
-        return Device(plugin.name, plugin.type, params.sight.body, len(rays), rays[0], rays[-1], params.reach)
-    return Device(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
+        return PluginFacts(
+            plugin.name, plugin.type, params.sight.body, len(rays), rays[0], rays[-1], params.reach
+        )
+    return PluginFacts(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
 
 
-def all_walls(world: World) -> FloatArray:
+def all_wall_segments(world: World) -> FloatArray:
     """(n, 4) every wall of the world, each once."""
     unique = {layer.walls.file: layer.walls for layer in world.layers if layer.walls is not None}
     return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
@@ -157,7 +159,7 @@ def picture(
 ) -> str:
     """The world as it stands, in plain characters."""
     scene = Scene(
-        walls=all_walls(world),
+        walls=all_wall_segments(world),
         bodies=tuple(_bodies(simulation)),
         targets=() if target is None else (target,),
         trails=() if trail is None else (trail,),

@@ -10,9 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from grader.evidence.world.facts import Heard, Order, RunFacts
-from grader.evidence.world.path_search import flood
-from grader.evidence.world.world_reading import all_walls, picture
+from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
+from grader.evidence.world.path_search import search_path
+from grader.evidence.world.world_reading import all_wall_segments, picture
 from kit.host.failure import GuestError
 from kit.host.node_process import Guest
 from kit.msg.message import Message
@@ -38,7 +38,7 @@ LOOK_EVERY: Final = 5
 WORLD_NODE: Final = "/flatland_server"
 
 
-class Ear:
+class TopicRecorder:
     """Counts what the world says on each topic, and how much the readings of a laser or an odometry spread."""
 
     def __init__(self, graph: Graph) -> None:
@@ -56,8 +56,10 @@ class Ear:
             ahead = mean + (read - mean) / count
             self._scans[name] = ahead, squares + (read - mean) * (read - ahead)
 
-    def heard(self) -> tuple[Heard, ...]:
-        return tuple(Heard(topic, count, self._spread(topic, count)) for topic, count in self._counts.items())
+    def statistics(self) -> tuple[TopicStatistics, ...]:
+        return tuple(
+            TopicStatistics(topic, count, self._spread(topic, count)) for topic, count in self._counts.items()
+        )
 
     def _spread(self, topic: str, count: int) -> float:
         if topic not in self._scans or count < 2:
@@ -77,14 +79,14 @@ def _readings(message: Message) -> FloatArray | None:
     return None
 
 
-class Eye(Observer):
+class PathRecorder(Observer):
     """Remembers where the robot went, and how far joints were pulled apart."""
 
     def __init__(self, model: Model | None, world: World) -> None:
         self._model = model
         self._world = world
         self.trail: list[tuple[float, float]] = []
-        self.gap, self.widest = 0.0, ""
+        self.joint_gap, self.widest_joint = 0.0, ""
 
     def on_step(self, simulation: Simulation) -> None:
         if simulation.tick % LOOK_EVERY:
@@ -98,11 +100,11 @@ class Eye(Observer):
         for model in self._world.models:
             for joint in model.joints:
                 one, other = (poses[model.name, end.body].point(*end.point) for end in joint.anchors)
-                if (apart := math.dist(one, other)) > self.gap:
-                    self.gap, self.widest = apart, joint.name
+                if (apart := math.dist(one, other)) > self.joint_gap:
+                    self.joint_gap, self.widest_joint = apart, joint.name
 
 
-def run(world: World, order: Order) -> RunFacts:
+def run_world(world: World, order: WorldRunSpec) -> RunFacts:
     """The world for as long as the order says, or until the target is reached."""
     graph = Graph(log_sink=lambda record: None)
     simulation = Simulation(world, seed=order.seed, step_size=STEP)
@@ -113,34 +115,36 @@ def run(world: World, order: Order) -> RunFacts:
     case = None
     if order.target is not None and model is not None:
         case = Case("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    trip, eye, ear = Trip(model, case), Eye(model, world), Ear(graph)
+    trip, eye, ear = Trip(model, case), PathRecorder(model, world), TopicRecorder(graph)
     runner.observers += [trip, eye]
     problem, ticks = _drive(runner, trip, order, model, wanted in driving), simulation.tick
     ear.stop()
-    score, radius = trip.score, 0.0 if model is None else width_of(model) / 2
+    score, radius = trip.score, 0.0 if model is None else model_width(model) / 2
     way = closed = False
     if model is not None:
-        way, closed = flood(all_walls(world), model.pose[:2], order.target, radius)
+        way, closed = search_path(all_wall_segments(world), model.pose[:2], order.target, radius)
     disc = None if order.target is None else Disc(*order.target, order.radius)
     return RunFacts(
         problem=problem,
         seconds=ticks * STEP,
-        heard=ear.heard(),
+        topics=ear.statistics(),
         reached_s=score.reached_s,
-        away=score.target_m if score.target_m is not None and math.isfinite(score.target_m) else None,
+        target_distance=score.target_m
+        if score.target_m is not None and math.isfinite(score.target_m)
+        else None,
         distance=score.distance_m,
         bumps=score.bumps,
-        gap=eye.gap,
-        widest=eye.widest,
-        way=way,
-        closed=closed,
+        joint_gap=eye.joint_gap,
+        widest_joint=eye.widest_joint,
+        is_reachable=way,
+        is_enclosed=closed,
         picture=picture(
             world, simulation, target=disc, trail=np.array(eye.trail, dtype=np.float64).reshape(-1, 2)
         ),
     )
 
 
-def _drive(runner: Runner, trip: Trip, order: Order, model: Model | None, drives: bool) -> str:
+def _drive(runner: Runner, trip: Trip, order: WorldRunSpec, model: Model | None, drives: bool) -> str:
     """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
     with ExitStack() as stack:
         guest: Guest | None = None
@@ -164,7 +168,7 @@ def _drive(runner: Runner, trip: Trip, order: Order, model: Model | None, drives
     return ""
 
 
-def _told(model: Model, order: Order) -> list[str]:
+def _told(model: Model, order: WorldRunSpec) -> list[str]:
     """What a controller is told of its place, as ``kit.run.session`` tells it."""
     x, y, theta = model.pose
     told = {"home": f"[{x!r}, {y!r}, {theta!r}]", "model": json.dumps(model.name)}
@@ -174,7 +178,7 @@ def _told(model: Model, order: Order) -> list[str]:
     return ["--ros-args", *words, *(["-r", f"__ns:=/{model.namespace}"] if model.namespace else [])]
 
 
-def width_of(model: Model) -> float:
+def model_width(model: Model) -> float:
     """The narrowest [m] that all solid footprints of the model's bodies are together, seen from any side."""
     points: list[tuple[float, float]] = []
     for body in model.bodies:

@@ -15,7 +15,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.reading import read
-from grader.session import Terms, grade
+from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import Input, Recording, load, save
@@ -23,7 +23,7 @@ from kit.run.scenario import find_place
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
 
-SHEET = """
+ASSIGNMENT_FILE = """
 title: Forward
 kind: drive
 submit: drive.npz
@@ -34,14 +34,14 @@ checks:
   - {check: moves, points: 1, after: genuine, share: {none: 0, full: 1}}
   - {check: bumps, points: 1, after: genuine, share: {none: 1, full: 0}}
 """
-DESK = Terms(Level.LIMITED, secret=True)
+DESK = GradingOptions(Level.LIMITED, secret=True)
 Edit = Callable[[dict[str, Any]], None]
 
 
 @pytest.fixture(scope="module")
 def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     folder = tmp_path_factory.mktemp("forward")
-    (folder / "assignment.yaml").write_text(SHEET)
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE)
     return read(folder)
 
 
@@ -210,7 +210,7 @@ def test_a_file_that_is_no_recording_is_refused_and_harms_nobody(assignment: Ass
 def test_a_sheet_without_a_place_is_told_so(tmp_path: Path) -> None:
     from kit.world.problems import WorldError
 
-    (tmp_path / "assignment.yaml").write_text(SHEET.replace("place: simple", "place: simpel"))
+    (tmp_path / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace("place: simple", "place: simpel"))
     with pytest.raises(WorldError, match="simple"):
         read(tmp_path)
 

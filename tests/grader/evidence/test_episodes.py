@@ -11,9 +11,9 @@ import pytest
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.contract import Check
-from grader.checks.drives import CHECKS, Band, Topic, Topics
-from grader.evidence.drive_record import Drive
-from grader.evidence.episodes import Order, run, shifted
+from grader.checks.drives import CHECKS, DistanceBandParams, TopicRateParams, TopicsParams
+from grader.evidence.drive_record import DriveRecord
+from grader.evidence.episodes import EpisodeSpec, run_episode, shifted_start
 from kit.controllers import find
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER
@@ -26,52 +26,54 @@ TURN = Trial(
 )
 
 
-def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> Drive:
+def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> DriveRecord:
     file = folder / "controller.py"
     file.write_text(source)
-    return run(Order(trial, seed, "turn, seed 1", False), file, limits=GRADER, level=Level.LIMITED)
+    return run_episode(
+        EpisodeSpec(trial, seed, "turn, seed 1", False), file, limits=GRADER, level=Level.LIMITED
+    )
 
 
 @pytest.fixture(scope="module")
-def forward(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+def forward(tmp_path_factory: pytest.TempPathFactory) -> DriveRecord:
     return drive(tmp_path_factory.mktemp("forward"), FORWARD)
 
 
-def measure(name: str, seen: Drive, params: object | None = None) -> float:
+def measure(name: str, seen: DriveRecord, params: object | None = None) -> float:
     check: Check = CHECKS[name]
     return check.measure(seen, check.params() if params is None else params)
 
 
-def test_the_recording_runs_again_to_the_bit(forward: Drive) -> None:
+def test_the_recording_runs_again_to_the_bit(forward: DriveRecord) -> None:
     again = rerun(forward.recording, forward.place.world)
     assert np.array_equal(again.poses, forward.recording.poses)
 
 
-def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: Drive) -> None:
+def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: DriveRecord) -> None:
     assert drive(tmp_path, FORWARD).fingerprint == forward.fingerprint
     assert drive(tmp_path, FORWARD, seed=2).fingerprint != forward.fingerprint
 
 
 def test_a_seed_shifts_the_start_within_its_bounds() -> None:
     home = TURN.home()
-    starts = [shifted(TURN, seed) for seed in range(50)]
+    starts = [shifted_start(TURN, seed) for seed in range(50)]
     assert len({start.x for start in starts}) == 50
     assert all(abs(start.x - home.x) <= 0.05 and abs(start.theta - home.theta) <= 0.2 for start in starts)
-    assert shifted(dataclasses.replace(TURN, shift=Shift()), 3) == home
+    assert shifted_start(dataclasses.replace(TURN, shift=Shift()), 3) == home
 
 
-def test_what_a_drive_measures(forward: Drive) -> None:
+def test_what_a_drive_measures(forward: DriveRecord) -> None:
     assert forward.outcome.startswith("not reached")
     assert measure("runs", forward) == 1.0
     assert measure("reached", forward) == 0.0
     assert measure("in_time", forward) == math.inf
     assert measure("moves", forward) == pytest.approx(0.3 * 2.8, abs=0.06)
     assert measure("rate", forward) == pytest.approx(0.0, abs=0.05)
-    assert measure("rate", forward, Topic("/cmd_vel", 20.0)) == pytest.approx(0.5, abs=0.05)
-    assert measure("rate", forward, Topic("/nowhere", 20.0)) == math.inf
+    assert measure("rate", forward, TopicRateParams("/cmd_vel", 20.0)) == pytest.approx(0.5, abs=0.05)
+    assert measure("rate", forward, TopicRateParams("/nowhere", 20.0)) == math.inf
     assert measure("smooth", forward) == 0.0
     assert measure("topics", forward) == 1.0
-    assert measure("topics", forward, Topics(("/cmd_vel std_msgs/msg/String", "/cmd_vel"))) == 0.5
+    assert measure("topics", forward, TopicsParams(("/cmd_vel std_msgs/msg/String", "/cmd_vel"))) == 0.5
     assert measure("bumps", forward) == 0.0
     assert measure("top_speed", forward) == pytest.approx(0.3, abs=0.01)
     assert measure("obeys", forward) == 0.0
@@ -79,8 +81,8 @@ def test_what_a_drive_measures(forward: Drive) -> None:
     assert 0.1 < measure("approach", forward) < 0.9
     nearest = measure("clearance", forward)
     assert 0.0 < nearest < 0.5
-    assert measure("keeps_distance", forward, Band(nearest - 0.01, 10.0)) == 1.0
-    assert measure("keeps_distance", forward, Band(5.0, 10.0)) == 0.0
+    assert measure("keeps_distance", forward, DistanceBandParams(nearest - 0.01, 10.0)) == 1.0
+    assert measure("keeps_distance", forward, DistanceBandParams(5.0, 10.0)) == 0.0
 
 
 def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_path: Path) -> None:
