@@ -32,7 +32,7 @@ EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
 )
 @click.option(
     "--format",
-    "form",
+    "format_name",
     default="text",
     show_default=True,
     metavar="NAME",

@@ -14,7 +14,7 @@ from grader.cli import options
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option(
     "--format",
-    "form",
+    "format_name",
     default="text",
     show_default=True,
     metavar="NAME",

@@ -125,13 +125,13 @@ def test_the_exploit_is_a_way_that_never_arrives(
 ) -> None:
     exam = examined(name)
     assert exam.plan_outcome.exploit_start is not None
-    way = value_iteration.rollout(exam.value_iteration, exam.plan_outcome.exploit_start, ROOM.max_steps)
+    way = value_iteration.rollout(exam.policy, exam.plan_outcome.exploit_start, ROOM.max_steps)
     assert len(way) == ROOM.max_steps + 1
     assert exam.model.target not in exam.model.cell_of(way)
     # Replayed move by move, no other way pays as well: it is what the reward asks for.
     moves = (way[1:] % LAST_MOVES).tolist()
     own = behaviours.discounted_return(exam.model, exam.rewards, int(way[0]), moves)
-    best = float(exam.value_iteration.values[way[0]].max())
+    best = float(exam.policy.values[way[0]].max())
     assert own == pytest.approx(best, abs=2 * ROOM.discount**ROOM.max_steps * abs(best) + 1e-6)
 
 
