@@ -44,10 +44,10 @@ def user() -> Iterator[Callable[..., User]]:
         each.close()
 
 
-def solve(desk: Workspace, lesson: Lesson, exercise: Exercise) -> None:
+def solve(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> None:
     """Writes what the reference solution says over the student's files."""
-    lay_out(desk, lesson, exercise)
-    folder = folder_of(desk, lesson, exercise)
+    lay_out(workspace, lesson, exercise)
+    folder = folder_of(workspace, lesson, exercise)
     found = solutions_folder() / lesson.name / exercise.name
     single = found / f"solution{Path(exercise.file).suffix}"
     files = {exercise.file: single} if single.is_file() else _below(found / "solution")
@@ -63,8 +63,8 @@ def right(step: Step) -> int:
     return 1 + next(number for number, option in enumerate(step.options) if option.right)
 
 
-def stand(desk: Workspace, lesson: Lesson) -> Standing:
-    with Progress(desk.folder) as progress:
+def stand(workspace: Workspace, lesson: Lesson) -> Standing:
+    with Progress(workspace.folder) as progress:
         return standing(lesson, progress.events())
 
 
@@ -91,7 +91,7 @@ def wait_for(condition: Callable[[], bool], user: User, what: str) -> None:
 
 
 @pytest.mark.parametrize("name", ONE_BY_ONE)
-def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) -> None:
+def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: str) -> None:
     lesson = read(lessons_folder() / name)
     screen = user("lesson", name)
     count = len(lesson.steps)
@@ -102,13 +102,15 @@ def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) ->
         if step.options:
             screen.send(str(right(step)).encode())
             wait_for(
-                lambda step=step: step.number in stand(desk, lesson).predictions, screen, "the prediction"
+                lambda step=step: step.number in stand(workspace, lesson).predictions,
+                screen,
+                "the prediction",
             )  # type: ignore[misc]  # mypy on lambdas
         if step.exercise is not None:
-            solve(desk, lesson, step.exercise)
+            solve(workspace, lesson, step.exercise)
             screen.send(b"r")
             wait_for(
-                lambda step=step: step.exercise.name in stand(desk, lesson).passed,  # type: ignore[misc]
+                lambda step=step: step.exercise.name in stand(workspace, lesson).passed,  # type: ignore[misc]
                 screen,
                 f"{step.exercise.name} to pass",
             )
@@ -116,22 +118,22 @@ def test_on_the_screen(desk: Workspace, user: Callable[..., User], name: str) ->
             screen.send(b"n")
     if lesson.steps[-1].exercise is None:
         screen.send(b"n")
-        wait_for(lambda: stand(desk, lesson).is_done, screen, "the end")
+        wait_for(lambda: stand(workspace, lesson).is_done, screen, "the end")
     screen.send(b"\x03")
     assert screen.wait() == 0
     screen.assert_sane()
-    assert reached(stand(desk, lesson)) == expected(lesson)
+    assert reached(stand(workspace, lesson)) == expected(lesson)
 
 
 @pytest.mark.parametrize("name", ONE_BY_ONE)
-def test_line_by_line(desk: Workspace, name: str) -> None:
+def test_line_by_line(workspace: Workspace, name: str) -> None:
     lesson = read(lessons_folder() / name)
     lines = []
     for step in lesson.steps:
         if step.options:
             lines.append(str(right(step)))
         if step.exercise is not None:
-            solve(desk, lesson, step.exercise)
+            solve(workspace, lesson, step.exercise)
             lines.append("r")
         lines.append("n")
     done = subprocess.run(
@@ -145,10 +147,10 @@ def test_line_by_line(desk: Workspace, name: str) -> None:
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stdout + done.stderr
     assert "is done" in done.stdout
-    assert reached(stand(desk, lesson)) == expected(lesson)
+    assert reached(stand(workspace, lesson)) == expected(lesson)
 
 
-def test_a_step_is_not_gone_through_before_its_prediction(desk: Workspace) -> None:
+def test_a_step_is_not_gone_through_before_its_prediction(workspace: Workspace) -> None:
     lesson = read(lessons_folder() / FIRST[0])
     done = subprocess.run(
         [sys.executable, "-m", "kit", "lesson", "1", "--plain"],
@@ -160,6 +162,6 @@ def test_a_step_is_not_gone_through_before_its_prediction(desk: Workspace) -> No
     )
     assert done.returncode == 0
     assert "Traceback" not in done.stdout + done.stderr
-    with Progress(desk.folder) as progress:
+    with Progress(workspace.folder) as progress:
         assert progress.events(Kind.STEP) == progress.events(Kind.PREDICTION) == []
-    assert not stand(desk, lesson).is_begun
+    assert not stand(workspace, lesson).is_begun

@@ -102,7 +102,7 @@ def show(
     app = KitApp(terminal)
     app.begin(
         FieldsScreen(
-            app.look,
+            app.kit_theme,
             place,
             controller,
             case=case,

@@ -21,6 +21,6 @@ def show_on_screen(
     from kit.tui.screens.levels import LevelsScreen
 
     app = KitApp(terminal)
-    app.begin(LevelsScreen(app.look, progress, desk, level))
+    app.begin(LevelsScreen(app.kit_theme, progress, desk, level))
     app.run()
     raise SystemExit(app.return_code or 0)

@@ -92,7 +92,7 @@ def command(
     from kit.tui.screens.launched import LaunchScreen
 
     app = KitApp(terminal)
-    screen = LaunchScreen(app.look, target, arguments, desk=desk, seed=seed, speed=speed)
+    screen = LaunchScreen(app.kit_theme, target, arguments, workspace=desk, seed=seed, speed=speed)
     app.begin(screen)
     app.run()
     if screen.has_no_world:

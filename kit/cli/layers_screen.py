@@ -26,6 +26,6 @@ def show_on_screen(task: Task, title: str, terminal: TerminalDecision | None = N
     from kit.workspace import open_workspace
 
     app = KitApp(terminal)
-    app.begin(LayersScreen(app.look, task, title, saved_to=open_workspace(make=False).worlds))
+    app.begin(LayersScreen(app.kit_theme, task, title, saved_to=open_workspace(make=False).worlds))
     app.run()
     raise SystemExit(app.return_code or 0)

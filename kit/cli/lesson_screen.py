@@ -22,7 +22,7 @@ def show_on_screen(
     from kit.tui.screens.lesson import LessonScreen
 
     app = KitApp(terminal)
-    app.begin(LessonScreen(app.look, Visit(lesson, progress, desk), desk))
+    app.begin(LessonScreen(app.kit_theme, Visit(lesson, progress, desk), desk))
     app.run()
     raise SystemExit(app.return_code or 0)
 
@@ -31,13 +31,13 @@ def show_list(desk: Workspace, terminal: TerminalDecision) -> NoReturn:
     """All lessons on a full screen; ends the verb when that is left."""
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
-    from kit.tui.overview import School
     from kit.tui.screens.lessons import LessonsScreen
+    from kit.tui.student_store import StudentStore
 
-    app, school = KitApp(terminal), School(desk)
+    app, store = KitApp(terminal), StudentStore(desk)
     try:
-        app.begin(LessonsScreen(app.look, school, school.look()))
+        app.begin(LessonsScreen(app.kit_theme, store, store.read_overview()))
         app.run()
     finally:
-        school.close()
+        store.close()
     raise SystemExit(app.return_code or 0)

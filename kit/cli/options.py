@@ -15,7 +15,7 @@ from kit.tui.terminal import (
     GLYPH_CHOICES,
     TerminalDecision,
     TerminalFacts,
-    TerminalWishes,
+    TerminalOptions,
     decide,
 )
 from kit.workspace import Workspace, WorkspaceError, open_workspace
@@ -56,7 +56,7 @@ def desk(folder: Path | None) -> Workspace:
 def terminal(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
     """What this terminal gets, decided once."""
     wish = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
-    return decide(os.environ, TerminalFacts.here(), TerminalWishes(plain, wish, color))
+    return decide(os.environ, TerminalFacts.here(), TerminalOptions(plain, wish, color))
 
 
 workspace: Decorator = click.option(

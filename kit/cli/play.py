@@ -90,7 +90,7 @@ def command(
 
     app = KitApp(terminal)
     screen = PlayScreen(
-        app.look,
+        app.kit_theme,
         place,
         controller,
         case=case,

@@ -43,7 +43,7 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
 
         os.environ.update(terminal.environment())
         app = KitApp(terminal)
-        app.begin(ReplayScreen(app.look, place, recording, file.name))
+        app.begin(ReplayScreen(app.kit_theme, place, recording, file.name))
         app.run()
         raise SystemExit(app.return_code or 0)
     try:

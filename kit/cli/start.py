@@ -50,22 +50,22 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
         return
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
-    from kit.tui.overview import School
     from kit.tui.screens.start import StartScreen
+    from kit.tui.student_store import StudentStore
 
     app = KitApp(terminal)
-    app.begin(StartScreen(app.look, School(desk), seed=seed))
+    app.begin(StartScreen(app.kit_theme, StudentStore(desk), seed=seed))
     app.run()
     if app.return_code:
         raise SystemExit(app.return_code)
 
 
 def _tell(desk: Workspace) -> None:
-    from kit.tui.overview import School
+    from kit.tui.student_store import StudentStore
 
-    school = School(desk)
+    school = StudentStore(desk)
     try:
-        overview = school.look()
+        overview = school.read_overview()
         notice = school.take_notice()
     finally:
         school.close()

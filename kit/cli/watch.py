@@ -53,7 +53,7 @@ def look(run: Run, terminal: TerminalDecision) -> None:
     from kit.tui.screens.training import TrainingScreen
 
     app = KitApp(terminal)
-    screen = TrainingScreen(app.look, run)
+    screen = TrainingScreen(app.kit_theme, run)
     app.begin(screen)
     app.run()
     if screen.state == "interrupted" and run.last_words:

@@ -10,7 +10,7 @@ from textual.screen import Screen
 
 from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
 
@@ -22,12 +22,12 @@ class KitApp(App[None]):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+c,ctrl+q", "quit", show=False, priority=True)]
     CSS = """
     Screen { background: transparent; }
-    KitApp.-ascii Page > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
+    KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 
     def __init__(self, terminal: TerminalDecision) -> None:
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
-        self.look = Look.of(terminal)
+        self.kit_theme = Theme.of(terminal)
         self.theme = terminal.theme
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None

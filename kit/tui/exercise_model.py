@@ -22,7 +22,7 @@ MOST_FILES: Final = 200
 """No exercise has more; a folder that was unpacked there by mistake may."""
 
 
-class FilesWatch:
+class FolderWatch:
     """Notices when any file of an exercise has been saved. One that is new counts from its next save on: editors
     make files for a moment."""
 
@@ -51,8 +51,8 @@ class FilesWatch:
             return
 
 
-class Workbench:
-    """One exercise of a visit. ``look`` at it a few times a second; ``close`` it when done.
+class ExerciseModel:
+    """One exercise of a visit. ``poll`` it a few times a second; ``close`` it when done.
 
     Raises WorkError where the student's files cannot be laid out.
     """
@@ -93,7 +93,7 @@ class Workbench:
             )  # what is checked now need not be checked once more
             self._check = self._visit.check(self.exercise)
 
-    def look(self) -> bool:
+    def poll(self) -> bool:
         """Starts a check where the file was saved, and takes in one that has ended; says whether one has.
 
         Raises ProgressError where the disk refuses to note it: the report is there all the same.
@@ -109,7 +109,7 @@ class Workbench:
         self._visit.take(self.exercise, report)
         return True
 
-    def begin_again(self) -> Path | None:
+    def start_over(self) -> Path | None:
         """The exercise as at first; where the former files were kept. Raises WorkError."""
         self.close()
         kept = self._visit.begin_again(self.exercise)

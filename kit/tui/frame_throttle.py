@@ -31,7 +31,7 @@ _WINDOW: Final = 32
 
 
 @dataclass
-class FrameCredit:
+class FrameThrottle:
     """Says when the next frame may be drawn. Times are seconds on any one steady clock."""
 
     fastest: int = FAST

@@ -1,4 +1,4 @@
-"""Listening to a running world's graph for a screen: what happens in the world's thread, and no Textual."""
+"""GraphListener to a running world's graph for a screen: what happens in the world's thread, and no Textual."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class GraphUpdate:
     """A graph at one instant. Safe to hand over."""
 
     state: GraphState
@@ -26,13 +26,13 @@ class Heard:
     paused: bool
 
 
-class Listening:
+class GraphListener:
     """Calls ``deliver`` with what there is to know, each time it is shown the session; in that very thread.
 
     Costs the world nothing before the first time, and nothing after ``stop``.
     """
 
-    def __init__(self, deliver: Callable[[Heard], None]) -> None:
+    def __init__(self, deliver: Callable[[GraphUpdate], None]) -> None:
         self._deliver = deliver
         self._topic_stats: TopicStats | None = None
         self._state: GraphState | None = None
@@ -48,7 +48,7 @@ class Listening:
         if self._state is None or self._state.version != graph.directory.version:
             self._state = snapshot(graph)
         said, newest = self._topic_stats.flow_stats(), self._topic_stats.latest_message
-        self._deliver(Heard(self._state, said, self.chosen, newest, session.runner.paused))
+        self._deliver(GraphUpdate(self._state, said, self.chosen, newest, session.runner.paused))
 
     def stop(self) -> None:
         """In the world's thread too."""

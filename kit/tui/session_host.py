@@ -28,17 +28,17 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
 VIEW_INTERVAL: Final = 0.045
 """Seconds between two views while the world runs: a little over twenty a second."""
 
-Wish: TypeAlias = "Callable[[Session], object]"
+SessionJob: TypeAlias = "Callable[[Session], object]"
 
 
-class Running:
-    """At most one session at a time. ``on_view`` and ``on_trouble`` are called in other threads."""
+class SessionHost:
+    """At most one session at a time. ``on_view`` and ``on_error`` are called in other threads."""
 
     def __init__(
         self,
         *,
         on_view: Callable[[View], None],
-        on_trouble: Callable[[str], None],
+        on_error: Callable[[str], None],
         seed: int = 0,
         socket_dir: Path | None = None,
         records: bool = False,
@@ -46,7 +46,7 @@ class Running:
         """``socket_dir``: the folder of sockets through which other terminals look in; None: none does. ``records``:
         whether the drive is recorded."""
         self._on_view = on_view
-        self._on_trouble = on_trouble
+        self._on_error = on_error
         self._seed = seed
         self._socket_dir = socket_dir
         self._records = records
@@ -55,14 +55,14 @@ class Running:
         self._session: Session | None = None
         self._live: LiveRun | None = None
         self._showing: Showing | None = None
-        self._shown = 0.0
+        self._last_view_s = 0.0
         self._beams = False
-        self._listener: Wish | None = None
+        self._listener: SessionJob | None = None
         self._is_closed = False
-        self._exchange = threading.Lock()
+        self._swap_lock = threading.Lock()
         """Held while one world takes the place of another, or of none."""
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-        self._helper = threading.Thread(target=self._do_jobs, name="helper", daemon=True)
+        self._helper = threading.Thread(target=self._run_jobs, name="helper", daemon=True)
         self._helper.start()
 
     @property
@@ -92,15 +92,15 @@ class Running:
 
         self._jobs.put(job)
 
-    def wish(self, wish: Wish) -> None:
+    def post(self, job: SessionJob) -> None:
         """Has something done to the session, in the world's thread, between two ticks."""
         session, live = self._session, self._live
         if session is not None and live is not None:
-            live.post(lambda runner: wish(session))
+            live.post(lambda runner: job(session))
 
     def drive_with(self, controller: ControllerFile) -> None:
         """Another controller, in the world that is open by then."""
-        self._jobs.put(lambda: self.wish(lambda session: session.drive_with(controller)))
+        self._jobs.put(lambda: self.post(lambda session: session.drive_with(controller)))
 
     def set_factor(self, factor: float) -> None:
         if self._live is not None:
@@ -116,23 +116,23 @@ class Running:
 
     def show_beams(self, shown: bool) -> None:
         self._beams = shown
-        self.wish(lambda session: None)
+        self.post(lambda session: None)
 
     def recording(self) -> Recording | None:
         """The drive in the world that was opened last; None where nothing is recorded. To be asked after ``close``."""
         return None if self._recorder is None else self._recorder.recording()
 
-    def listen(self, listener: Wish | None) -> None:
+    def set_listener(self, listener: SessionJob | None) -> None:
         """Has the session shown to somebody else too, in the world's thread, as often as there are views."""
         self._listener = listener
-        self.wish(lambda session: None)
+        self.post(lambda session: None)
 
-    def shut(self) -> None:
+    def close_session(self) -> None:
         """Ends the world and its controller; another may be opened later. Does not wait."""
 
         def job() -> None:
-            with self._exchange:
-                self._drop()
+            with self._swap_lock:
+                self._drop_session()
 
         self._jobs.put(job)
 
@@ -140,15 +140,15 @@ class Running:
         """Ends the world and its controller, and waits for both; not for a world that is being opened."""
         self._is_closed = True
         self._jobs.put(None)
-        with self._exchange:
-            self._drop()
+        with self._swap_lock:
+            self._drop_session()
 
-    def _do_jobs(self) -> None:
+    def _run_jobs(self) -> None:
         while (job := self._jobs.get()) is not None and not self._is_closed:
             try:
                 job()
             except Exception as error:  # noqa: BLE001 - whatever it is, it must reach the screen, not a dead thread
-                self._on_trouble(str(error))
+                self._on_error(str(error))
 
     def _record(self, session: Session) -> None:
         """From the first tick on, for whoever wants to keep the drive."""
@@ -161,19 +161,19 @@ class Running:
             session.runner.observers.append(self._recorder)
 
     def _replace(self, session: Session, factor: float | None = None) -> None:
-        with self._exchange:
+        with self._swap_lock:
             if self._is_closed:
                 session.close()
             else:
-                self._install(session, self.pacing.factor if factor is None else factor)
+                self._start(session, self.pacing.factor if factor is None else factor)
 
-    def _install(self, session: Session, factor: float) -> None:
+    def _start(self, session: Session, factor: float) -> None:
         from kit.run.world_thread import LiveRun
 
         runner = session.runner
-        self._drop()
+        self._drop_session()
         self._session, self._showing = session, Showing(session)
-        self._live = live = LiveRun(runner, factor=factor, on_change=self._changed)
+        self._live = live = LiveRun(runner, factor=factor, on_change=self._world_changed)
         runner.on_rate = lambda rate: self.set_factor(rate * runner.simulation.step_size)
         if self._socket_dir is not None:
             from kit.inspection.server import open_inspection_server
@@ -184,16 +184,16 @@ class Running:
 
             def wake() -> None:
                 if runner.paused:  # nobody ticks: a visitor's words have to be looked at
-                    live.post(_nothing)
+                    live.post(_no_op)
 
             self._inspection_server = open_inspection_server(session.graph, self._socket_dir, name, wake)
             if self._inspection_server is not None:
                 runner.participants.append(self._inspection_server)
         live.__enter__()
         if runner.paused:  # nobody ticks, and yet it is to be seen
-            live.post(_nothing)
+            live.post(_no_op)
 
-    def _drop(self) -> None:
+    def _drop_session(self) -> None:
         live, session, server = self._live, self._session, self._inspection_server
         self._live = self._session = self._showing = self._inspection_server = None
         if session is not None:
@@ -205,16 +205,16 @@ class Running:
         if session is not None:
             session.close()
 
-    def _changed(self, runner: Runner) -> None:
+    def _world_changed(self, runner: Runner) -> None:
         """In the world's thread, after every stretch of ticks."""
         showing, live, session = self._showing, self._live, self._session
         if showing is None or live is None or session is None:
             return
         if live.failure is not None:
-            self._on_trouble(f"the world stopped: {live.failure}")
+            self._on_error(f"the world stopped: {live.failure}")
         now = time.monotonic()
-        if runner.paused or now - self._shown >= VIEW_INTERVAL:
-            self._shown = now
+        if runner.paused or now - self._last_view_s >= VIEW_INTERVAL:
+            self._last_view_s = now
             session.look_around()
             showing.beams = self._beams
             self._on_view(showing.view())
@@ -222,5 +222,5 @@ class Running:
                 listener(session)
 
 
-def _nothing(runner: Runner) -> None:
+def _no_op(runner: Runner) -> None:
     """A job that only has the world look around."""

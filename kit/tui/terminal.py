@@ -23,10 +23,10 @@ FULL_SIZE: Final = (80, 24)
 LEAST_SIZE: Final = (60, 18)
 """Columns and rows. Below FULL_SIZE panels are left out, below LEAST_SIZE there is one message."""
 
-_COLOUR_WISHES: Final[Mapping[str, Colour]] = MappingProxyType(
+_COLOUR_OPTIONS: Final[Mapping[str, Colour]] = MappingProxyType(
     {"none": "none", "16": "ansi16", "256": "256", "true": "truecolour"}
 )
-COLOUR_CHOICES: Final = tuple(_COLOUR_WISHES)
+COLOUR_CHOICES: Final = tuple(_COLOUR_OPTIONS)
 """The values of ``--color``."""
 GLYPH_CHOICES: Final[tuple[Glyphs, ...]] = ("braille", "block", "ascii")
 """The values of ``--glyphs``."""
@@ -75,7 +75,7 @@ def _is_tty(stream: TextIO | None) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class TerminalWishes:
+class TerminalOptions:
     """What the user asked for: ``--plain``, ``--glyphs``, ``--color``."""
 
     plain: bool = False
@@ -85,7 +85,7 @@ class TerminalWishes:
 
 
 @dataclass(frozen=True, slots=True)
-class Decision(Generic[T]):
+class ReasonedValue(Generic[T]):
     """A value and, in a sentence, why."""
 
     value: T
@@ -96,17 +96,17 @@ class Decision(Generic[T]):
 class TerminalDecision:
     """All that is decided about the terminal."""
 
-    plain: Decision[bool]
+    plain: ReasonedValue[bool]
     """Text line by line instead of a full screen."""
-    glyphs: Decision[Glyphs]
+    glyphs: ReasonedValue[Glyphs]
     """What the world is drawn with; with ``ascii``, borders are ASCII too."""
-    colour: Decision[Colour]
-    remote: Decision[bool]
-    between: Decision[Between | None]
+    colour: ReasonedValue[Colour]
+    remote: ReasonedValue[bool]
+    between: ReasonedValue[Between | None]
     """The program between us and the terminal."""
-    ask_keyboard: Decision[bool]
+    ask_keyboard: ReasonedValue[bool]
     """Whether to ask the terminal for key releases."""
-    room: Decision[Room]
+    room: ReasonedValue[Room]
     size: tuple[int, int] = field(default=FULL_SIZE)
 
     @property
@@ -135,10 +135,10 @@ class TerminalDecision:
 
 
 def decide(
-    environ: Mapping[str, str], facts: TerminalFacts, wishes: TerminalWishes | None = None
+    environ: Mapping[str, str], facts: TerminalFacts, wishes: TerminalOptions | None = None
 ) -> TerminalDecision:
     """Decides from the environment, the standard streams and the command line. Reads nothing else."""
-    wishes = wishes or TerminalWishes()
+    wishes = wishes or TerminalOptions()
     term = environ.get("TERM", "")
     remote = _remote(environ)
     between = _between(environ, term)
@@ -154,7 +154,7 @@ def decide(
     )
 
 
-def _plain(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision[bool]:
+def _plain(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> ReasonedValue[bool]:
     streams = (
         ("Standard input", facts.stdin_tty),
         ("Standard output", facts.stdout_tty),
@@ -162,13 +162,13 @@ def _plain(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision[
     )
     away = [name for name, tty in streams if not tty]
     if wishes.plain:
-        return Decision(True, "--plain was given.")
+        return ReasonedValue(True, "--plain was given.")
     if away:
-        return Decision(True, f"{away[0]} is not a terminal.")
+        return ReasonedValue(True, f"{away[0]} is not a terminal.")
     if term in _NO_SCREEN:
         named = f"TERM is {term!r}" if term else "TERM is not set"
-        return Decision(True, f"{named}: such a terminal cannot move its cursor.")
-    return Decision(False, f"A terminal of type {term} on all three standard streams.")
+        return ReasonedValue(True, f"{named}: such a terminal cannot move its cursor.")
+    return ReasonedValue(False, f"A terminal of type {term} on all three standard streams.")
 
 
 def _writes(encoding: str, text: str) -> bool:
@@ -179,64 +179,66 @@ def _writes(encoding: str, text: str) -> bool:
     return True
 
 
-def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalWishes) -> Decision[Glyphs]:
+def _glyphs(term: str, facts: TerminalFacts, wishes: TerminalOptions) -> ReasonedValue[Glyphs]:
     if not _writes(facts.encoding, _SAMPLE):
-        return Decision("ascii", f"Standard error is encoded as {facts.encoding}, which has no braille.")
+        return ReasonedValue("ascii", f"Standard error is encoded as {facts.encoding}, which has no braille.")
     if wishes.glyphs:
-        return Decision(wishes.glyphs, f"--glyphs {wishes.glyphs} was given.")
+        return ReasonedValue(wishes.glyphs, f"--glyphs {wishes.glyphs} was given.")
     if term.startswith(_ASCII_ONLY):
-        return Decision("ascii", f"A terminal of type {term} has no font for braille.")
-    return Decision(
+        return ReasonedValue("ascii", f"A terminal of type {term} has no font for braille.")
+    return ReasonedValue(
         "braille", f"Standard error is encoded as {facts.encoding}, and {term} should have the font."
     )
 
 
-def _colour(environ: Mapping[str, str], term: str, wishes: TerminalWishes) -> Decision[Colour]:
+def _colour(environ: Mapping[str, str], term: str, wishes: TerminalOptions) -> ReasonedValue[Colour]:
     if wishes.color:
-        return Decision(_COLOUR_WISHES[wishes.color], f"--color {wishes.color} was given.")
+        return ReasonedValue(_COLOUR_OPTIONS[wishes.color], f"--color {wishes.color} was given.")
     if environ.get("NO_COLOR"):
-        return Decision("none", "NO_COLOR is set.")
+        return ReasonedValue("none", "NO_COLOR is set.")
     if term.startswith(_COLOURLESS) or term.endswith(("-m", "-mono")):
-        return Decision("none", f"A terminal of type {term} has no colours.")
-    return Decision(
+        return ReasonedValue("none", f"A terminal of type {term} has no colours.")
+    return ReasonedValue(
         "ansi16", "Your terminal's own 16 colours: the fewest bytes, and right on light and dark alike."
     )
 
 
-def _remote(environ: Mapping[str, str]) -> Decision[bool]:
+def _remote(environ: Mapping[str, str]) -> ReasonedValue[bool]:
     for name in ("SSH_CONNECTION", "SSH_TTY", "SSH_CLIENT"):
         if environ.get(name):
-            return Decision(True, f"{name} is set.")
-    return Decision(False, "No SSH variable is set.")
+            return ReasonedValue(True, f"{name} is set.")
+    return ReasonedValue(False, "No SSH variable is set.")
 
 
-def _between(environ: Mapping[str, str], term: str) -> Decision[Between | None]:
+def _between(environ: Mapping[str, str], term: str) -> ReasonedValue[Between | None]:
     if environ.get("TMUX") or term.startswith("tmux"):
-        return Decision("tmux", "TMUX is set." if environ.get("TMUX") else f"TERM is {term}.")
+        return ReasonedValue("tmux", "TMUX is set." if environ.get("TMUX") else f"TERM is {term}.")
     if environ.get("STY") or term.startswith("screen"):
-        return Decision("screen", "STY is set." if environ.get("STY") else f"TERM is {term}.")
+        return ReasonedValue("screen", "STY is set." if environ.get("STY") else f"TERM is {term}.")
     if environ.get("NCURSES_NO_UTF8_ACS") == "1" and _remote(environ).value:
-        return Decision("mosh", "NCURSES_NO_UTF8_ACS is 1, as mosh sets it.")
-    return Decision(None, "Neither tmux, screen nor mosh has left a sign.")
+        return ReasonedValue("mosh", "NCURSES_NO_UTF8_ACS is 1, as mosh sets it.")
+    return ReasonedValue(None, "Neither tmux, screen nor mosh has left a sign.")
 
 
-def _ask_keyboard(environ: Mapping[str, str], term: str) -> Decision[bool]:
+def _ask_keyboard(environ: Mapping[str, str], term: str) -> ReasonedValue[bool]:
     if environ.get("TEXTUAL_DISABLE_KITTY_KEY") == "1":
-        return Decision(False, "TEXTUAL_DISABLE_KITTY_KEY is 1.")
+        return ReasonedValue(False, "TEXTUAL_DISABLE_KITTY_KEY is 1.")
     if term.startswith(_ASCII_ONLY):
-        return Decision(False, f"A terminal of type {term} would print the question.")
-    return Decision(True, "A terminal that does not know the question ignores it.")
+        return ReasonedValue(False, f"A terminal of type {term} would print the question.")
+    return ReasonedValue(True, "A terminal that does not know the question ignores it.")
 
 
-def _room(size: tuple[int, int]) -> Decision[Room]:
+def _room(size: tuple[int, int]) -> ReasonedValue[Room]:
     def holds(least: tuple[int, int]) -> bool:
         return size[0] >= least[0] and size[1] >= least[1]
 
     here = f"{size[0]}x{size[1]}"
     if holds(FULL_SIZE):
-        return Decision("full", f"{here} holds the whole screen of {FULL_SIZE[0]}x{FULL_SIZE[1]}.")
+        return ReasonedValue("full", f"{here} holds the whole screen of {FULL_SIZE[0]}x{FULL_SIZE[1]}.")
     if holds(LEAST_SIZE):
-        return Decision("compact", f"{here} is less than {FULL_SIZE[0]}x{FULL_SIZE[1]}: panels are left out.")
-    return Decision(
+        return ReasonedValue(
+            "compact", f"{here} is less than {FULL_SIZE[0]}x{FULL_SIZE[1]}: panels are left out."
+        )
+    return ReasonedValue(
         "too small", f"{here} is less than {LEAST_SIZE[0]}x{LEAST_SIZE[1]}: make the window larger."
     )

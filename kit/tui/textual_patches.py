@@ -51,7 +51,7 @@ class CroppingCompositor(Compositor):
         return update and CroppedUpdate(update.chops, update.spans, update.chop_ends)
 
 
-class StillScreen(Screen[Result]):
+class ActivePaintScreen(Screen[Result]):
     """A screen that is not painted while another lies over it. Textual would paint both, whole, each time
     anything changes underneath, and from then on for every message."""
 

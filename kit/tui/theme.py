@@ -14,7 +14,7 @@ _PALETTE: Final = MappingProxyType({"none": "none", "ansi16": "16", "256": "256"
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class Theme:
     terminal: TerminalDecision
     encoder: Encoder
     palette: Palette

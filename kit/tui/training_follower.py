@@ -23,7 +23,7 @@ HOLD_S: Final = 1.0
 """How long the end of an episode stands still, to be read."""
 
 
-class Following:
+class TrainingFollower:
     """Callbacks are called in other threads."""
 
     def __init__(
@@ -32,52 +32,52 @@ class Following:
         *,
         on_standing: Callable[[Standing], None],
         on_moment: Callable[[Moment], None],
-        on_trouble: Callable[[str], None],
+        on_error: Callable[[str], None],
     ) -> None:
         self._run = run
         self._on_standing = on_standing
         self._on_moment = on_moment
-        self._on_trouble = on_trouble
-        self._told = ""
-        self._wishes: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._on_error = on_error
+        self._last_error = ""
+        self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._closed = threading.Event()
-        self._skipped = threading.Event()
+        self._skip_requested = threading.Event()
         self._case: str | None = None
-        self._kept = False
+        self._has_ended = False
         self._reader = threading.Thread(target=self._read, name="reader", daemon=True)
         self._driver: threading.Thread | None = None
 
     def start(self) -> None:
         self._reader.start()
 
-    def ask(self, order: Order) -> None:
+    def send_order(self, order: Order) -> None:
         """Tells the learner, which obeys between two updates."""
-        self._wishes.put(lambda: self._run.ask(order))
+        self._jobs.put(lambda: self._run.ask(order))
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Starts a learner that goes on where the last one left off."""
 
-        def wish() -> None:
+        def job() -> None:
             from kit.learning.training.worker import start
 
             start(self._run)
 
-        self._wishes.put(wish)
+        self._jobs.put(job)
 
     def show_case(self, case: str | None) -> None:
         """The case to drive from now on; None: one after the other."""
         self._case = case
-        self.skip()
+        self.skip_episode()
 
-    def skip(self) -> None:
+    def skip_episode(self) -> None:
         """On to the next episode, now."""
-        self._skipped.set()
+        self._skip_requested.set()
 
     def close(self) -> None:
         """Ends the looking, not the training."""
         self._closed.set()
-        self._skipped.set()
-        self._wishes.put(None)
+        self._skip_requested.set()
+        self._jobs.put(None)
         for thread in (self._reader, self._driver):
             if thread is not None and thread.is_alive():
                 thread.join(timeout=2)
@@ -94,48 +94,48 @@ class Following:
         try:
             plan = plan_of(self._run.config())
         except (RunError, UnknownTask, UnknownAlgorithm) as error:
-            self._on_trouble(str(error))
+            self._on_error(str(error))
             return
-        logbook, reader, shown = Logbook(plan), EventReader(self._run.events_file), None
+        tracker, reader, shown = Logbook(plan), EventReader(self._run.events_file), None
         while not self._closed.is_set():
             try:
                 # Asked first: whatever is written before the end is read below.
                 present = self._run.alive, self._run.asked()
                 new: list[Event] = list(reader.new())
             except OSError as error:  # a network drive that is away comes back
-                self._tell(f"{self._run.folder}: {error.strerror}. Looking again.")
+                self._report_once(f"{self._run.folder}: {error.strerror}. Looking again.")
             else:
                 for event in new:
-                    logbook.add(event)
-                self._kept = not present[0]
+                    tracker.add(event)
+                self._has_ended = not present[0]
                 if new or present != shown:
                     shown = present
-                    self._on_standing(logbook.standing(alive=present[0], order=present[1]))
+                    self._on_standing(tracker.standing(alive=present[0], order=present[1]))
                 if self._driver is None:
-                    self._begin_driving(plan)
-            self._do_wishes()
+                    self._start_driver(plan)
+            self._run_jobs()
 
-    def _do_wishes(self) -> None:
+    def _run_jobs(self) -> None:
         """Waits for one, but not for long."""
         from kit.learning.training.runs import RunError
 
         try:
-            wish = self._wishes.get(timeout=POLL_S)
+            job = self._jobs.get(timeout=POLL_S)
         except Empty:
             return
-        if wish is not None:
+        if job is not None:
             try:
-                wish()
+                job()
             except (RunError, OSError) as error:
-                self._on_trouble(str(error))
+                self._on_error(str(error))
 
-    def _tell(self, trouble: str) -> None:
+    def _report_once(self, trouble: str) -> None:
         """Once."""
-        if trouble != self._told:
-            self._told = trouble
-            self._on_trouble(trouble)
+        if trouble != self._last_error:
+            self._last_error = trouble
+            self._on_error(trouble)
 
-    def _begin_driving(self, plan: Plan) -> None:
+    def _start_driver(self, plan: Plan) -> None:
         self._driver = threading.Thread(target=self._drive, args=(plan,), name="driver", daemon=True)
         self._driver.start()
 
@@ -148,24 +148,24 @@ class Following:
 
         demonstration = Demonstration(self._run, greedy=plan.greedy)
         while not self._closed.is_set():
-            self._skipped.clear()
+            self._skip_requested.clear()
             demonstration.case = self._case
             wait = POLL_S
             try:
-                if demonstration.begin(kept=self._kept):
-                    self._drive_on(demonstration)
+                if demonstration.begin(kept=self._has_ended):
+                    self._drive_episode(demonstration)
                     wait = HOLD_S
             except (PolicyError, RunError, OSError) as error:
-                self._tell(str(error))
-            self._skipped.wait(wait)
+                self._report_once(str(error))
+            self._skip_requested.wait(wait)
 
-    def _drive_on(self, demonstration: Demonstration) -> None:
+    def _drive_episode(self, demonstration: Demonstration) -> None:
         """One episode, as fast as the robot would drive."""
         due = time.monotonic()
         self._on_moment(demonstration.moment())
         while not demonstration.over:
             due = max(due + demonstration.step_time, time.monotonic())
-            if self._skipped.wait(due - time.monotonic()) or self._closed.is_set():
+            if self._skip_requested.wait(due - time.monotonic()) or self._closed.is_set():
                 return
             demonstration.step()
             self._on_moment(demonstration.moment())

@@ -11,8 +11,8 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.tui.app import KitApp
-from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
-from kit.tui.theme import Look
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.theme import Theme
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]
 SEEN_WITHIN = 60.0
@@ -20,20 +20,20 @@ SEEN_WITHIN = 60.0
 
 
 def stage(
-    make: Callable[[Look], Screen[Any]],
+    make: Callable[[Theme], Screen[Any]],
     scene: Scene,
     *,
     size: tuple[int, int] = (80, 24),
     ascii_only: bool = False,
 ) -> None:
     """Plays a scene on a screen."""
-    wishes = TerminalWishes(False, "ascii" if ascii_only else "braille", None)
+    wishes = TerminalOptions(False, "ascii" if ascii_only else "braille", None)
     terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), wishes)
 
     async def run() -> None:
         app = KitApp(terminal)
         async with app.run_test(size=size) as pilot:
-            await app.push_screen(make(app.look))
+            await app.push_screen(make(app.kit_theme))
             await pilot.pause()
             await scene(pilot)
 

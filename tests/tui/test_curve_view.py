@@ -10,7 +10,7 @@ from textual.pilot import Pilot
 
 from kit.render.curve import Axes, Curve
 from kit.render.encode import Ascii
-from kit.tui.widgets.learning_curve import CurveView
+from kit.tui.widgets.learning_curve import LearningCurveView
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
 
@@ -18,7 +18,7 @@ class CurveApp(App[None]):
     def __init__(self) -> None:
         super().__init__(driver_class=TapeDriver)
         self.theme = "ansi-dark"
-        self.view = CurveView(Axes("steps", low=0, high=1, goal=0.8))
+        self.view = LearningCurveView(Axes("steps", low=0, high=1, goal=0.8))
 
     def compose(self) -> Any:
         yield self.view
@@ -72,7 +72,7 @@ def test_no_data_and_little_room_are_no_trouble() -> None:
 
 def test_glyphs_can_be_chosen() -> None:
     app = CurveApp()
-    app.view = CurveView(encoder=Ascii())
+    app.view = LearningCurveView(encoder=Ascii())
 
     async def script(pilot: Pilot[None]) -> None:
         app.view.show(learning(20))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.tui.exercise_model import FilesWatch
+from kit.tui.exercise_model import FolderWatch
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.fixture
 def noticed(folder: Path) -> Callable[[], bool]:
     """Whether a save is noticed within a little while."""
-    watch = FilesWatch(folder / "world.yaml")
+    watch = FolderWatch(folder / "world.yaml")
 
     def look() -> bool:
         end = time.monotonic() + 1.5

@@ -1,4 +1,4 @@
-"""Frame credit against a simulated link: the picture stays young at every speed, and never stalls for good."""
+"""Frame throttle against a simulated link: the picture stays young at every speed, and never stalls for good."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from kit.tui.frame_throttle import FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameCredit
+from kit.tui.frame_throttle import FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameThrottle
 
 FRAME = 1000
 """Bytes of a frame."""
@@ -37,17 +37,17 @@ class Link:
             heapq.heappush(self.events, shown + self.delay)
 
 
-def play(link: Link, end: float, credit: FrameCredit | None = None, start: float = 0.0) -> list[float]:
+def play(link: Link, end: float, throttle: FrameThrottle | None = None, start: float = 0.0) -> list[float]:
     """Draws whenever allowed; the times of the frames."""
-    credit = credit or FrameCredit()
+    throttle = throttle or FrameThrottle()
     now, drawn = start, []
     while now < end:
         while link.events and link.events[0] <= now:
-            credit.answered(heapq.heappop(link.events))
-        if credit.may_draw(now):
-            credit.drawn(now)
+            throttle.answered(heapq.heappop(link.events))
+        if throttle.may_draw(now):
+            throttle.drawn(now)
             link.send(now)
-            credit.sent(now)
+            throttle.sent(now)
             drawn.append(now)
         now += 0.001
     return drawn
@@ -85,17 +85,17 @@ def test_a_slow_link_is_asked_for_ten_frames_a_second_at_most() -> None:
 
 
 def test_a_link_that_slows_down_and_recovers() -> None:
-    credit = FrameCredit()
+    throttle = FrameThrottle()
     link = Link(1e7, 0.005)
-    play(link, 5, credit)
-    assert credit.fps == FAST
+    play(link, 5, throttle)
+    assert throttle.fps == FAST
     slow = Link(5e3, 0.02)
-    play(slow, 15, credit, start=5)
-    assert credit.fps == SLOW
-    assert credit.lag is not None
-    assert credit.lag > 0.2
-    play(Link(1e7, 0.005), 25, credit, start=15)
-    assert credit.fps == FAST
+    play(slow, 15, throttle, start=5)
+    assert throttle.fps == SLOW
+    assert throttle.lag is not None
+    assert throttle.lag > 0.2
+    play(Link(1e7, 0.005), 25, throttle, start=15)
+    assert throttle.fps == FAST
 
 
 def test_a_terminal_that_never_answers_gets_ten_frames_a_second_after_the_first_timeout() -> None:
@@ -115,47 +115,47 @@ def test_a_lost_answer_costs_a_pause_and_no_more() -> None:
 
 def test_a_link_that_stood_still_goes_on() -> None:
     """Nothing arrives for five seconds, then everything does."""
-    credit, link = FrameCredit(), Link(1e7, 0.005)
-    play(link, 3, credit)
+    throttle, link = FrameThrottle(), Link(1e7, 0.005)
+    play(link, 3, throttle)
     link.free_at, link.events = 8.0, []
-    times = play(link, 20, credit, start=3)
+    times = play(link, 20, throttle, start=3)
     assert rate(times, 12, 20) > 0.9 * SLOW
 
 
 def test_an_answer_nobody_asked_for_changes_nothing() -> None:
-    credit = FrameCredit()
-    credit.answered(1.0)
-    assert credit.lag is None
-    assert credit.allowed == 1
+    throttle = FrameThrottle()
+    throttle.answered(1.0)
+    assert throttle.lag is None
+    assert throttle.allowed == 1
 
 
 def test_the_wait_is_until_the_next_frame_is_due() -> None:
-    credit = FrameCredit()
-    assert credit.wait(5.0) == 0
-    credit.drawn(5.0)
-    credit.sent(5.0)
-    credit.answered(5.001)
-    assert credit.fps == FAST
-    assert credit.wait(5.02) == pytest.approx(0.03, abs=0.03)
-    assert credit.wait(5.2) == 0
+    throttle = FrameThrottle()
+    assert throttle.wait(5.0) == 0
+    throttle.drawn(5.0)
+    throttle.sent(5.0)
+    throttle.answered(5.001)
+    assert throttle.fps == FAST
+    assert throttle.wait(5.02) == pytest.approx(0.03, abs=0.03)
+    assert throttle.wait(5.2) == 0
 
 
 def test_late_frames_do_not_slow_the_rate() -> None:
     """A timer that rings a few milliseconds late each time still gets its twenty."""
-    credit, now, frames = FrameCredit(), 0.0, 0
+    throttle, now, frames = FrameThrottle(), 0.0, 0
     while now < 20.0:
-        wait = credit.wait(now)
+        wait = throttle.wait(now)
         if wait > 0:
             now += wait + 0.004
             continue
-        credit.drawn(now)
-        credit.sent(now)
-        credit.answered(now + 0.001)
+        throttle.drawn(now)
+        throttle.sent(now)
+        throttle.answered(now + 0.001)
         frames += 1
     assert frames / 20 == pytest.approx(FAST, rel=0.03)
 
 
 def test_the_fastest_rate_can_be_chosen() -> None:
-    drawn = play(Link(1e7, 0.001), 10, FrameCredit(fastest=5))
+    drawn = play(Link(1e7, 0.001), 10, FrameThrottle(fastest=5))
     assert rate(drawn, 2, 10) == pytest.approx(5, abs=0.5)
     assert not math.isnan(rate(drawn, 0, 1))

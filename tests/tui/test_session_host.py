@@ -11,7 +11,7 @@ import pytest
 from kit.controllers import find
 from kit.run.scenario import Place, find_place
 from kit.run.view import View
-from kit.tui.session_host import Running
+from kit.tui.session_host import SessionHost
 
 
 class Face:
@@ -20,7 +20,7 @@ class Face:
     def __init__(self) -> None:
         self.views: list[View] = []
         self.troubles: list[str] = []
-        self.behind = Running(on_view=self.views.append, on_trouble=self.troubles.append)
+        self.host = SessionHost(on_view=self.views.append, on_error=self.troubles.append)
 
     def until(self, is_so: Callable[[], object]) -> None:
         end = time.monotonic() + 20
@@ -33,21 +33,21 @@ class Face:
 def face() -> Iterator[Face]:
     face = Face()
     yield face
-    face.behind.close()
+    face.host.close()
 
 
 def test_one_world_takes_the_place_of_another(face: Face) -> None:
     for name in ("simple", "maze"):
-        face.behind.open(lambda name=name: find_place(name), find("forward"))  # type: ignore[misc]  # mypy on lambdas
+        face.host.open(lambda name=name: find_place(name), find("forward"))  # type: ignore[misc]  # mypy on lambdas
         face.until(lambda name=name: face.views and face.views[-1].place == name)  # type: ignore[misc]  # same
     face.until(lambda: face.views[-1].time_s > 0.2)
     assert not face.troubles
 
 
 def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
-    face.behind.open(lambda: find_place("simple"), find("forward"))
+    face.host.open(lambda: find_place("simple"), find("forward"))
     face.until(lambda: face.views)
-    face.behind.open(lambda: find_place("nowhere"), find("forward"))
+    face.host.open(lambda: find_place("nowhere"), find("forward"))
     face.until(lambda: face.troubles)
     assert "nowhere" in face.troubles[0]
     seen = len(face.views)
@@ -62,10 +62,10 @@ def test_closing_does_not_wait_for_a_world_that_is_being_opened(face: Face) -> N
         opened.wait(20)
         return find_place("simple")
 
-    face.behind.open(slowly, find("forward"))
+    face.host.open(slowly, find("forward"))
     assert begun.wait(20)
     start = time.monotonic()
-    face.behind.close()
+    face.host.close()
     assert time.monotonic() - start < 1.0
     opened.set()
     time.sleep(0.5)
@@ -86,9 +86,9 @@ def test_closing_does_not_wait_for_a_controller_that_does_not_come_back(
         "        self.get_logger().info('now')\n"
         "        while True: pass\n"
     )
-    face.behind.open(lambda: find_place("simple"), find(str(file)))
+    face.host.open(lambda: find_place("simple"), find(str(file)))
     face.until(lambda: face.views and face.views[-1].time_s > 0.05)
     time.sleep(0.5)
     start = time.monotonic()
-    face.behind.close()
+    face.host.close()
     assert time.monotonic() - start < 2.0  # a reply may take three seconds

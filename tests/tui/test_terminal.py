@@ -16,10 +16,10 @@ import pytest
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
-    Decision,
+    ReasonedValue,
     TerminalDecision,
     TerminalFacts,
-    TerminalWishes,
+    TerminalOptions,
     decide,
 )
 
@@ -29,7 +29,7 @@ NOTHING = TerminalFacts()
 
 
 def verdict(
-    environ: dict[str, str], facts: TerminalFacts = NOTHING, wishes: TerminalWishes | None = None
+    environ: dict[str, str], facts: TerminalFacts = NOTHING, wishes: TerminalOptions | None = None
 ) -> TerminalDecision:
     return decide(environ, facts, wishes)
 
@@ -37,22 +37,22 @@ def verdict(
 @pytest.mark.parametrize(
     ("environ", "facts", "wishes", "plain", "why"),
     [
-        (XTERM, NOTHING, TerminalWishes(), False, "xterm-256color"),
-        (XTERM, NOTHING, TerminalWishes(plain=True), True, "--plain"),
-        (XTERM, TerminalFacts(stdin_tty=False), TerminalWishes(), True, "input"),
-        (XTERM, TerminalFacts(stdout_tty=False), TerminalWishes(), True, "output"),
-        (XTERM, TerminalFacts(stderr_tty=False), TerminalWishes(), True, "error"),
-        ({"TERM": "dumb"}, NOTHING, TerminalWishes(), True, "dumb"),
-        ({"TERM": "dumb", "COLORTERM": "truecolor"}, NOTHING, TerminalWishes(), True, "dumb"),
-        ({"TERM": "unknown"}, NOTHING, TerminalWishes(), True, "unknown"),
-        ({"TERM": ""}, NOTHING, TerminalWishes(), True, "not set"),
-        ({}, NOTHING, TerminalWishes(), True, "not set"),
-        ({"TERM": "linux"}, NOTHING, TerminalWishes(), False, "linux"),
-        ({"TERM": "vt100"}, NOTHING, TerminalWishes(), False, "vt100"),
+        (XTERM, NOTHING, TerminalOptions(), False, "xterm-256color"),
+        (XTERM, NOTHING, TerminalOptions(plain=True), True, "--plain"),
+        (XTERM, TerminalFacts(stdin_tty=False), TerminalOptions(), True, "input"),
+        (XTERM, TerminalFacts(stdout_tty=False), TerminalOptions(), True, "output"),
+        (XTERM, TerminalFacts(stderr_tty=False), TerminalOptions(), True, "error"),
+        ({"TERM": "dumb"}, NOTHING, TerminalOptions(), True, "dumb"),
+        ({"TERM": "dumb", "COLORTERM": "truecolor"}, NOTHING, TerminalOptions(), True, "dumb"),
+        ({"TERM": "unknown"}, NOTHING, TerminalOptions(), True, "unknown"),
+        ({"TERM": ""}, NOTHING, TerminalOptions(), True, "not set"),
+        ({}, NOTHING, TerminalOptions(), True, "not set"),
+        ({"TERM": "linux"}, NOTHING, TerminalOptions(), False, "linux"),
+        ({"TERM": "vt100"}, NOTHING, TerminalOptions(), False, "vt100"),
     ],
 )
 def test_plain(
-    environ: dict[str, str], facts: TerminalFacts, wishes: TerminalWishes, plain: bool, why: str
+    environ: dict[str, str], facts: TerminalFacts, wishes: TerminalOptions, plain: bool, why: str
 ) -> None:
     decision = verdict(environ, facts, wishes).plain
     assert decision.value is plain
@@ -76,7 +76,7 @@ def test_plain(
     ],
 )
 def test_glyphs(environ: dict[str, str], encoding: str, wish: str | None, glyphs: str, why: str) -> None:
-    wishes = TerminalWishes(glyphs=next((choice for choice in GLYPH_CHOICES if choice == wish), None))
+    wishes = TerminalOptions(glyphs=next((choice for choice in GLYPH_CHOICES if choice == wish), None))
     decision = verdict(environ, TerminalFacts(encoding=encoding), wishes).glyphs
     assert decision.value == glyphs
     assert why in decision.reason
@@ -104,7 +104,7 @@ def test_glyphs(environ: dict[str, str], encoding: str, wish: str | None, glyphs
     ],
 )
 def test_colour(environ: dict[str, str], wish: str | None, colour: str, why: str) -> None:
-    decision = verdict(environ, wishes=TerminalWishes(color=wish))
+    decision = verdict(environ, wishes=TerminalOptions(color=wish))
     assert decision.colour.value == colour
     assert why in decision.colour.reason
     assert decision.ansi == (colour in ("none", "ansi16"))
@@ -167,7 +167,7 @@ def test_every_decision_has_a_reason_that_is_a_sentence(environ: dict[str, str])
     reasons = [
         value.reason
         for field in fields(decision)
-        if isinstance(value := getattr(decision, field.name), Decision)
+        if isinstance(value := getattr(decision, field.name), ReasonedValue)
     ]
     assert len(reasons) == 7
     for reason in reasons:
@@ -212,7 +212,7 @@ def test_a_process_with_its_streams_closed_still_gets_an_answer() -> None:
 SHOW = """
 import os
 from kit.tui.terminal import *
-decision = decide(os.environ, TerminalFacts(), TerminalWishes(color=os.environ.pop("WISH")))
+decision = decide(os.environ, TerminalFacts(), TerminalOptions(color=os.environ.pop("WISH")))
 os.environ.update(decision.environment())
 from textual.app import App
 from textual.widgets import Static

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Final, Literal
 
 from kit.tui.input.keys import drive_key, named
-from kit.tui.input.modes import Clock, DriveMode, ExactMode, Kind, LatchMode, RepeatMode
+from kit.tui.input.modes import Clock, DriveMode, ExactMode, KeyEventKind, LatchMode, RepeatMode
 from kit.tui.input.protocol import reports_releases
 
 ModeName = Literal["exact", "repeat", "latch"]
@@ -66,7 +66,7 @@ def automatic_mode(flags: int | None, hidden_by: str | None = None) -> ModeChoic
     return ModeChoice("repeat", f"{hidden_by or 'this terminal'} reports no key releases")
 
 
-class Drive:
+class KeyboardDrive:
     """Reads driving from keys. Every method that may change something returns the key messages it caused.
 
     Messages and ``state`` agree: ``p_<name>`` when a name enters ``state.held``, ``r_<name>`` when it leaves.
@@ -75,7 +75,7 @@ class Drive:
     def __init__(self, clock: Clock = time.monotonic) -> None:
         self._clock = clock
         self._automatic = UNASKED
-        self._wish: ModeName | None = None
+        self._requested_mode: ModeName | None = None
         self._mode: DriveMode = _MODES[UNASKED.mode](clock)
         self._state = DriveState()
 
@@ -85,14 +85,14 @@ class Drive:
         return self._state
 
     @property
-    def wish(self) -> ModeName | None:
+    def requested_mode(self) -> ModeName | None:
         """The mode the user chose, None for automatic."""
-        return self._wish
+        return self._requested_mode
 
     @property
     def choice(self) -> ModeChoice:
         """The active mode and why it is."""
-        return ModeChoice(self._wish, "your choice") if self._wish else self._automatic
+        return ModeChoice(self._requested_mode, "your choice") if self._requested_mode else self._automatic
 
     @property
     def status(self) -> str:
@@ -116,13 +116,13 @@ class Drive:
 
     def press(self, key: str) -> tuple[str, ...]:
         """A key as Textual names it. Keys that do not drive change nothing."""
-        return self._handle(Kind.PRESS, key)
+        return self._handle(KeyEventKind.PRESS, key)
 
     def repeat(self, key: str) -> tuple[str, ...]:
-        return self._handle(Kind.REPEAT, key)
+        return self._handle(KeyEventKind.REPEAT, key)
 
     def release(self, key: str) -> tuple[str, ...]:
-        return self._handle(Kind.RELEASE, key)
+        return self._handle(KeyEventKind.RELEASE, key)
 
     def tick(self) -> tuple[str, ...]:
         """Lets time pass."""
@@ -136,7 +136,7 @@ class Drive:
 
     def terminal_answered(self, flags: int | None, hidden_by: str | None = None) -> tuple[str, ...]:
         """The terminal said what it can (see ``automatic_mode``); the mode follows unless one was chosen."""
-        return self._switch(self._wish, automatic_mode(flags, hidden_by))
+        return self._switch(self._requested_mode, automatic_mode(flags, hidden_by))
 
     def choose(self, mode: ModeName | None) -> tuple[str, ...]:
         """The user's wish, None for automatic. Switching to another mode stops first."""
@@ -144,14 +144,14 @@ class Drive:
 
     def _switch(self, wish: ModeName | None, automatic: ModeChoice) -> tuple[str, ...]:
         before = self.choice.mode
-        self._wish, self._automatic = wish, automatic
+        self._requested_mode, self._automatic = wish, automatic
         if self.choice.mode == before:
             return ()
         messages = self.stop()
         self._mode = _MODES[self.choice.mode](self._clock)
         return messages
 
-    def _handle(self, kind: Kind, key: str) -> tuple[str, ...]:
+    def _handle(self, kind: KeyEventKind, key: str) -> tuple[str, ...]:
         if drive_key(key) is None:
             return ()
         late = self.tick()  # a key may have timed out unnoticed just before it is pressed again

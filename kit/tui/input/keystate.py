@@ -9,7 +9,7 @@ from typing import NamedTuple
 from kit.tui.input.keys import base_key
 
 
-class Transition(NamedTuple):
+class KeyTransition(NamedTuple):
     """A key went down or up at ``time`` [s] of the clock."""
 
     key: str
@@ -32,28 +32,28 @@ class KeyState:
         """The keys that are down, longest first, and since when [s]."""
         return MappingProxyType(self._held)
 
-    def press(self, key: str) -> tuple[Transition, ...]:
+    def press(self, key: str) -> tuple[KeyTransition, ...]:
         """The key goes down, unless it is down: without release events every repeat looks like a press."""
         key = base_key(key)
         if key in self._held:
             return ()
         self._held[key] = self._clock()
-        return (Transition(key, True, self._held[key]),)
+        return (KeyTransition(key, True, self._held[key]),)
 
-    def repeat(self, key: str) -> tuple[Transition, ...]:
+    def repeat(self, key: str) -> tuple[KeyTransition, ...]:
         """Changes nothing. A repeat of a key that is up belongs to a press from before ``clear``."""
         return ()
 
-    def release(self, key: str) -> tuple[Transition, ...]:
+    def release(self, key: str) -> tuple[KeyTransition, ...]:
         """The key goes up, if it was down."""
         key = base_key(key)
         if self._held.pop(key, None) is None:
             return ()
-        return (Transition(key, False, self._clock()),)
+        return (KeyTransition(key, False, self._clock()),)
 
-    def clear(self) -> tuple[Transition, ...]:
+    def clear(self) -> tuple[KeyTransition, ...]:
         """All keys up: on losing the focus, on leaving the screen. Whoever releases them then, we shall not hear."""
         now = self._clock()
-        up = tuple(Transition(key, False, now) for key in self._held)
+        up = tuple(KeyTransition(key, False, now) for key in self._held)
         self._held.clear()
         return up

@@ -29,7 +29,7 @@ _TAP: Final = 0.15
 """How long a button counts as pressed in ``latch``, which knows no release."""
 
 
-class Kind(enum.Enum):
+class KeyEventKind(enum.Enum):
     PRESS = enum.auto()
     REPEAT = enum.auto()
     RELEASE = enum.auto()
@@ -38,7 +38,7 @@ class Kind(enum.Enum):
 class DriveMode(Protocol):
     """From key events and time to strengths."""
 
-    def handle(self, kind: Kind, key: str) -> None:
+    def handle(self, kind: KeyEventKind, key: str) -> None:
         """A key of the drive table, as Textual names it."""
 
     def advance(self) -> None:
@@ -60,8 +60,12 @@ def _row(key: str) -> DriveKey:
     return row
 
 
-_CHANGES: Final[Mapping[Kind, Callable[[KeyState, str], object]]] = MappingProxyType(
-    {Kind.PRESS: KeyState.press, Kind.REPEAT: KeyState.repeat, Kind.RELEASE: KeyState.release}
+_CHANGES: Final[Mapping[KeyEventKind, Callable[[KeyState, str], object]]] = MappingProxyType(
+    {
+        KeyEventKind.PRESS: KeyState.press,
+        KeyEventKind.REPEAT: KeyState.repeat,
+        KeyEventKind.RELEASE: KeyState.release,
+    }
 )
 
 
@@ -71,8 +75,8 @@ class ExactMode:
     def __init__(self, clock: Clock) -> None:
         self._state = KeyState(clock)
 
-    def handle(self, kind: Kind, key: str) -> None:
-        if kind is Kind.PRESS and _row(key).name == "space":
+    def handle(self, kind: KeyEventKind, key: str) -> None:
+        if kind is KeyEventKind.PRESS and _row(key).name == "space":
             self._state.clear()
         _CHANGES[kind](self._state, key)
 
@@ -131,9 +135,9 @@ class RepeatMode:
         row = drive_key(self._last_key)
         return row.name if row else ""
 
-    def handle(self, kind: Kind, key: str) -> None:
+    def handle(self, kind: KeyEventKind, key: str) -> None:
         row, now = _row(key), self._clock()
-        if kind is Kind.RELEASE:
+        if kind is KeyEventKind.RELEASE:
             self._end(row.name)
             return
         if row.name == "space":
@@ -193,8 +197,8 @@ class LatchMode:
         self._taps: dict[str, float] = {}
         self._heard: dict[str, float] = {}
 
-    def handle(self, kind: Kind, key: str) -> None:
-        if kind is not Kind.PRESS:
+    def handle(self, kind: KeyEventKind, key: str) -> None:
+        if kind is not KeyEventKind.PRESS:
             return
         row, now = _row(key), self._clock()
         last = self._heard.get(row.name)

@@ -13,10 +13,10 @@ from textual.app import App
 from textual.screen import Screen
 from textual.timer import Timer
 
-from kit.tui.input.drive import Drive, DriveState, ModeName
+from kit.tui.input.drive import DriveState, KeyboardDrive, ModeName
 from kit.tui.input.driver import key_driver
 from kit.tui.input.keys import base_key, drive_key
-from kit.tui.input.modes import Clock, Kind
+from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.terminal import TerminalDecision
 
@@ -26,7 +26,7 @@ _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
 
 
 class DriveScreen(Screen[None]):
-    """Subclasses override ``drove``; they may bind keys that do not drive, as any screen may.
+    """Subclasses override ``drive_keys_changed``; they may bind keys that do not drive, as any screen may.
 
     Keys of the drive table come here first and go no further, unless a focused widget takes them (an input
     field does).
@@ -34,7 +34,7 @@ class DriveScreen(Screen[None]):
 
     def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
         super().__init__()
-        self.drive: Final = Drive(clock)
+        self.drive: Final = KeyboardDrive(clock)
         self._terminal = terminal
         self._clock = clock
         self._shown = self.drive.state
@@ -43,22 +43,22 @@ class DriveScreen(Screen[None]):
         self._alarm: Timer | None = None
         self._alarm_time = math.inf
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         """Called at once when what the keys ask for has changed: messages like ``p_up``, and strengths."""
 
-    def takes(self, key: str) -> bool:
+    def is_drive_key(self, key: str) -> bool:
         """Whether a key drives here; those that do not are left to the screen's bindings."""
         return drive_key(key) is not None
 
-    def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
-        """Called for every key that arrives, with the messages it causes, before ``drove``; kind None: a timeout."""
+    def key_received(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
+        """Called for every key that arrives, with the messages it causes, before ``drive_keys_changed``; kind None: a timeout."""
 
-    def mode_changed(self) -> None:
+    def drive_status_changed(self) -> None:
         """Called when ``drive.status`` reads differently."""
 
     def action_next_drive_mode(self) -> None:
         """Automatic, then latch, then repeat, then automatic again."""
-        self._tell(self.drive.choose(_NEXT[self.drive.wish]))
+        self._tell(self.drive.choose(_NEXT[self.drive.requested_mode]))
 
     def stop_driving(self) -> None:
         """All keys up, at once: for a pause, say."""
@@ -98,8 +98,8 @@ class DriveScreen(Screen[None]):
         self._tell(self.drive.terminal_answered(flags, hidden_by))
 
     def on_key(self, event: events.Key) -> None:
-        if not self.takes(event.key):
-            self._hear(Kind.PRESS, event.key, ())
+        if not self.is_drive_key(event.key):
+            self._hear(KeyEventKind.PRESS, event.key, ())
             return
         event.stop()
         event.prevent_default()
@@ -109,31 +109,31 @@ class DriveScreen(Screen[None]):
         overtaken = event.time < self._released.get(base_key(event.key), -math.inf)
         if overtaken:
             messages += self.drive.release(event.key)
-        self._hear(Kind.PRESS, event.key, messages)
+        self._hear(KeyEventKind.PRESS, event.key, messages)
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
-        takes = self.takes(event.key)
-        self._hear(Kind.REPEAT, event.key, self.drive.repeat(event.key) if takes else ())
+        takes = self.is_drive_key(event.key)
+        self._hear(KeyEventKind.REPEAT, event.key, self.drive.repeat(event.key) if takes else ())
         if not takes:
             # It does what another press does, as on terminals that do not tell repeats apart.
             self.app.post_message(events.Key(event.key, event.character))
 
     def on_key_released(self, event: KeyReleased) -> None:
         self._released[base_key(event.key)] = event.time
-        self._hear(Kind.RELEASE, event.key, self.drive.release(event.key))
+        self._hear(KeyEventKind.RELEASE, event.key, self.drive.release(event.key))
 
-    def _hear(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
-        self.heard(kind, key, messages)
+    def _hear(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
+        self.key_received(kind, key, messages)
         self._tell(messages)
 
     def _tell(self, messages: tuple[str, ...]) -> None:
         state = self.drive.state
         if messages or state != self._shown:
             self._shown = state
-            self.drove(messages, state)
+            self.drive_keys_changed(messages, state)
         if self.drive.status != self._status:
             self._status = self.drive.status
-            self.mode_changed()
+            self.drive_status_changed()
         self._set_alarm()
 
     def _set_alarm(self) -> None:
@@ -152,5 +152,5 @@ class DriveScreen(Screen[None]):
     def _ring(self) -> None:
         self._alarm, self._alarm_time = None, math.inf
         if messages := self.drive.tick():
-            self.heard(None, "", messages)
+            self.key_received(None, "", messages)
         self._tell(messages)

@@ -12,7 +12,7 @@ from kit.school.lessons.lesson_session import Hint
 from kit.school.lessons.markup import Style, parsed, rows
 from kit.school.lessons.records import Command, How, Option, Step, StepKind
 from kit.school.result_text import Role, criterion_lines, points_text
-from kit.tui.widgets.text_rows import Part, Row, row, spread
+from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 WIDTH: Final = 76
 """Longer lines are hard to read, however wide the terminal."""
@@ -234,7 +234,7 @@ def _told(head: str, style: str, text: str, width: int) -> list[Row]:
 def _entry(mark: str, key: str, text: str, style: str, width: int) -> list[Row]:
     first, *rest = textwrap.wrap(text, _room(width) - 3) or [""]
     indent = " " * (MARGIN + 3)
-    head: tuple[Part, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"))
+    head: tuple[StyledText, ...] = ((f"{mark:>{MARGIN - 1}} ", style), (key, "bold"))
     return [row(*head, "  ", (first, style)), *(row((indent + line, style)) for line in rest)]
 
 

@@ -9,7 +9,7 @@ from kit.school.game.drive_records import Noted
 from kit.school.game.ghosts import Ghost
 from kit.school.game.player_progress import LevelStanding
 from kit.school.game.race import Driver, Finish
-from kit.tui.widgets.text_rows import Part, Row, row
+from kit.tui.widgets.text_rows import Row, StyledText, row
 
 CELL: Final = (20, 26)
 """Columns of one level on the map: at least, and at most."""
@@ -44,7 +44,7 @@ def level_map(standings: Sequence[LevelStanding], chosen: int) -> list[Row]:
     return made[:-1]
 
 
-def _cell(standing: LevelStanding, is_chosen: bool, width: int) -> tuple[Part, ...]:
+def _cell(standing: LevelStanding, is_chosen: bool, width: int) -> tuple[StyledText, ...]:
     title = standing.level.title
     room = width - 6
     title = title if len(title) <= room else title[: room - 1] + "."

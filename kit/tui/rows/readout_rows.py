@@ -8,7 +8,7 @@ import textwrap
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.pacing import MAXIMUM, Pacing
 from kit.run.view import View, clock
-from kit.tui.widgets.text_rows import Part, Row, row, spread
+from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 PANEL_WIDTH = 22
 
@@ -90,5 +90,8 @@ def said(view: View, rows: int, width: int) -> tuple[Row, ...]:
 
 def _message(record: LogRecord, width: int) -> Row:
     head = f"{clock(record.time_ns / 1e9):>7} {record.name}: "
-    text: Part = (record.text.partition("\n")[0][: max(0, width - len(head))], _LOUD.get(record.severity, ""))
+    text: StyledText = (
+        record.text.partition("\n")[0][: max(0, width - len(head))],
+        _LOUD.get(record.severity, ""),
+    )
     return row((head, "dim"), text)

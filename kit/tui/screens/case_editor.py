@@ -18,14 +18,14 @@ from kit.layers.guided_tour import Page as Step
 from kit.layers.requirements import Case, CaseError
 from kit.tui.rows.case_rows import drawn, picture, words_width
 from kit.tui.screens.layers_keys import EDIT_HELP, EDIT_KEYS
-from kit.tui.screens.page import Page
-from kit.tui.textual_patches import StillScreen
+from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
 
 KINDS: dict[Kind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
 
 
-class CaseEditor(StillScreen[Case]):
+class CaseEditor(ActivePaintScreen[Case]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
@@ -157,7 +157,7 @@ class CaseEditor(StillScreen[Case]):
         self.set_focus(field if kind is not None else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("A case by hand", EDIT_HELP))
+        self.app.push_screen(MessageDialog("A case by hand", EDIT_HELP))
 
     def action_back(self) -> None:
         """Out of the field, then out of the table."""

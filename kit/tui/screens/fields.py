@@ -23,7 +23,7 @@ from kit.render.field import FieldPicture, changed, with_field
 from kit.render.scene import FloatArray, Scene
 from kit.tui.screens.fields_keys import FIELDS_HELP, FIELDS_KEYS
 from kit.tui.screens.play import PlayScreen
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ MOST_TRAPS: Final = 3
 """Listed beside the picture."""
 
 
-class Shown(Enum):
+class ArrowSource(Enum):
     """What the arrows are."""
 
     FORCES = "forces"
@@ -46,7 +46,7 @@ class Shown(Enum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Opened:
+class _FieldSetup:
     """What was made for one session's place."""
 
     place: Place
@@ -69,7 +69,7 @@ class FieldsScreen(PlayScreen):
 
     def __init__(
         self,
-        look: Look,
+        theme: Theme,
         place: str,
         controller: str,
         *,
@@ -80,23 +80,23 @@ class FieldsScreen(PlayScreen):
         derived: bool = False,
         charges: Path | None = None,
     ) -> None:
-        super().__init__(look, place, controller, case=case, folder=folder, runs=runs, seed=seed)
+        super().__init__(theme, place, controller, case=case, folder=folder, runs=runs, seed=seed)
         if charges is not None:
             self._find = partial(_with_charges, self._find, charges)
         self._derived = derived
-        self._opened: _Opened | None = None
+        self._opened: _FieldSetup | None = None
         self._traps: tuple[Trap, ...] = ()
         self._names = ("walls", "target", "robot", "tension")
         self._chosen = 0
-        self._kinds = cycle(Shown)
+        self._kinds = cycle(ArrowSource)
         self.shown = next(self._kinds)
 
     def open_world(self) -> None:
         super().open_world()
-        self.behind.listen(self._attend)
+        self.host.set_listener(self._attend)
 
     def on_screen_resume(self) -> None:
-        self.behind.listen(self._attend)  # the screen of nodes may have listened meanwhile
+        self.host.set_listener(self._attend)  # the screen of nodes may have listened meanwhile
 
     def action_next_intensity(self) -> None:
         self._chosen = (self._chosen + 1) % len(self._names)
@@ -109,7 +109,7 @@ class FieldsScreen(PlayScreen):
             picture = opened.picture
             picture.intensities = changed(picture.intensities, self._names[self._chosen], times)
             self._traps = picture.traps()
-            self.behind.wish(self._attend)
+            self.host.post(self._attend)
             self._show()
 
     def action_next_field(self) -> None:
@@ -139,14 +139,14 @@ class FieldsScreen(PlayScreen):
             values = asdict(opened.picture.intensities)
             opened.tuner.look({f"intensity.{name}": float(value) for name, value in values.items()})
 
-    def _open(self, session: Session) -> _Opened | None:
+    def _open(self, session: Session) -> _FieldSetup | None:
         from kit.controllers.tuning import Tuner
         from kit.world.problems import WorldError
 
         place = session.place
         if place.case is None:
-            self.behind.listen(None)
-            self._trouble_arrived(
+            self.host.set_listener(None)
+            self._error_arrived(
                 f"{place.name} has no target, so its field has none either. Press m for a map."
             )
             return None
@@ -160,13 +160,13 @@ class FieldsScreen(PlayScreen):
                 charges=place.charges,
             )
         except (WorldError, LookupError, ValueError) as error:
-            self.behind.listen(None)
-            self._trouble_arrived(str(error))
+            self.host.set_listener(None)
+            self._error_arrived(str(error))
             return None
         picture = FieldPicture(course)
         self._traps = picture.traps()
         namespace = place.driven.namespace if place.driven else ""
-        self._opened = _Opened(place, picture, Tuner(session.graph, "fields", namespace))
+        self._opened = _FieldSetup(place, picture, Tuner(session.graph, "fields", namespace))
         return self._opened
 
     # In the face's
@@ -186,9 +186,9 @@ class FieldsScreen(PlayScreen):
         return with_field(scene, opened.picture, camera, vectors, self._traps)
 
     def _vectors(self, picture: FieldPicture, poses: Sequence[Pose]) -> FloatArray | None:
-        if self.shown is Shown.FORCES:
+        if self.shown is ArrowSource.FORCES:
             return picture.forces
-        if self.shown is Shown.WAYS and poses:
+        if self.shown is ArrowSource.WAYS and poses:
             try:
                 return picture.directions(middle_of(poses))
             except Unreachable:

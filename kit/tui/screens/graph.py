@@ -18,13 +18,13 @@ from kit.render.graph_data import Conversation, conversation
 from kit.render.graph_layout import Places, arrange
 from kit.render.graph_navigation import across, along, still_there
 from kit.render.message_animation import Travel
-from kit.tui.graph_listener import Heard, Listening
+from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled
 from kit.tui.screens.graph_keys import GRAPH_HELP, GRAPH_KEYS, MESSAGE_KEYS
-from kit.tui.screens.page import Page
-from kit.tui.session_host import Running
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
+from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.session_host import SessionHost
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import TextRows, row
 
@@ -38,11 +38,11 @@ ABOUT_ROWS: Final = 5
 """Of what is chosen: its name, its ends, and as much of its newest message as there is room for."""
 
 
-class News(Message):
+class GraphChanged(Message):
     """The world's thread has heard something."""
 
 
-class GraphScreen(StillScreen[None]):
+class GraphScreen(ActivePaintScreen[None]):
     """Listens while it is open. Draws only while something moves; a paused world costs no byte."""
 
     AUTO_FOCUS = ""
@@ -74,17 +74,17 @@ class GraphScreen(StillScreen[None]):
     """
     VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high")]  # noqa: RUF012 - Textual's own attribute
 
-    def __init__(self, look: Look, behind: Running, title: str) -> None:
+    def __init__(self, theme: Theme, host: SessionHost, title: str) -> None:
         super().__init__()
-        self.look = look
-        self._behind = behind
+        self.theme = theme
+        self._host = host
         self._title = title
-        self._rule = "-" if look.terminal.glyphs.value == "ascii" else "─"
-        self._strokes = PLAIN if look.terminal.glyphs.value == "ascii" else BOX
-        self._picture = FrameView(look.palette)
-        self._listening = Listening(self._arrived)
+        self._rule = "-" if theme.terminal.glyphs.value == "ascii" else "─"
+        self._strokes = PLAIN if theme.terminal.glyphs.value == "ascii" else BOX
+        self._picture = FrameView(theme.palette)
+        self._listener = GraphListener(self._arrived)
         self._announced = False
-        self._heard: Heard | None = None
+        self._heard: GraphUpdate | None = None
         self._talk = Conversation((), ())
         self._places: Places | None = None
         self._plan: Plan | None = None
@@ -117,21 +117,21 @@ class GraphScreen(StillScreen[None]):
         self._rows("keys").show([GRAPH_KEYS])
         self.query_one(Input).cursor_blink = False
         self._ask_for_name(False)
-        self._behind.listen(self._listening)
+        self._host.set_listener(self._listener)
 
     def on_unmount(self) -> None:
-        self._behind.listen(None)
-        self._behind.wish(lambda session: self._listening.stop())
+        self._host.set_listener(None)
+        self._host.post(lambda session: self._listener.stop())
 
     # What arrives from the world's thread
 
-    def _arrived(self, heard: Heard) -> None:
+    def _arrived(self, heard: GraphUpdate) -> None:
         self._heard = heard
         if not self._announced:  # the newest wins
             self._announced = True
-            self.post_message(News())
+            self.post_message(GraphChanged())
 
-    def on_news(self) -> None:
+    def on_graph_changed(self) -> None:
         self._announced = False
         heard = self._heard
         if heard is not None and self.is_active:
@@ -177,7 +177,7 @@ class GraphScreen(StillScreen[None]):
         if spot != self._chosen:
             self._scrolled = 0
         self._chosen = spot
-        self._listening.chosen = spot.name.removesuffix("()") if spot and spot.column == "item" else None
+        self._listener.chosen = spot.name.removesuffix("()") if spot and spot.column == "item" else None
         if spot is not None and self._plan is not None:
             self._chosen_row = self._plan.spots()[spot]
             rows = max(1, self._picture.size.height)
@@ -274,20 +274,20 @@ class GraphScreen(StillScreen[None]):
         self._draw()
 
     def action_pause(self) -> None:
-        self._behind.set_paused(not self._is_paused)
+        self._host.set_paused(not self._is_paused)
 
     def action_step(self) -> None:
         if self._is_paused:
-            self._behind.step()
+            self._host.step()
         else:
-            self._behind.set_paused(True)
+            self._host.set_paused(True)
 
     @property
     def _is_paused(self) -> bool:
         return self._heard is not None and self._heard.paused
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("Nodes and topics", GRAPH_HELP))
+        self.app.push_screen(MessageDialog("Nodes and topics", GRAPH_HELP))
 
     def action_back(self) -> None:
         """One thing at a time: out of the field, the details, the narrowing, the screen."""

@@ -14,7 +14,7 @@ from textual.widgets import Static
 
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import DRIVE_KEYS, DriveKey
-from kit.tui.input.modes import Clock, Kind
+from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.screen import DriveScreen
 from kit.tui.terminal import TerminalDecision
 
@@ -22,15 +22,20 @@ _TABLE_ROWS: Final = 7
 _KEPT: Final = 50
 """Lines of the log: more than any screen shows."""
 _WORDS: Final = MappingProxyType(
-    {Kind.PRESS: "press", Kind.REPEAT: "repeat", Kind.RELEASE: "release", None: "timeout"}
+    {
+        KeyEventKind.PRESS: "press",
+        KeyEventKind.REPEAT: "repeat",
+        KeyEventKind.RELEASE: "release",
+        None: "timeout",
+    }
 )
 
 
 @dataclass(frozen=True, slots=True)
-class Arrival:
+class KeyLogEntry:
     """One line of the log: what came, how long [s] after the one before, and the messages it caused."""
 
-    kind: Kind | None
+    kind: KeyEventKind | None
     key: str
     gap: float | None
     messages: tuple[str, ...]
@@ -56,7 +61,7 @@ class KeyTestScreen(DriveScreen):
 
     def __init__(self, terminal: TerminalDecision | None = None, clock: Clock = time.monotonic) -> None:
         super().__init__(terminal, clock)
-        self._log: deque[Arrival] = deque(maxlen=_KEPT)
+        self._log: deque[KeyLogEntry] = deque(maxlen=_KEPT)
         self._last: float | None = None
 
     def compose(self) -> ComposeResult:
@@ -68,17 +73,19 @@ class KeyTestScreen(DriveScreen):
     def action_close(self) -> None:
         self.dismiss()
 
-    def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
+    def key_received(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
         now = self._clock()
-        self._log.appendleft(Arrival(kind, key, None if self._last is None else now - self._last, messages))
+        self._log.appendleft(
+            KeyLogEntry(kind, key, None if self._last is None else now - self._last, messages)
+        )
         self._last = now
         self.query_one("#log", Static).update("\n".join(map(str, self._log)))
-        self.mode_changed()
+        self.drive_status_changed()
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         self.query_one("#keys", Static).update(self._table_text())
 
-    def mode_changed(self) -> None:
+    def drive_status_changed(self) -> None:
         self.query_one("#mode", Static).update(self._mode_text())
 
     def _mode_text(self) -> str:

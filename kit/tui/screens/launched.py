@@ -13,7 +13,7 @@ from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import LAUNCH_HELP, LAUNCH_KEYS
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kit.workspace import Workspace
 
 
-class Refused(Message):
+class LaunchRefused(Message):
     """The launch cannot be carried out."""
 
 
@@ -39,18 +39,18 @@ class LaunchScreen(WatchScreen):
 
     def __init__(
         self,
-        look: Look,
+        theme: Theme,
         target: LaunchTarget,
         arguments: Mapping[str, str],
         *,
-        desk: Workspace,
+        workspace: Workspace,
         seed: int = 0,
         speed: float | None = None,
     ) -> None:
         self._name = target.name
-        super().__init__(look, self._name, seed=seed, socket_dir=sockets_folder(desk.folder))
-        self._look = look
-        self._target, self._arguments, self._desk, self._speed = target, arguments, desk, speed
+        super().__init__(theme, self._name, seed=seed, socket_dir=sockets_folder(workspace.folder))
+        self._theme = theme
+        self._target, self._arguments, self._workspace, self._speed = target, arguments, workspace, speed
         self._launch: Launch | None = None
         self._session: LaunchedSession | None = None
         self._early: list[Line] = []
@@ -66,22 +66,22 @@ class LaunchScreen(WatchScreen):
         return [] if self._launch is None else self._launch.failures
 
     def open_world(self) -> None:
-        self.behind.open_session(self._open, self._factor)
+        self.host.open_session(self._open, self._factor)
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max(state.held.values(), default=1.0)
         if messages or strength != self._strength:
             self._strength = strength
-            self.behind.wish(lambda session: session.keys.publish(messages, strength))
+            self.host.post(lambda session: session.keys.publish(messages, strength))
 
-    def on_refused(self) -> None:
+    def on_launch_refused(self) -> None:
         self.app.exit()
 
     def action_nodes(self) -> None:
         from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
 
         if self.view is not None:
-            self.app.push_screen(GraphScreen(self._look, self.behind, self.place_name))
+            self.app.push_screen(GraphScreen(self._theme, self.host, self.place_name))
 
     # In the helper's thread
 
@@ -99,7 +99,7 @@ class LaunchScreen(WatchScreen):
             Graph(),
             arguments=self._arguments,
             seed=self._seed,
-            workspace=self._desk.folder,
+            workspace=self._workspace.folder,
             name=f"{self._name}-{os.getpid()}",
             say=self._said,
         )
@@ -117,7 +117,7 @@ class LaunchScreen(WatchScreen):
         except (CannotStart, WorldError, OSError) as problem:
             self.refusal = str(problem)
         launch.close()
-        self.post_message(Refused())
+        self.post_message(LaunchRefused())
         raise LookupError(self.refusal or "This launch file starts no world.")
 
     def _factor(self, session: Session) -> float:

@@ -25,10 +25,10 @@ from kit.layers.requirements import Case
 from kit.tui.rows.case_rows import picture, scrolled, words_width
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers_keys import WALK_HELP, WALK_KEYS
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
@@ -51,7 +51,7 @@ class Solved(Message):
         self.solution = solution
 
 
-class LayersScreen(StillScreen[None]):
+class LayersScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed. ``saved_to``: the folder for cases that are saved."""
 
     AUTO_FOCUS = ""
@@ -78,9 +78,9 @@ class LayersScreen(StillScreen[None]):
     LayersScreen Input, LayersScreen Input:focus { border: none; padding: 0; height: 1; background: transparent; }
     """
 
-    def __init__(self, look: Look, task: Task, title: str, *, saved_to: Path) -> None:
+    def __init__(self, theme: Theme, task: Task, title: str, *, saved_to: Path) -> None:
         super().__init__()
-        self._glyphs: Glyphs = "ascii" if look.terminal.glyphs.value == "ascii" else "braille"
+        self._glyphs: Glyphs = "ascii" if theme.terminal.glyphs.value == "ascii" else "braille"
         self._folder = saved_to
         self._asked, self._title = task, title
         self._method = self._usual = Method(task.case)
@@ -218,7 +218,7 @@ class LayersScreen(StillScreen[None]):
         number = step.step
         edges = {str(edge): edge for edge in self._method.edges(number)}
         taken = str(self._method.run.collision_steps[number].edge)
-        choices = [Choice(name, name, "the present one" if name == taken else "") for name in edges]
+        choices = [PickerItem(name, name, "the present one" if name == taken else "") for name in edges]
 
         def begin_with(chosen: str | None) -> None:
             if chosen is not None:
@@ -237,8 +237,10 @@ class LayersScreen(StillScreen[None]):
             self.open(Task(replace(case, title="") if is_new else case), "mine" if is_new else self._title)
 
     def action_examples(self) -> None:
-        choices = [Choice(name, name, case.title) for name, case in EXAMPLES.items()]
-        choices += [Choice(name, name, "a map of the kit") for name in map_names() if name not in EXAMPLES]
+        choices = [PickerItem(name, name, case.title) for name, case in EXAMPLES.items()]
+        choices += [
+            PickerItem(name, name, "a map of the kit") for name in map_names() if name not in EXAMPLES
+        ]
         self.app.push_screen(Picker("Cases", choices), self._open_named)
 
     def _open_named(self, name: str | None) -> None:
@@ -247,7 +249,7 @@ class LayersScreen(StillScreen[None]):
         try:
             self.open(open_task(name), name)
         except (WorldError, UnknownTask) as error:
-            self.app.push_screen(Page("That did not work", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.
@@ -289,7 +291,7 @@ class LayersScreen(StillScreen[None]):
         self.set_focus(field if asked else None)
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("Layers", WALK_HELP))
+        self.app.push_screen(MessageDialog("Layers", WALK_HELP))
 
     def action_back(self) -> None:
         if self.focused is not None:

@@ -13,32 +13,33 @@ from kit.school.lessons.exercise_files import WorkError
 from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.records import Option, Step
 from kit.school.progress import ProgressError
-from kit.tui.exercise_model import Workbench
+from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, named
 from kit.tui.input.parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
-from kit.tui.rows import lesson_rows as say
-from kit.tui.screens.lesson_bench import BenchKeys
+from kit.tui.rows import lesson_rows
+from kit.tui.screens.lesson_exercise import ExerciseActions
 from kit.tui.screens.lesson_keys import Possible, keys
-from kit.tui.screens.lesson_ways import WayKeys
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
-from kit.tui.widgets.lesson_page import BESIDE, Content, LessonSheet
-from kit.tui.widgets.lesson_scene_view import SceneView
+from kit.tui.screens.lesson_navigation import NavigationActions
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
+from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage
+from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 ARROWS = ("up", "down", "left", "right")
 HELD = (*ARROWS, "pageup", "pagedown", "space", "j")
 """Keys that do more the longer they are held."""
-LOOK_S = 0.2
+POLL_S = 0.2
 """Between two looks at the exercise's file and its check."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
+class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, DriveScreen):
     """Goes through one lesson. Draws nothing but what a key, a scene or a check has changed."""
 
     AUTO_FOCUS = ""
@@ -60,48 +61,48 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
-    def __init__(self, look: Look, visit: Visit, desk: Workspace) -> None:
-        super().__init__(look.terminal)
-        self.look = look
+    def __init__(self, theme: Theme, visit: Visit, workspace: Workspace) -> None:
+        super().__init__(theme.terminal)
+        self.theme = theme
         self.visit = visit
-        self.desk = desk
+        self.workspace = workspace
         self.step: Step = visit.first_step
-        self.bench: Workbench | None = None
-        self._scene = SceneView(look, desk.controllers, sockets_folder(desk.folder))
-        self._told = True
+        self.model: ExerciseModel | None = None
+        self._scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
+        self._is_answer_shown = True
         """Whether what there is to say of a prediction may be said: the scene has been seen."""
         self.is_over = False
-        self._sheet = LessonSheet(self._scene)
-        self._until_answer = 0
+        self._page = LessonPage(self._scene)
+        self._answer_row = 0
         self._strength = 1.0
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield TextRows(id="title")
-        yield self._sheet
+        yield self._page
         yield TextRows(id="file")
         yield TextRows(id="said")
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self.set_interval(LOOK_S, self.look_at_bench)
+        self.set_interval(POLL_S, self.poll_exercise)
         self.enter(self.step)
 
     def on_unmount(self) -> None:
-        self._leave_bench()
+        self._close_model()
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self.show)
 
     def on_screen_resume(self) -> None:
-        self.hold(False)
+        self.hold_scene(False)
         self._scene.draw()
         self.show()
 
     def on_screen_suspend(self) -> None:
-        self.hold(True)
+        self.hold_scene(True)
 
-    def hold(self, held: bool) -> None:
+    def hold_scene(self, held: bool) -> None:
         """Has the scene stand still while something else is looked at, or go on if it was going."""
         self._scene.hold(held or self._is_still)
 
@@ -113,45 +114,45 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         return self.visit.foreseen(self.step)
 
     @property
-    def _waits(self) -> bool:
+    def _is_waiting(self) -> bool:
         """Whether the step waits for a prediction."""
         return bool(self.step.options) and self.chosen is None
 
     @property
     def _is_still(self) -> bool:
         """Whether the scene is to stand at its first instant: until a prediction, or until it is opened to be driven."""
-        return self._waits or (self.bench is not None and self.bench.by_hand)
+        return self._is_waiting or (self.model is not None and self.model.by_hand)
 
     @property
-    def _drives(self) -> bool:
+    def _is_driving(self) -> bool:
         """Whether the arrow keys drive in the scene."""
         return self._scene.by_hand and not self._is_still
 
     def enter(self, step: Step) -> None:
         """Shows a step from its beginning."""
-        self._leave_bench()
+        self._close_model()
         self.step, self.is_over = step, False
-        self._sheet.scroll_words_to(0)
-        self._told = not self._waits
+        self._page.scroll_words_to(0)
+        self._is_answer_shown = not self._is_waiting
         if step.exercise is not None:
             try:
-                self.bench = Workbench(self.visit, step.exercise)
+                self.model = ExerciseModel(self.visit, step.exercise)
             except WorkError as error:
-                self.tell("The exercise cannot be laid out", str(error))
+                self.show_error("The exercise cannot be laid out", str(error))
         if step.scene is not None:
             self._scene.open(step.scene, still=self._is_still)
         else:
-            self._scene.shut()
+            self._scene.close_session()
         self.show()
 
-    def _leave_bench(self) -> None:
-        if self.bench is not None:
-            self.bench.close()
-            self.bench = None
+    def _close_model(self) -> None:
+        if self.model is not None:
+            self.model.close()
+            self.model = None
 
-    def tell(self, title: str, text: str) -> None:
+    def show_error(self, title: str, text: str) -> None:
         """What went wrong, as a page over the step."""
-        self.app.push_screen(Page(title, wrapped(text)))
+        self.app.push_screen(MessageDialog(title, wrapped(text)))
 
     # What is shown
 
@@ -161,57 +162,57 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         if not width or not self.is_mounted:
             return
         over, step = self.is_over, self.step
-        bench = self.bench
-        file = say.file_rows(str(bench.file), bench.by_hand, bench.has_others, width) if bench else []
-        said = [self.bench_status()] if bench is not None else []
-        self._rows("heading").show([say.heading(self.visit.standing, step, width)])
+        model = self.model
+        file = lesson_rows.file_rows(str(model.file), model.by_hand, model.has_others, width) if model else []
+        said = [self.exercise_status()] if model is not None else []
+        self._rows("heading").show([lesson_rows.heading(self.visit.standing, step, width)])
         self._show_title()
         self._rows("file").show_all(file)
         self._rows("said").show_all(said)
         self._rows("keys").show([self.asked_keys() or keys(self._possible(), width)])
-        written = self._written()
+        written = self._text_rows()
         answer = self._longest_answer()
-        content = Content(
+        content = LessonContent(
             written,
-            [] if over or not step.options else self._asked(),
+            [] if over or not step.options else self._question_rows(),
             () if over else tuple(step.picture.splitlines()),
             moves=step.scene is not None and not over,
-            first_words=max(self._until_answer, answer),  # not both at once, where there is little room
-            most_words=self._until_answer + answer,
-            scrolls_with="PgDn" if self._drives else "down",
+            first_words=max(self._answer_row, answer),  # not both at once, where there is little room
+            most_words=self._answer_row + answer,
+            scrolls_with="PgDn" if self._is_driving else "down",
         )
-        self._sheet.show(
-            content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide")
-        )
+        self._page.show(content, self.size.height - 3 - len(file) - len(said), beside=self.has_class("-wide"))
 
     def _show_title(self) -> None:
         self._rows("title").show(
-            [row() if self.is_over else say.title(self.step, self._caption(), self.size.width)]
+            [row() if self.is_over else lesson_rows.title(self.step, self._caption(), self.size.width)]
         )
 
-    def _written(self) -> list[Row]:
+    def _text_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
         if self.is_over:
-            return say.ending(self.visit.standing, self._width)
-        text = self.filled(self.step.text)
-        filled = [(each, line) for each in self.step.commands if (line := self.filled(each.line)) not in text]
-        made = [row(), *say.words(text, self._width)]
-        made += say.commands(filled, self._width)
-        self._until_answer = len(made)
-        if self.chosen is not None and self._told:
-            made += say.feedback(self.step, self.chosen, self._width)
-        report = self.bench.report if self.bench is not None else None
-        if report is not None and self.bench is not None:
-            made += say.verdict(report, self.visit.hints(self.bench.exercise), self._width)
+            return lesson_rows.ending(self.visit.standing, self._width)
+        text = self.with_paths(self.step.text)
+        filled = [
+            (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
+        ]
+        made = [row(), *lesson_rows.words(text, self._width)]
+        made += lesson_rows.commands(filled, self._width)
+        self._answer_row = len(made)
+        if self.chosen is not None and self._is_answer_shown:
+            made += lesson_rows.feedback(self.step, self.chosen, self._width)
+        report = self.model.report if self.model is not None else None
+        if report is not None and self.model is not None:
+            made += lesson_rows.verdict(report, self.visit.hints(self.model.exercise), self._width)
         return made
 
     def _longest_answer(self) -> int:
         """Rows of the longest thing that may be said to a prediction."""
-        answers = (len(say.feedback(self.step, option, self._width)) for option in self.step.options)
+        answers = (len(lesson_rows.feedback(self.step, option, self._width)) for option in self.step.options)
         return max(answers, default=0)
 
-    def _asked(self) -> list[Row]:
-        return [row(), *say.question(self.step, self.chosen, self._told, self._width)]
+    def _question_rows(self) -> list[Row]:
+        return [row(), *lesson_rows.question(self.step, self.chosen, self._is_answer_shown, self._width)]
 
     def _caption(self) -> str:
         scene, view = self._scene.scene, self._scene.view
@@ -221,23 +222,23 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
             return "opening ..."
         if view.failure is not None:
             return "the controller has stopped"
-        if self._waits:
+        if self._is_waiting:
             return "stands still until you choose"
         if self._scene.by_hand:
-            return "yours to drive" if self._drives else "d opens it to be driven"
+            return "yours to drive" if self._is_driving else "d opens it to be driven"
         return "at rest" if self._scene.is_resting else f"{int(view.time_s)} of {scene.seconds:g} s"
 
     def _possible(self) -> Possible:
         if self.is_over:
             return Possible(questions=True, next=False)
         return Possible(
-            choose=len(self.step.options) if self._waits else 0,
-            drive_scene=self._drives,
+            choose=len(self.step.options) if self._is_waiting else 0,
+            drive_scene=self._is_driving,
             again=self.step.scene is not None and not self._is_still,
             open=bool(self.openable()),
             back=self.step.number > 1,
-            next=not self._waits,
-            **self.bench_possible(),
+            next=not self._is_waiting,
+            **self.exercise_actions(),
         )
 
     @property
@@ -245,42 +246,42 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         """Of the words."""
         return min(self.size.width, BESIDE) if self.has_class("-wide") else self.size.width
 
-    def filled(self, text: str) -> str:
+    def with_paths(self, text: str) -> str:
         """With the student's own paths."""
-        if self.bench is None:
+        if self.model is None:
             return text
-        return text.replace("{file}", str(self.bench.file)).replace("{folder}", str(self.bench.file.parent))
+        return text.replace("{file}", str(self.model.file)).replace("{folder}", str(self.model.file.parent))
 
     def show_answer(self) -> None:
         """Scrolls to what is said to what the student did, where it is not in sight anyway."""
         self.show()
-        self._sheet.scroll_words_to(self._until_answer)
+        self._page.scroll_words_to(self._answer_row)
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
 
     # The scene
 
-    def on_scene_view_moved(self) -> None:
+    def on_lesson_scene_view_moved(self) -> None:
         if not self.is_active:
             return
-        if not self._told and not self._waits and self._scene.is_resting:
-            self._tell_answer()
+        if not self._is_answer_shown and not self._is_waiting and self._scene.is_resting:
+            self._reveal_answer()
         self._rows("title").show(
-            [row() if self.is_over else say.title(self.step, self._caption(), self.size.width)]
+            [row() if self.is_over else lesson_rows.title(self.step, self._caption(), self.size.width)]
         )
 
-    def on_scene_view_trouble(self, event: SceneView.Trouble) -> None:
-        self.tell("The scene cannot be shown", event.text)
-        if not self._waits:
-            self._tell_answer()
+    def on_error_event(self, event: ErrorEvent) -> None:
+        self.show_error("The scene cannot be shown", event.text)
+        if not self._is_waiting:
+            self._reveal_answer()
 
-    def takes(self, key: str) -> bool:
-        return self._drives and base_key(key) in ARROWS
+    def is_drive_key(self, key: str) -> bool:
+        return self._is_driving and base_key(key) in ARROWS
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
-        if (messages or strength != self._strength) and self._drives:
+        if (messages or strength != self._strength) and self._is_driving:
             self._scene.press(messages, strength)
         self._strength = strength
 
@@ -293,16 +294,16 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         """A key that is held scrolls and drives; it does not go on and on."""
-        if not self.takes(event.key) and base_key(event.key) not in HELD:
+        if not self.is_drive_key(event.key) and base_key(event.key) not in HELD:
             event.prevent_default()
 
     def action_foresee(self, number: int) -> None:
-        if not self._waits or number > len(self.step.options):
+        if not self._is_waiting or number > len(self.step.options):
             return
         try:
             self.visit.foresee(self.step, number - 1)
         except ProgressError as error:
-            self.tell("Your choice could not be kept", str(error))
+            self.show_error("Your choice could not be kept", str(error))
             return
         if self.step.scene is not None and self._scene.view is not None:
             self._scene.go()
@@ -310,32 +311,32 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
         else:
             if self.step.scene is not None:
                 self._scene.again()
-            self._tell_answer()
+            self._reveal_answer()
 
-    def _tell_answer(self) -> None:
-        self._told = True
+    def _reveal_answer(self) -> None:
+        self._is_answer_shown = True
         self.show_answer()
 
     def action_next(self) -> None:
         if self.is_over:
             return
-        if self._waits:
+        if self._is_waiting:
             return
-        if not self._told:
-            self._tell_answer()
+        if not self._is_answer_shown:
+            self._reveal_answer()
             return
         if self.step.exercise is None:
             try:
                 self.visit.go_through(self.step)
             except ProgressError as error:
-                self.tell("This step could not be noted", str(error))
+                self.show_error("This step could not be noted", str(error))
                 return
         if self.step.number == len(self.visit.lesson.steps):
-            self._leave_bench()
-            self._scene.shut()
+            self._close_model()
+            self._scene.close_session()
             self.is_over = True
             self.show()
-            self._sheet.scroll_words_to(0)
+            self._page.scroll_words_to(0)
         else:
             self.enter(self.visit.step(self.step.number + 1))
 
@@ -350,4 +351,4 @@ class LessonScreen(StillScreen[None], BenchKeys, WayKeys, DriveScreen):
             self._scene.again()
 
     def action_scroll(self, lines: int) -> None:
-        self._sheet.scroll_words(lines)
+        self._page.scroll_words(lines)

@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from kit.run.scenario import Place
     from kit.run.session import Session
     from kit.school.lessons.records import Scene
-    from kit.tui.theme import Look
+    from kit.tui.theme import Theme
     from kit.workspace import Workspace
 
 TELEOP: Final = "teleop"
 
 
-class Kept(Message):
+class DriveSaved(Message):
     """The drive is on the disk, or could not be put there."""
 
 
-class HandDrive(WatchScreen):
+class RecordedDriveScreen(WatchScreen):
     """The student drives; the clock starts with the first key. Leaving keeps the drive, and so does the target."""
 
     keys = key_line(
@@ -61,13 +61,13 @@ class HandDrive(WatchScreen):
         Binding("x", "next_drive_mode", show=False),
     ]
 
-    def __init__(self, look: Look, scene: Scene, file: Path, desk: Workspace) -> None:
+    def __init__(self, theme: Theme, scene: Scene, file: Path, workspace: Workspace) -> None:
         """``file``: where the drive is kept."""
         super().__init__(
-            look,
+            theme,
             scene.case or scene.place,
             seed=scene.seed,
-            socket_dir=sockets_folder(desk.folder),
+            socket_dir=sockets_folder(workspace.folder),
             records=True,
         )
         self._scene = scene
@@ -83,8 +83,8 @@ class HandDrive(WatchScreen):
 
     def open_world(self) -> None:
         self._started = self._reached = self._is_open = False
-        self.behind.set_paused(True)
-        self.behind.open(self._place, self._teleop, paused=True)
+        self.host.set_paused(True)
+        self.host.open(self._place, self._teleop, paused=True)
 
     def _place(self) -> Place:
         """In the helper thread."""
@@ -92,19 +92,19 @@ class HandDrive(WatchScreen):
 
         return find_place(self._scene.place, self._scene.case)
 
-    def takes(self, key: str) -> bool:
+    def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
         return found is not None and (found.moves or found.name == "space")
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
         if not self._is_open or self._reached or (not messages and strength == self._strength):
             return
         self._strength = strength
         if not self._started and any(message.startswith("p_") for message in messages):
             self._started = True
-            self.behind.set_paused(False)
-        self.behind.wish(lambda session: session.keys.publish(messages, strength))
+            self.host.set_paused(False)
+        self.host.post(lambda session: session.keys.publish(messages, strength))
 
     def _show(self) -> None:
         super()._show()
@@ -115,8 +115,8 @@ class HandDrive(WatchScreen):
         if view.score.reached_s is not None and not self._reached:
             self._reached = True
             self.stop_driving()
-            self.behind.set_paused(True)
-            self.behind.wish(self._keep)
+            self.host.set_paused(True)
+            self.host.post(self._keep)
         if (remark := self._remark()) and self.is_active:
             self._rows("said").show([remark])
 
@@ -137,7 +137,7 @@ class HandDrive(WatchScreen):
     def _save(self) -> None:
         from kit.run.recording import save
 
-        recording = self.behind.recording()
+        recording = self.host.recording()
         if recording is None or not recording.ticks:
             return
         try:
@@ -148,7 +148,7 @@ class HandDrive(WatchScreen):
 
     def on_unmount(self) -> None:
         """Whoever leaves the whole kit keeps the drive too."""
-        self.behind.close()
+        self.host.close()
         if self._started and not self._saving and not self._reached:
             self._save()
 
@@ -165,20 +165,20 @@ class HandDrive(WatchScreen):
         if self._started and self.view is not None and not self._reached:
             self._saving = True
             self.stop_driving()
-            self.behind.wish(self._keep_and_leave)
+            self.host.post(self._keep_and_leave)
         else:
             self.dismiss()
 
     def _keep_and_leave(self, session: Session) -> None:
         session.runner.pause()
         self._keep(session)
-        self.post_message(Kept())
+        self.post_message(DriveSaved())
 
-    def on_kept(self) -> None:
+    def on_drive_saved(self) -> None:
         self.dismiss()
 
 
-class WorstRun(ReplayScreen):
+class RecordingScreen(ReplayScreen):
     """A run of a check, looked at again; Esc goes back to the lesson."""
 
     keys = key_line(
@@ -192,7 +192,7 @@ class WorstRun(ReplayScreen):
     )
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,enter,backspace", "back", show=False)]
 
-    def takes(self, key: str) -> bool:
+    def is_drive_key(self, key: str) -> bool:
         return False
 
     def action_back(self) -> None:

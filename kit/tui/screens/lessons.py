@@ -10,12 +10,12 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.school.progress import ProgressError
-from kit.tui.overview import Overview, School
-from kit.tui.rows import lesson_list_rows as say
+from kit.tui.rows import lesson_list_rows
 from kit.tui.rows.key_rows import key_line
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.student_store import StudentOverview, StudentStore
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ SUMMARY_ROWS: Final = 6
 KEYS: Final = key_line(("up down", "choose"), ("Enter", "open"), ("Esc", "back"))
 
 
-class LessonsScreen(StillScreen[None]):
+class LessonsScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -46,10 +46,10 @@ class LessonsScreen(StillScreen[None]):
     LessonsScreen #keys { height: 1; }
     """
 
-    def __init__(self, look: Look, school: School, overview: Overview) -> None:
+    def __init__(self, theme: Theme, store: StudentStore, overview: StudentOverview) -> None:
         super().__init__()
-        self._look = look
-        self._school = school
+        self._theme = theme
+        self._store = store
         self._overview = overview
         first = overview.going_on
         self._at = overview.shelf.index(first) if first is not None else 0
@@ -77,9 +77,11 @@ class LessonsScreen(StillScreen[None]):
         self._rows("heading").show([row(("Lessons", "bold"), (told, "dim"))])
         room = max(1, self.size.height - 3 - SUMMARY_ROWS)
         top = max(0, min(self._at - room // 2, len(shelf) - room))
-        self._rows("list").show_all([say.line(each, each is chosen) for each in shelf[top : top + room]])
+        self._rows("list").show_all(
+            [lesson_list_rows.line(each, each is chosen) for each in shelf[top : top + room]]
+        )
         self._rows("about").show(
-            [row(), *(say.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+            [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
         )
         self._rows("keys").show([KEYS])
 
@@ -98,17 +100,17 @@ class LessonsScreen(StillScreen[None]):
         if entry is None or not self.is_active:
             return
         if entry.lesson is None:
-            self.app.push_screen(Page("This lesson cannot be read", wrapped(entry.problem)))
+            self.app.push_screen(MessageDialog("This lesson cannot be read", wrapped(entry.problem)))
             return
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame
 
         try:
-            visit = self._school.visit(entry.lesson)
+            visit = self._store.visit(entry.lesson)
         except ProgressError as error:
-            self.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(LessonScreen(self._look, visit, self._school.desk))
-        self._overview = await to_thread(self._school.look)
+        await self.app.push_screen_wait(LessonScreen(self._theme, visit, self._store.workspace))
+        self._overview = await to_thread(self._store.read_overview)
         self._at = min(self._at, max(0, len(self._overview.shelf) - 1))
         self._show()
 

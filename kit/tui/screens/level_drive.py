@@ -24,16 +24,16 @@ from kit.school.game.race import LONGEST, SEED, Driver, Finish, Judge
 from kit.school.progress import Progress, ProgressError
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, drive_key, named
-from kit.tui.rows import level_rows as say
+from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import key_line, key_page
-from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.run.scenario import Place
     from kit.run.session import Session
-    from kit.tui.theme import Look
+    from kit.tui.theme import Theme
     from kit.workspace import Workspace
 
 ONE, TWO = "teleop", "teleop_pair"
@@ -42,7 +42,7 @@ WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 
 
-class Over(Message):
+class DriveEnded(Message):
     """The drive has ended."""
 
     def __init__(self, finish: Finish, noted: Noted | None, problem: str) -> None:
@@ -52,7 +52,7 @@ class Over(Message):
         self.problem = problem
 
 
-class Result(Page):
+class DriveResultDialog(MessageDialog):
     """What a drive earned. A driving key that is still held does not close it."""
 
     LEAVE: ClassVar = ("enter", "escape", "r", "q", "backspace")
@@ -95,15 +95,17 @@ class LevelDrive(WatchScreen):
     ]
 
     def __init__(
-        self, look: Look, level: Level, ghosts: Sequence[Ghost], progress: Progress, desk: Workspace
+        self, theme: Theme, level: Level, ghosts: Sequence[Ghost], progress: Progress, workspace: Workspace
     ) -> None:
-        super().__init__(look, level.title, seed=SEED, socket_dir=sockets_folder(desk.folder), records=True)
+        super().__init__(
+            theme, level.title, seed=SEED, socket_dir=sockets_folder(workspace.folder), records=True
+        )
         self._level = level
         self._ghosts = tuple(ghosts)
         self._ways = tuple(way for ghost in self._ghosts for way in _ways(ghost))
         self._with_ghosts = True
         self._progress = progress
-        self._desk = desk
+        self._workspace = workspace
         self._judge: Judge | None = None
         self._is_over = False
         self._strength = 1.0
@@ -116,23 +118,23 @@ class LevelDrive(WatchScreen):
     def open_world(self) -> None:
         self._judge, self._is_over, self.view, self._said = None, False, None, ()
         place = self._level.find()
-        self.behind.open(lambda: place, find(TWO if len(place.partners) > 1 else ONE), paused=True)
+        self.host.open(lambda: place, find(TWO if len(place.partners) > 1 else ONE), paused=True)
         self._place: Place = place
 
-    def takes(self, key: str) -> bool:
+    def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
         return found is not None and (found.moves or found.name == "space")
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
         if self.view is None or self._is_over or (not messages and strength == self._strength):
             return
         self._strength = strength
         if self._judge is None and any(message.startswith("p_") for message in messages):
             self._judge = judge = Judge(self._place)
-            self.behind.wish(lambda session: session.runner.observers.append(judge))
-            self.behind.set_paused(False)
-        self.behind.wish(lambda session: session.keys.publish(messages, strength))
+            self.host.post(lambda session: session.runner.observers.append(judge))
+            self.host.set_paused(False)
+        self.host.post(lambda session: session.keys.publish(messages, strength))
 
     # What is shown
 
@@ -170,35 +172,35 @@ class LevelDrive(WatchScreen):
         elif self._has_ended(judge.finish, view.time_s):
             self._is_over = True
             self.stop_driving()
-            self.behind.set_paused(True)
-            self.behind.wish(self._end)
+            self.host.set_paused(True)
+            self.host.post(self._end)
 
     def _has_ended(self, finish: Finish, time_s: float) -> bool:
         return finish.reached or bool(finish.foul) or time_s > LONGEST * self._level.par
 
     def _end(self, session: Session) -> None:
         """In the world's thread, between two ticks: nothing moves any more."""
-        recording = self.behind.recording()
+        recording = self.host.recording()
         assert self._judge is not None  # the drive had begun
         finish, noted, problem = self._judge.finish, None, ""
         if recording is not None:
             try:
-                noted = note(self._progress, self._desk, self._level, Driver.KEYS, finish, recording)
+                noted = note(self._progress, self._workspace, self._level, Driver.KEYS, finish, recording)
             except ProgressError as error:
                 problem = str(error)
-        self.post_message(Over(finish, noted, problem))
+        self.post_message(DriveEnded(finish, noted, problem))
 
-    def on_over(self, event: Over) -> None:
+    def on_drive_ended(self, event: DriveEnded) -> None:
         if event.noted is None:
-            self.app.push_screen(Page("The drive could not be kept", wrapped(event.problem)))
+            self.app.push_screen(MessageDialog("The drive could not be kept", wrapped(event.problem)))
             return
         reference = next((each for each in self._ghosts if each.name == "reference"), None)
-        rows = say.result(self._level.title, self._level.par, event.finish, event.noted, reference)
+        rows = level_rows.result(self._level.title, self._level.par, event.finish, event.noted, reference)
         self._said = row(
-            (" ".join(say.STAR if has else say.NO_STAR for has in event.noted.stars), "warn"),
+            (" ".join(level_rows.STAR if has else level_rows.NO_STAR for has in event.noted.stars), "warn"),
             "  r drives again, Esc shows the levels.",
         )
-        self.app.push_screen(Result("The end of this drive", rows))
+        self.app.push_screen(DriveResultDialog("The end of this drive", rows))
 
     # Keys
 

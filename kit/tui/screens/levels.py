@@ -18,12 +18,12 @@ from kit.school.game.levels import Level, all_levels
 from kit.school.game.player_progress import LevelStanding, standings
 from kit.school.game.race import Driver, Finish, race, race_agent
 from kit.school.progress import Kind, Progress, ProgressError
-from kit.tui.rows import level_rows as say
+from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import key_line
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ KEYS: Final = key_line(
 )
 
 
-class LevelsScreen(StillScreen[None]):
+class LevelsScreen(ActivePaintScreen[None]):
     """Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -74,12 +74,14 @@ class LevelsScreen(StillScreen[None]):
     LevelsScreen #keys {{ height: 1; }}
     """
 
-    def __init__(self, look: Look, progress: Progress, desk: Workspace, level: Level | None = None) -> None:
+    def __init__(
+        self, theme: Theme, progress: Progress, workspace: Workspace, level: Level | None = None
+    ) -> None:
         """``level``: opened at once."""
         super().__init__()
-        self._look = look
+        self._theme = theme
         self._progress = progress
-        self._desk = desk
+        self._workspace = workspace
         self._levels = all_levels()
         self._first = level
         self._found: tuple[LevelStanding, ...] = ()
@@ -99,7 +101,7 @@ class LevelsScreen(StillScreen[None]):
             self._at = next(
                 (number for number, each in enumerate(self._found) if each.is_open and each.count < 3), 0
             )
-        self._look_closer()
+        self._load_ghosts()
         if self._first is not None:
             self.action_drive()
 
@@ -127,14 +129,14 @@ class LevelsScreen(StillScreen[None]):
                 )
             ]
         )
-        self._rows("map").show([row(), *say.level_map(self._found, self._at)])
+        self._rows("map").show([row(), *level_rows.level_map(self._found, self._at)])
         near, reference = self._known.get(self.chosen.level.id, ((), None))
-        about: list[Row] = say.about(self.chosen, near, reference)
+        about: list[Row] = level_rows.about(self.chosen, near, reference)
         self._rows("about").show([*about, row((self._doing, "bold"))] if self._doing else about)
         self._rows("keys").show([KEYS])
 
     @work(exclusive=True, group="ghosts")
-    async def _look_closer(self) -> None:
+    async def _load_ghosts(self) -> None:
         """The ghosts of the chosen level: the reference's takes a moment the first time."""
         level = self.chosen.level
         self._show()
@@ -143,7 +145,7 @@ class LevelsScreen(StillScreen[None]):
             self._show()
 
     def _ghosts_of(self, level: Level) -> tuple[tuple[Ghost, ...], Ghost | None]:
-        return ghosts(self._desk, level), reference_ghost(self._desk, level)
+        return ghosts(self._workspace, level), reference_ghost(self._workspace, level)
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -152,15 +154,15 @@ class LevelsScreen(StillScreen[None]):
 
     def action_beside(self, steps: int) -> None:
         self._at = max(0, min(self._at + steps, len(self._found) - 1))
-        self._look_closer()
+        self._load_ghosts()
 
     def action_below(self, steps: int) -> None:
-        grid = say.grid(self._found)
+        grid = level_rows.grid(self._found)
         at = self.chosen.level.row
         column = grid[at].index(self._at)
         to = max(0, min(at + steps, len(grid) - 1))
         self._at = grid[to][min(column, len(grid[to]) - 1)]
-        self._look_closer()
+        self._load_ghosts()
 
     @work(exclusive=True, group="drive")
     async def action_drive(self) -> None:
@@ -173,17 +175,19 @@ class LevelsScreen(StillScreen[None]):
             self._known[level.id] = await to_thread(self._ghosts_of, level)
         near, reference = self._known[level.id]
         shown = [*near, *([] if reference is None else [reference])]
-        await self.app.push_screen_wait(LevelDrive(self._look, level, shown, self._progress, self._desk))
+        await self.app.push_screen_wait(
+            LevelDrive(self._theme, level, shown, self._progress, self._workspace)
+        )
         self._after(level)
 
     @work(exclusive=True, group="drive")
     async def action_program(self) -> None:
         if not self._may_drive():
             return
-        files = {str(each.file): each for each in (*in_folder(self._desk.controllers), *shipped())}
-        choices = [Choice(key, each.name, each.title) for key, each in files.items()]
+        files = {str(each.file): each for each in (*in_folder(self._workspace.controllers), *shipped())}
+        choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         picked = await self.app.push_screen_wait(
-            Picker(f"Who drives? Yours are in {self._desk.controllers}", choices)
+            Picker(f"Who drives? Yours are in {self._workspace.controllers}", choices)
         )
         if picked is not None:
             await self._race(
@@ -194,16 +198,16 @@ class LevelsScreen(StillScreen[None]):
     async def action_agent(self) -> None:
         if not self._may_drive():
             return
-        names = await to_thread(_runs, self._desk.runs)
+        names = await to_thread(_runs, self._workspace.runs)
         if not names:
             text = "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
-            self.app.push_screen(Page("Agents", wrapped(text)))
+            self.app.push_screen(MessageDialog("Agents", wrapped(text)))
             return
-        choices = [Choice(name, name, "") for name in names]
+        choices = [PickerItem(name, name, "") for name in names]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
         if picked is not None:
             await self._race(
-                Driver.AGENT, lambda level: _race_agent(level, self._desk.runs, picked, self._tell)
+                Driver.AGENT, lambda level: _race_agent(level, self._workspace.runs, picked, self._tell)
             )
 
     def action_watch(self) -> None:
@@ -212,11 +216,11 @@ class LevelsScreen(StillScreen[None]):
         files = [
             file
             for each in (*near, *([reference] if reference else []))
-            for file in sorted(folder(self._desk).glob(f"{level.id}.{each.name}*.npz"))
+            for file in sorted(folder(self._workspace).glob(f"{level.id}.{each.name}*.npz"))
         ]
         if not files:
             self.app.push_screen(
-                Page(
+                MessageDialog(
                     "Nothing to watch yet",
                     wrapped("Drive this level first, then its best drive can be watched."),
                 )
@@ -226,19 +230,19 @@ class LevelsScreen(StillScreen[None]):
 
     @work(exclusive=True, group="drive")
     async def _choose_replay(self, files: list[Path]) -> None:
-        choices = [Choice(str(file), file.name.split(".")[1], "") for file in files]
+        choices = [PickerItem(str(file), file.name.split(".")[1], "") for file in files]
         picked = await self.app.push_screen_wait(Picker("Watch whose drive?", choices))
         if picked is not None:
             from kit.run.recording import RecordingError, load
-            from kit.tui.screens.lesson_drive import WorstRun
+            from kit.tui.screens.lesson_drive import RecordingScreen
 
             try:
                 recording = await to_thread(load, Path(picked))
             except (RecordingError, OSError) as error:
-                self.app.push_screen(Page("It cannot be watched", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("It cannot be watched", wrapped(str(error))))
                 return
             await self.app.push_screen_wait(
-                WorstRun(self._look, self.chosen.level.find(), recording, "a drive")
+                RecordingScreen(self._theme, self.chosen.level.find(), recording, "a drive")
             )
 
     def action_fame(self) -> None:
@@ -247,7 +251,9 @@ class LevelsScreen(StillScreen[None]):
         for level in self._levels:
             best = [each for each in found if each.level == level.id][:BEST]
             if best:
-                names = ", ".join(f"{each.name} {each.seconds:.1f} s {say.WHO[each.driver]}" for each in best)
+                names = ", ".join(
+                    f"{each.name} {each.seconds:.1f} s {level_rows.WHO[each.driver]}" for each in best
+                )
                 rows += wrapped(f" {level.title}: {names}")
         if not found:
             rows += wrapped("Nobody on this machine is in the hall of fame yet.")
@@ -255,7 +261,7 @@ class LevelsScreen(StillScreen[None]):
             row(),
             *wrapped("`kit game join` puts your name and times there, `kit game leave` takes them out."),
         ]
-        self.app.push_screen(Page("Hall of fame", rows))
+        self.app.push_screen(MessageDialog("Hall of fame", rows))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:
@@ -270,7 +276,7 @@ class LevelsScreen(StillScreen[None]):
             return False
         if not self.chosen.is_open:
             self.app.push_screen(
-                Page(
+                MessageDialog(
                     "Not open yet",
                     wrapped(
                         f"{self.chosen.level.title} opens when you have finished {' or '.join(self.chosen.level.after)}."
@@ -290,18 +296,20 @@ class LevelsScreen(StillScreen[None]):
         except (LookupError, ValueError, OSError, ProgressError) as error:
             self._doing = ""
             self._show()
-            self.app.push_screen(Page("It could not drive", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("It could not drive", wrapped(str(error))))
             return
         self._doing = ""
         reference = self._known.get(level.id, ((), None))[1]
         self._after(level)
         self.app.push_screen(
-            Page("The end of this drive", say.result(level.title, level.par, finish, noted, reference))
+            MessageDialog(
+                "The end of this drive", level_rows.result(level.title, level.par, finish, noted, reference)
+            )
         )
 
     def _raced(self, driver: Driver, level: Level, drive: _Drive) -> tuple[Finish, Noted]:
         finish, recording = drive(level)
-        return finish, note(self._progress, self._desk, level, driver, finish, recording)
+        return finish, note(self._progress, self._workspace, level, driver, finish, recording)
 
     def _tell(self, seconds: float) -> None:
         """Called in the race's thread."""
@@ -317,7 +325,7 @@ class LevelsScreen(StillScreen[None]):
         """A drive has ended: stars and ghosts may be others now."""
         self._known.pop(level.id, None)
         self._read()
-        self._look_closer()
+        self._load_ghosts()
 
 
 def _runs(folder: Path) -> list[str]:

@@ -21,7 +21,7 @@ LINE: Final = WIDTH - 6
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class PickerItem:
     """One line of the list: what choosing it returns, its name, and what is said of it."""
 
     key: str
@@ -48,7 +48,7 @@ class Picker(ModalScreen[str | None]):
     Picker OptionList {{ border: none; padding: 0; height: auto; max-height: 19; background: transparent; }}
     """
 
-    def __init__(self, title: str, choices: Sequence[Choice], chosen: str | None = None) -> None:
+    def __init__(self, title: str, choices: Sequence[PickerItem], chosen: str | None = None) -> None:
         super().__init__()
         self._title = title
         self._choices = tuple(choices)
@@ -88,8 +88,8 @@ class Picker(ModalScreen[str | None]):
             at = (options.highlighted or 0) + lines
             options.highlighted = min(max(at, 0), options.option_count - 1)
 
-    def _fill(self, narrowed: str) -> None:
-        wanted = narrowed.casefold()
+    def _fill(self, name_filter: str) -> None:
+        wanted = name_filter.casefold()
         shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
         options = self.query_one(OptionList)
         options.clear_options()
@@ -98,7 +98,7 @@ class Picker(ModalScreen[str | None]):
         if shown:
             options.highlighted = keys.index(self._chosen) if self._chosen in keys else 0
 
-    def _line(self, choice: Choice) -> Text:
+    def _line(self, choice: PickerItem) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
         lines = textwrap.wrap(choice.text, max(20, LINE - self._width)) or [""]
         return Text(f"{choice.name:{self._width}}" + ("\n" + " " * self._width).join(lines))

@@ -13,11 +13,11 @@ from textual.binding import Binding, BindingType
 from kit.controllers import ControllerFile, find, in_folder, shipped
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import PLAY_HELP, PLAY_KEYS
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class PlayScreen(WatchScreen):
 
     def __init__(
         self,
-        look: Look,
+        theme: Theme,
         place: str,
         controller: str,
         *,
@@ -57,8 +57,8 @@ class PlayScreen(WatchScreen):
         socket_dir: Path | None = None,
         records: bool = False,
     ) -> None:
-        super().__init__(look, case or place, seed=seed, socket_dir=socket_dir, records=records)
-        self._look = look
+        super().__init__(theme, case or place, seed=seed, socket_dir=socket_dir, records=records)
+        self._theme = theme
         self._runs = runs
         self._folder = folder
         self._find = partial(_find_place, place, case, root)
@@ -68,9 +68,9 @@ class PlayScreen(WatchScreen):
         self._strength = 1.0
 
     def open_world(self) -> None:
-        self.behind.open(self._find, self._controller)
+        self.host.open(self._find, self._controller)
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
         if not messages and strength == self._strength:
             return
@@ -83,24 +83,26 @@ class PlayScreen(WatchScreen):
                 session.drive_with(self._teleop)
             session.keys.publish(messages, strength)
 
-        self.behind.wish(press)
+        self.host.post(press)
 
     def action_hand_back(self) -> None:
         """The controller that drove before the keys took over drives again."""
         controller = self._before_takeover or self._controller
-        self.behind.drive_with(controller)
+        self.host.drive_with(controller)
 
     def action_nodes(self) -> None:
         from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
 
         if self.view is not None:
-            self.app.push_screen(GraphScreen(self._look, self.behind, self.view.place))
+            self.app.push_screen(GraphScreen(self._theme, self.host, self.view.place))
 
     @work
     async def action_maps(self) -> None:
         cards = {card.name: card for card in all_maps()}
         choices = [
-            Choice(f"{card.name}/{case.name}", case.name if len(card.cases) > 1 else card.name, card.summary)
+            PickerItem(
+                f"{card.name}/{case.name}", case.name if len(card.cases) > 1 else card.name, card.summary
+            )
             for card in cards.values()
             for case in card.cases
         ]
@@ -108,32 +110,34 @@ class PlayScreen(WatchScreen):
         if chosen is not None:
             name, _, case = chosen.partition("/")
             self._find = partial(_find_place, name, case)
-            self.behind.open(self._find, self._controller)
+            self.host.open(self._find, self._controller)
 
     @work
     async def action_controllers(self) -> None:
         files = {str(each.file): each for each in (*in_folder(self._folder), *shipped())}
-        choices = [Choice(key, each.name, each.title) for key, each in files.items()]
+        choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         chosen = await self.app.push_screen_wait(Picker(f"Controllers; yours are in {self._folder}", choices))
         if chosen is not None:
             self._controller, self._before_takeover = files[chosen], None
-            self.behind.drive_with(self._controller)
+            self.host.drive_with(self._controller)
 
     @work
     async def action_trainings(self) -> None:
         runs = await to_thread(_trainings, self._runs)
         if not runs:
-            self.app.push_screen(Page("Trainings", wrapped("None yet. `kit train turn` starts one.")))
+            self.app.push_screen(
+                MessageDialog("Trainings", wrapped("None yet. `kit train turn` starts one."))
+            )
             return
-        choices = [Choice(name, name, text) for name, (_, text) in runs.items()]
+        choices = [PickerItem(name, name, text) for name, (_, text) in runs.items()]
         chosen = await self.app.push_screen_wait(Picker("Trainings, the last one first", choices))
         if chosen is not None:
             from kit.tui.screens.training import TrainingScreen  # of no use to the first frame
 
             running = self.view is not None and not self.view.paused
-            self.behind.set_paused(True)  # two worlds at once would take their time from the training
-            await self.app.push_screen_wait(TrainingScreen(self._look, runs[chosen][0]))
-            self.behind.set_paused(not running)
+            self.host.set_paused(True)  # two worlds at once would take their time from the training
+            await self.app.push_screen_wait(TrainingScreen(self._theme, runs[chosen][0]))
+            self.host.set_paused(not running)
 
 
 def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:

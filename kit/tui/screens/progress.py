@@ -7,31 +7,31 @@ from typing import Any
 
 from textual.screen import Screen
 
-from kit.tui.overview import School
-from kit.tui.rows import lesson_list_rows as say
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.scroll_page import ScrollPage
+from kit.tui.rows import lesson_list_rows
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.text_screen import TextScreen
+from kit.tui.student_store import StudentStore
 from kit.tui.widgets.text_rows import Row
 
 
-async def show_progress(screen: Screen[Any], school: School) -> None:
+async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     """Opens the page, and comes back when it is left. To be called in a worker."""
-    found = await to_thread(_rows, school)
+    found = await to_thread(_rows, store)
     if isinstance(found, str):
-        screen.app.push_screen(Page("Progress cannot be read", wrapped(found)))
+        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
     else:
-        await screen.app.push_screen_wait(ScrollPage("Progress", found))
+        await screen.app.push_screen_wait(TextScreen("Progress", found))
 
 
-def _rows(school: School) -> list[Row] | str:
+def _rows(store: StudentStore) -> list[Row] | str:
     """In another thread: there are many files. What is wrong, if something is."""
-    overview = school.look()
+    overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    return say.progress(overview.shelf, _quiz(school), str(school.desk.folder))
+    return lesson_list_rows.progress(overview.shelf, _quiz(store), str(store.workspace.folder))
 
 
-def _quiz(school: School) -> list[str]:
+def _quiz(store: StudentStore) -> list[str]:
     from kit.school.quiz.answers import answers_of
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
@@ -39,7 +39,7 @@ def _quiz(school: School) -> list[str]:
     from kit.school.quiz.schedule import schedule_of
     from kit.world.problems import WorldError
 
-    events = school.progress().events()
+    events = store.progress().events()
     try:
         bank = read_bank()
     except (WorldError, FileNotFoundError) as error:

@@ -6,8 +6,8 @@ from asyncio import to_thread
 from typing import TYPE_CHECKING, Any
 
 from kit.school.progress import Progress, ProgressError
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
@@ -41,25 +41,25 @@ async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
     try:
         events = progress.events()
     except ProgressError as error:
-        screen.app.push_screen(Page("Progress cannot be read", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
         return
     schedule = schedule_of(bank, events, local_now())
     plans: dict[str, Plan] = {TODAY: Today(bank), TWELVE: the_twelve(bank)}
     choices = [
-        Choice(TODAY, "today", today_line(schedule)),
-        Choice(TWELVE, "the twelve", "The twelve ideas, one question each."),
-        Choice(SCORES, "scores", "What you know by topic, and how well you judge it."),
+        PickerItem(TODAY, "today", today_line(schedule)),
+        PickerItem(TWELVE, "the twelve", "The twelve ideas, one question each."),
+        PickerItem(SCORES, "scores", "What you know by topic, and how well you judge it."),
     ]
     for name in dict.fromkeys(item.lesson for item in bank.items):
         plans[name] = plan = of_lesson(bank, name)
-        choices.append(Choice(name, f"lesson {name.partition('-')[0].lstrip('0')}", plan.title))
+        choices.append(PickerItem(name, f"lesson {name.partition('-')[0].lstrip('0')}", plan.title))
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
-        from kit.tui.screens.scroll_page import ScrollPage  # of no use to the first frame
+        from kit.tui.screens.text_screen import TextScreen  # of no use to the first frame
         from kit.tui.widgets.text_rows import row
 
         lines = scores_lines(bank, answers_of(events), schedule)
-        await screen.app.push_screen_wait(ScrollPage("Scores", [row(" " + line) for line in lines]))
+        await screen.app.push_screen_wait(TextScreen("Scores", [row(" " + line) for line in lines]))
     elif chosen is not None:
         await _ask(screen, progress, bank, plans[chosen])
 
@@ -71,7 +71,7 @@ async def _bank(screen: Screen[Any]) -> Bank | None:
     try:
         return await to_thread(read_bank)
     except (WorldError, FileNotFoundError) as error:
-        screen.app.push_screen(Page("The questions cannot be read", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("The questions cannot be read", wrapped(str(error))))
         return None
 
 
@@ -84,11 +84,11 @@ async def _ask(screen: Screen[Any], progress: Progress, bank: Bank, plan: Plan) 
         if sitting.item is None:  # all were asked: once more, for practice
             sitting = Sitting(progress, bank, plan, seed=student_seed(progress), anew=True)
     except ProgressError as error:
-        screen.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
         return
     if sitting.item is None:
         screen.app.push_screen(
-            Page(plan.title, wrapped("There is nothing to ask now. Come back another day."))
+            MessageDialog(plan.title, wrapped("There is nothing to ask now. Come back another day."))
         )
         return
     await screen.app.push_screen_wait(QuizScreen(sitting))

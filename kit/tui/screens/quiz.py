@@ -15,13 +15,13 @@ from kit.school.quiz.items import OPTIONS, Item
 from kit.school.quiz.quiz_session import Sitting
 from kit.school.quiz.quiz_text import closing_lines
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
-from kit.tui.screens.page import Page
+from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.screens.quiz_keys import ASK_KEYS, LAST_KEYS, OVER_KEYS, QUIZ_HELP, SURE_KEYS, TOLD_KEYS
-from kit.tui.textual_patches import StillScreen
+from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 
 
-class Stage(Enum):
+class QuizStage(Enum):
     """How far one is with a question."""
 
     ASKED = "asked"
@@ -30,10 +30,15 @@ class Stage(Enum):
     OVER = "over"
 
 
-_KEYS: Final = {Stage.ASKED: ASK_KEYS, Stage.CHOSEN: SURE_KEYS, Stage.TOLD: TOLD_KEYS, Stage.OVER: OVER_KEYS}
+_KEYS: Final = {
+    QuizStage.ASKED: ASK_KEYS,
+    QuizStage.CHOSEN: SURE_KEYS,
+    QuizStage.TOLD: TOLD_KEYS,
+    QuizStage.OVER: OVER_KEYS,
+}
 
 
-class QuizScreen(StillScreen[None]):
+class QuizScreen(ActivePaintScreen[None]):
     """Asks what a sitting has ahead. Draws nothing but what a key has changed."""
 
     AUTO_FOCUS = ""
@@ -61,7 +66,7 @@ class QuizScreen(StillScreen[None]):
         self._choice: Choice | None = None
         self._top = 0
         self._asked_to_skip = False
-        self.stage = Stage.ASKED if self._item is not None else Stage.OVER
+        self.stage = QuizStage.ASKED if self._item is not None else QuizStage.OVER
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -82,12 +87,12 @@ class QuizScreen(StillScreen[None]):
         self._rows("heading").show([self._heading()])
         self._rows("body").show(body)
         self._rows("said").show([remark])
-        last = self.stage is Stage.TOLD and self._sitting.item is None
+        last = self.stage is QuizStage.TOLD and self._sitting.item is None
         self._rows("keys").show([LAST_KEYS if last else _KEYS[self.stage]])
 
     def _heading(self) -> Row:
         title = row((self._sitting.plan.title, "bold"))
-        if self._item is None or self.stage is Stage.OVER:
+        if self._item is None or self.stage is QuizStage.OVER:
             return title
         place = (
             f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.total)}"
@@ -96,12 +101,12 @@ class QuizScreen(StillScreen[None]):
 
     def _body(self) -> list[Row]:
         width = self.size.width
-        if self._item is None or self.stage is Stage.OVER:
+        if self._item is None or self.stage is QuizStage.OVER:
             return [row(), *(row(f"  {line}".rstrip()) for line in closing_lines(self._sitting))]
-        told = self.stage is Stage.TOLD
+        told = self.stage is QuizStage.TOLD
         rows = [row(), *question_rows(self._item, width)]
         rows += option_rows(self._item, width, self._choice, told=told)
-        if self.stage is Stage.CHOSEN:
+        if self.stage is QuizStage.CHOSEN:
             rows += sure_rows()
         elif told and self._choice is not None:
             rows += told_rows(self._item, self._choice, width)
@@ -113,16 +118,16 @@ class QuizScreen(StillScreen[None]):
     # Keys
 
     def action_number(self, number: int) -> None:
-        if self.stage is Stage.ASKED and number == 0:
+        if self.stage is QuizStage.ASKED and number == 0:
             self._note(NOT_SURE)
-        elif self.stage is Stage.ASKED and number <= OPTIONS:
+        elif self.stage is QuizStage.ASKED and number <= OPTIONS:
             self._choice = Choice(number - 1)
-            self._go(Stage.CHOSEN)
-        elif self.stage is Stage.CHOSEN and number in SURENESS and self._choice is not None:
+            self._go(QuizStage.CHOSEN)
+        elif self.stage is QuizStage.CHOSEN and number in SURENESS and self._choice is not None:
             self._note(self._choice, number)
 
     def action_skip(self) -> None:
-        if self.stage is not Stage.ASKED:
+        if self.stage is not QuizStage.ASKED:
             return
         if self._asked_to_skip:
             self._note(BLANK)
@@ -131,24 +136,24 @@ class QuizScreen(StillScreen[None]):
             self._show(row(("  s once more leaves it blank; 0 says that you are not sure", "warn")))
 
     def action_other(self) -> None:
-        if self.stage is Stage.CHOSEN:
+        if self.stage is QuizStage.CHOSEN:
             self._choice = None
-            self._go(Stage.ASKED)
+            self._go(QuizStage.ASKED)
 
     def action_next(self) -> None:
-        if self.stage is not Stage.TOLD:
+        if self.stage is not QuizStage.TOLD:
             return
         self._item = self._sitting.item
         self._number = self._sitting.number
         self._choice = None
-        self._go(Stage.OVER if self._item is None else Stage.ASKED)
+        self._go(QuizStage.OVER if self._item is None else QuizStage.ASKED)
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines
         self._show()
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("The quiz", QUIZ_HELP))
+        self.app.push_screen(MessageDialog("The quiz", QUIZ_HELP))
 
     def action_back(self) -> None:
         if len(self.app.screen_stack) > 2:
@@ -164,12 +169,12 @@ class QuizScreen(StillScreen[None]):
             self._show(row((f"  Not kept: {error}", "bad")))
             return
         self._choice = choice
-        self._go(Stage.TOLD)
+        self._go(QuizStage.TOLD)
 
-    def _go(self, stage: Stage) -> None:
+    def _go(self, stage: QuizStage) -> None:
         self.stage = stage
         self._asked_to_skip = False
-        if stage is not Stage.TOLD:
+        if stage is not QuizStage.TOLD:
             self._top = 0
         else:
             self._top = 10_000  # what is said stands at the end; where all fits, that is the top

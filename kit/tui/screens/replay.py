@@ -8,7 +8,7 @@ from kit.run.recording import Recording
 from kit.run.scenario import Place
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
     from kit.run.session import Session
@@ -21,13 +21,13 @@ class ReplayScreen(WatchScreen):
     help = REPLAY_HELP
     shows_mode = False
 
-    def __init__(self, look: Look, place: Place, recording: Recording, title: str) -> None:
-        super().__init__(look, f"{place.title}, {title}", seed=recording.seed)
+    def __init__(self, theme: Theme, place: Place, recording: Recording, title: str) -> None:
+        super().__init__(theme, f"{place.title}, {title}", seed=recording.seed)
         self._place = place
         self._recording = recording
 
     def open_world(self) -> None:
-        self.behind.open_session(self._session, lambda session: self.behind.pacing.factor)
+        self.host.open_session(self._session, lambda session: self.host.pacing.factor)
 
     def _session(self) -> Session:
         """Called in the helper thread."""

@@ -11,13 +11,13 @@ from textual.screen import Screen
 
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.keys import base_key
-from kit.tui.overview import Overview, School
 from kit.tui.rows.readout_rows import said
-from kit.tui.screens.page import Page, wrapped
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.start_keys import MENU, PANEL_WIDTH, START_HELP, START_KEYS, menu
 from kit.tui.screens.watch import MESSAGE_ROWS
-from kit.tui.theme import Look
+from kit.tui.student_store import StudentOverview, StudentStore
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import row, spread
 
 if TYPE_CHECKING:
@@ -49,14 +49,20 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     StartScreen.-narrow #panel {{ display: block; }}
     """
 
-    def __init__(self, look: Look, school: School, *, seed: int = 0) -> None:
-        desk = school.desk
-        socket_dir = sockets_folder(desk.folder)
+    def __init__(self, theme: Theme, store: StudentStore, *, seed: int = 0) -> None:
+        workspace = store.workspace
+        socket_dir = sockets_folder(workspace.folder)
         super().__init__(
-            look, PLACE, CONTROLLER, folder=desk.controllers, runs=desk.runs, seed=seed, socket_dir=socket_dir
+            theme,
+            PLACE,
+            CONTROLLER,
+            folder=workspace.controllers,
+            runs=workspace.runs,
+            seed=seed,
+            socket_dir=socket_dir,
         )
-        self._school = school
-        self._overview: Overview | None = None
+        self._store = store
+        self._overview: StudentOverview | None = None
         self._chosen = 0
         self._is_reading = self._is_away = False
 
@@ -66,12 +72,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self.set_timer(4.0, self._read_once)
 
     def on_unmount(self) -> None:
-        self._school.close()
+        self._store.close()
 
-    def takes(self, key: str) -> bool:
+    def is_drive_key(self, key: str) -> bool:
         return base_key(key) in ARROWS
 
-    def on_new_view(self) -> None:
+    def on_view_changed(self) -> None:
         self._read_once()
 
     # What is shown
@@ -103,14 +109,14 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     @work(exclusive=True, group="overview")
     async def _read(self) -> None:
-        await self._overview_now()
+        await self._refresh_overview()
 
-    async def _overview_now(self) -> Overview:
+    async def _refresh_overview(self) -> StudentOverview:
         """Read anew, and shown."""
-        overview = await to_thread(self._school.look)
+        overview = await to_thread(self._store.read_overview)
         self._overview = overview
-        if notice := self._school.take_notice():
-            self.app.push_screen(Page("Your progress", wrapped(notice)))
+        if notice := self._store.take_notice():
+            self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
         self._show_menu()
         return overview
 
@@ -138,17 +144,17 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _go_away(self) -> None:
         self.stop_driving()
         self._is_away = True
-        self.behind.shut()  # one world at a time
+        self.host.close_session()  # one world at a time
 
     async def _come_back(self) -> None:
         self._is_away = False
         self.open_world()
-        await self._overview_now()
+        await self._refresh_overview()
 
     async def _open_continue(self) -> None:
-        overview = self._overview or await self._overview_now()
+        overview = self._overview or await self._refresh_overview()
         if overview.problem:
-            self.app.push_screen(Page("Progress cannot be read", wrapped(overview.problem)))
+            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))
             return
         entry = overview.going_on
         if entry is None or entry.lesson is None:
@@ -158,31 +164,31 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame, like all below
 
         try:
-            visit = self._school.visit(entry.lesson)
+            visit = self._store.visit(entry.lesson)
         except ProgressError as error:
-            self.app.push_screen(Page("Progress cannot be kept", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
-        await self._visit(LessonScreen(self._look, visit, self._school.desk))
+        await self._visit(LessonScreen(self._theme, visit, self._store.workspace))
 
     async def _open_lessons(self) -> None:
         from kit.tui.screens.lessons import LessonsScreen
 
-        overview = self._overview or await self._overview_now()
+        overview = self._overview or await self._refresh_overview()
         if overview.problem:
-            self.app.push_screen(Page("Progress cannot be read", wrapped(overview.problem)))
+            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))
         else:
-            await self._visit(LessonsScreen(self._look, self._school, overview))
+            await self._visit(LessonsScreen(self._theme, self._store, overview))
 
     async def _open_drive(self) -> None:
-        desk = self._school.desk
+        workspace = self._store.workspace
         await self._visit(
             PlayScreen(
-                self._look,
+                self._theme,
                 PLACE,
                 CONTROLLER,
-                folder=desk.controllers,
-                runs=desk.runs,
-                socket_dir=sockets_folder(desk.folder),
+                folder=workspace.controllers,
+                runs=workspace.runs,
+                socket_dir=sockets_folder(workspace.folder),
             )
         )
 
@@ -191,17 +197,17 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.levels import LevelsScreen
 
         try:
-            progress = await to_thread(self._school.progress)
-            screen = LevelsScreen(self._look, progress, self._school.desk)
+            progress = await to_thread(self._store.progress)
+            screen = LevelsScreen(self._theme, progress, self._store.workspace)
         except (ProgressError, FileNotFoundError) as error:
-            self.app.push_screen(Page("The levels cannot be opened", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The levels cannot be opened", wrapped(str(error))))
             return
         await self._visit(screen)
 
     async def _open_train(self) -> None:
         from kit.tui.screens.trainings import choose_training
 
-        screen = await choose_training(self, self._look, self._school.desk.runs)
+        screen = await choose_training(self, self._theme, self._store.workspace.runs)
         if screen is not None:
             await self._visit(screen)
 
@@ -210,7 +216,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.layers import LayersScreen
 
         await self._visit(
-            LayersScreen(self._look, open_task("two"), "two", saved_to=self._school.desk.worlds)
+            LayersScreen(self._theme, open_task("two"), "two", saved_to=self._store.workspace.worlds)
         )
 
     async def _open_quiz(self) -> None:
@@ -218,9 +224,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.questions import choose_questions
 
         try:
-            progress = await to_thread(self._school.progress)
+            progress = await to_thread(self._store.progress)
         except ProgressError as error:
-            self.app.push_screen(Page("Progress cannot be read", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
             return
         self._go_away()
         await choose_questions(self, progress)
@@ -230,5 +236,5 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.progress import show_progress
 
         self._go_away()
-        await show_progress(self, self._school)
+        await show_progress(self, self._store)
         await self._come_back()

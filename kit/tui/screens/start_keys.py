@@ -6,8 +6,8 @@ import textwrap
 from dataclasses import dataclass
 from typing import Final
 
-from kit.tui.overview import Overview
 from kit.tui.rows.key_rows import key_line, key_page
+from kit.tui.student_store import StudentOverview
 from kit.tui.widgets.text_rows import Row, row
 
 PANEL_WIDTH: Final = 31
@@ -15,7 +15,7 @@ TEXT: Final = PANEL_WIDTH - 2
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class MenuItem:
     """One line of the menu."""
 
     name: str
@@ -25,14 +25,14 @@ class Item:
 
 
 MENU: Final = (
-    Item("continue", "Continue", ""),
-    Item("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
-    Item("drive", "Drive", "Any map and any controller, your own too."),
-    Item("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
-    Item("train", "Train", "Have an agent learn to drive, and watch it learn."),
-    Item("layers", "Layers", "Who collides, who sees whom: the fewest layers that do it."),
-    Item("quiz", "Quiz", "What do you know, and how sure are you?"),
-    Item("progress", "Progress", "What you have done, and how to take it along."),
+    MenuItem("continue", "Continue", ""),
+    MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
+    MenuItem("drive", "Drive", "Any map and any controller, your own too."),
+    MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
+    MenuItem("train", "Train", "Have an agent learn to drive, and watch it learn."),
+    MenuItem("layers", "Layers", "Who collides, who sees whom: the fewest layers that do it."),
+    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
+    MenuItem("progress", "Progress", "What you have done, and how to take it along."),
 )
 
 START_KEYS: Final = key_line(
@@ -61,7 +61,7 @@ START_HELP: Final = key_page(
 )
 
 
-def menu(overview: Overview | None, chosen: int) -> list[Row]:
+def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
     """The menu, always as many rows. ``overview``: None while it is being read."""
     rows = [row()]
     for number, item in enumerate(MENU):
@@ -82,11 +82,11 @@ def menu(overview: Overview | None, chosen: int) -> list[Row]:
     return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
 
 
-def _begin(overview: Overview | None) -> str:
+def _begin(overview: StudentOverview | None) -> str:
     return "Begin" if overview is not None and overview.is_new else "Continue"
 
 
-def _where(overview: Overview | None) -> str:
+def _where(overview: StudentOverview | None) -> str:
     """Where one goes on."""
     if overview is None:
         return ""
@@ -100,7 +100,7 @@ def _where(overview: Overview | None) -> str:
     return f"Lesson {entry.number}, {entry.title}{where}"
 
 
-def _told(name: str, overview: Overview | None) -> str:
+def _told(name: str, overview: StudentOverview | None) -> str:
     if overview is None or overview.problem:
         return ""
     if name == "lessons":

@@ -14,17 +14,17 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
 from kit.render.scene import Scene
-from kit.tui.rows import training_rows as say
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
+from kit.tui.rows import training_rows
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
-from kit.tui.training_follower import Following
-from kit.tui.widgets.learning_curve import CurveView
-from kit.tui.widgets.stacked_chart import SharesView
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
+from kit.tui.training_follower import TrainingFollower
+from kit.tui.widgets.learning_curve import LearningCurveView
+from kit.tui.widgets.stacked_chart import StackedChartView
 from kit.tui.widgets.text_rows import TextRows, row
-from kit.tui.widgets.world_view import WorldView
+from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
     from kit.learning.policies.demonstration import Moment
@@ -38,23 +38,15 @@ PANEL_ROWS: Final = 9
 SIDE_WIDTH: Final = 48
 
 
-class NewStanding(Message):
+class StatusChanged(Message):
     """The run's files tell more."""
 
 
-class NewMoment(Message):
+class MomentChanged(Message):
     """The robot has moved."""
 
 
-class Trouble(Message):
-    """Something could not be done; ``text`` says what and why."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.text = text
-
-
-class TrainingScreen(StillScreen[None]):
+class TrainingScreen(ActivePaintScreen[None]):
     """One run. Draws what has changed: the figures twice a second at most, the robot as it drives."""
 
     AUTO_FOCUS = ""
@@ -80,36 +72,38 @@ class TrainingScreen(StillScreen[None]):
     TrainingScreen #middle {{ height: 1fr; }}
     TrainingScreen #left {{ width: 1fr; }}
     TrainingScreen #right {{ width: 1fr; padding: 0 0 0 1; }}
-    TrainingScreen CurveView {{ height: 11fr; }}
-    TrainingScreen SharesView {{ height: 9fr; }}
+    TrainingScreen LearningCurveView {{ height: 11fr; }}
+    TrainingScreen StackedChartView {{ height: 9fr; }}
     TrainingScreen #panel {{ height: {PANEL_ROWS}; }}
     TrainingScreen #side {{ width: {SIDE_WIDTH}; padding: 0 0 0 2; display: none; }}
     TrainingScreen.-narrow #middle {{ layout: vertical; }}
     TrainingScreen.-narrow #left, TrainingScreen.-narrow #right {{ width: 1fr; height: 1fr; padding: 0; }}
-    TrainingScreen.-narrow SharesView, TrainingScreen.-narrow #panel {{ display: none; }}
-    TrainingScreen.-low SharesView, TrainingScreen.-low #panel {{ display: none; }}
+    TrainingScreen.-narrow StackedChartView, TrainingScreen.-narrow #panel {{ display: none; }}
+    TrainingScreen.-low StackedChartView, TrainingScreen.-low #panel {{ display: none; }}
     TrainingScreen.-wide #panel {{ display: none; }}
     TrainingScreen.-wide #side {{ display: block; }}
     """
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (74, "-usual"), (140, "-wide")]  # noqa: RUF012 - Textual's own
     VERTICAL_BREAKPOINTS = [(0, "-low"), (20, "-high")]  # noqa: RUF012 - Textual's own
 
-    def __init__(self, look: Look, run: Run) -> None:
+    def __init__(self, theme: Theme, run: Run) -> None:
         super().__init__()
         self.run_name = run.name
         self.standing: Standing | None = None
         self.moment: Moment | None = None
-        ascii_only = look.terminal.glyphs.value == "ascii"
-        self._curve = CurveView(encoder=look.encoder, palette=look.palette)
-        self._shares = SharesView(
-            say.ASCII_OUTCOMES if ascii_only else say.OUTCOMES, look.palette, margin=say.MARGIN
+        ascii_only = theme.terminal.glyphs.value == "ascii"
+        self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
+        self._shares = StackedChartView(
+            training_rows.ASCII_OUTCOMES if ascii_only else training_rows.OUTCOMES,
+            theme.palette,
+            margin=training_rows.MARGIN,
         )
-        self._world = WorldView(look.encoder, look.palette)
-        self._following = Following(
+        self._world = WorldView(theme.encoder, theme.palette)
+        self._follower = TrainingFollower(
             run,
-            on_standing=self._standing_arrived,
+            on_standing=self._status_arrived,
             on_moment=self._moment_arrived,
-            on_trouble=self._trouble_arrived,
+            on_error=self._error_arrived,
         )
         self._announced: set[type[Message]] = set()
         self._page = 0
@@ -144,39 +138,39 @@ class TrainingScreen(StillScreen[None]):
     def on_mount(self) -> None:
         self._rows("heading").show([row((self.run_name, "bold"), ("  opening ...", "dim"))])
         self._rows("keys").show([keys(self.state)])
-        self._following.start()
+        self._follower.start()
 
     def on_unmount(self) -> None:
-        self._following.close()
+        self._follower.close()
 
     # What arrives from the threads behind: the newest wins, one announcement at a time is enough
 
-    def _standing_arrived(self, standing: Standing) -> None:
+    def _status_arrived(self, standing: Standing) -> None:
         self.standing = standing
-        self._announce(NewStanding())
+        self._announce(StatusChanged())
 
     def _moment_arrived(self, moment: Moment) -> None:
         self.moment = moment
-        self._announce(NewMoment())
+        self._announce(MomentChanged())
 
-    def _trouble_arrived(self, text: str) -> None:
-        self.post_message(Trouble(text))
+    def _error_arrived(self, text: str) -> None:
+        self.post_message(ErrorEvent(text))
 
     def _announce(self, message: Message) -> None:
         if type(message) not in self._announced:
             self._announced.add(type(message))
             self.post_message(message)
 
-    def on_new_standing(self) -> None:
-        self._announced.discard(NewStanding)
-        self._show_standing()
+    def on_status_changed(self) -> None:
+        self._announced.discard(StatusChanged)
+        self._show_status()
 
-    def on_new_moment(self) -> None:
-        self._announced.discard(NewMoment)
+    def on_moment_changed(self) -> None:
+        self._announced.discard(MomentChanged)
         self._show_moment()
 
-    def on_trouble(self, event: Trouble) -> None:
-        self.app.push_screen(Page("That did not work", wrapped(event.text)))
+    def on_error_event(self, event: ErrorEvent) -> None:
+        self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))
 
     def on_resize(self) -> None:
         self.call_after_refresh(self._show)  # when everything has its new size
@@ -187,24 +181,26 @@ class TrainingScreen(StillScreen[None]):
     # What is shown
 
     def _show(self) -> None:
-        self._show_standing()
+        self._show_status()
         self._show_moment()
 
-    def _show_standing(self) -> None:
+    def _show_status(self) -> None:
         standing, width = self.standing, self.size.width
         if standing is None or not self.is_active:
             return
         kind = KINDS[self._kind]
-        self._rows("heading").show([say.heading(self.run_name, standing, width)])
-        self._rows("figures").show([say.figures(standing, width)])
-        self._rows("note").show([say.note(self.run_name, standing, width)])
+        self._rows("heading").show([training_rows.heading(self.run_name, standing, width)])
+        self._rows("figures").show([training_rows.figures(standing, width)])
+        self._rows("note").show([training_rows.note(self.run_name, standing, width)])
         self._rows("keys").show([keys(self.state)])
-        self._curve.show(say.curves(standing, kind, self._curve.size.width), say.axes(standing, kind))
-        self._shares.show(say.shares(standing))
-        pages = say.pages(standing, self._rows("panel").size.width, PANEL_ROWS)
+        self._curve.show(
+            training_rows.curves(standing, kind, self._curve.size.width), training_rows.axes(standing, kind)
+        )
+        self._shares.show(training_rows.shares(standing))
+        pages = training_rows.pages(standing, self._rows("panel").size.width, PANEL_ROWS)
         self._rows("panel").show(pages[self._page % len(pages)])
         side = self._rows("side").content_size
-        self._rows("side").show(say.pages(standing, side.width, max(PANEL_ROWS, side.height))[0])
+        self._rows("side").show(training_rows.pages(standing, side.width, max(PANEL_ROWS, side.height))[0])
 
     def _show_moment(self) -> None:
         if not self.is_active:
@@ -213,7 +209,7 @@ class TrainingScreen(StillScreen[None]):
         if self.moment is None:
             caption.show([row(("drives from the first test on", "dim"))])
         else:
-            caption.show([say.caption(self.moment, caption.size.width)])
+            caption.show([training_rows.caption(self.moment, caption.size.width)])
             self._world.offer(self._newest_scene)
 
     def _newest_scene(self) -> Scene:
@@ -227,37 +223,40 @@ class TrainingScreen(StillScreen[None]):
 
     def action_pause(self) -> None:
         if self.state == "running":
-            self._following.ask("pause")
+            self._follower.send_order("pause")
         elif self.state == "paused":
-            self._following.ask("go")
+            self._follower.send_order("go")
         elif self.state in ("stopped", "interrupted"):
             self._rows("note").show([row(("starting again ...", "dim"))])
-            self._following.go_on()
+            self._follower.resume()
 
     def action_stop(self) -> None:
         if self.state in ("running", "paused"):
-            self._following.ask("stop")
+            self._follower.send_order("stop")
 
     def action_turn_page(self) -> None:
         self._page += 1
-        self._show_standing()
+        self._show_status()
 
     def action_next_kind(self) -> None:
         self._kind = (self._kind + 1) % len(KINDS)
-        self._show_standing()
+        self._show_status()
 
     @work
     async def action_case(self) -> None:
         if self.standing is not None:
             names = self.standing.plan.cases
-            choices = [Choice(ALL, "all", "one after the other"), *(Choice(name, name) for name in names)]
+            choices = [
+                PickerItem(ALL, "all", "one after the other"),
+                *(PickerItem(name, name) for name in names),
+            ]
             chosen = await self.app.push_screen_wait(Picker("Which case to drive", choices, self._case))
             if chosen is not None:
                 self._case = chosen
-                self._following.show_case(chosen or None)
+                self._follower.show_case(chosen or None)
 
     def action_next_episode(self) -> None:
-        self._following.skip()
+        self._follower.skip_episode()
 
     def action_zoom(self, steps: int) -> None:
         self._world.zoom(steps)
@@ -269,7 +268,7 @@ class TrainingScreen(StillScreen[None]):
         self._world.follow(None if self._world.followed is not None else 0)
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("Training", TRAINING_HELP))
+        self.app.push_screen(MessageDialog("Training", TRAINING_HELP))
 
     def action_back(self) -> None:
         """To the screen that this one was opened from, if there is one."""

@@ -6,21 +6,21 @@ from asyncio import to_thread
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.screens.picker import Choice, Picker
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 
 if TYPE_CHECKING:
     from textual.screen import Screen
 
     from kit.learning.training.runs import Run
     from kit.tui.screens.training import TrainingScreen
-    from kit.tui.theme import Look
+    from kit.tui.theme import Theme
 
 NEW: Final = "new/"
 """Before a task's name: begin a training of it."""
 
 
-async def choose_training(screen: Screen[Any], look: Look, runs: Path) -> TrainingScreen | None:
+async def choose_training(screen: Screen[Any], theme: Theme, runs: Path) -> TrainingScreen | None:
     """The screen of the training that was chosen; None if none was, or it could not be begun."""
     choices = await to_thread(_choices, runs)
     chosen = await screen.app.push_screen_wait(Picker("Train", choices))
@@ -29,24 +29,24 @@ async def choose_training(screen: Screen[Any], look: Look, runs: Path) -> Traini
     try:
         run = await to_thread(_run, runs, chosen)
     except Exception as error:  # noqa: BLE001 - torch missing, a full disk, a damaged run: all of it is told
-        screen.app.push_screen(Page("This cannot be trained", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
         return None
     from kit.tui.screens.training import TrainingScreen
 
-    return TrainingScreen(look, run)
+    return TrainingScreen(theme, run)
 
 
-def _choices(folder: Path) -> list[Choice]:
+def _choices(folder: Path) -> list[PickerItem]:
     """Called in another thread: the learning side takes a moment to import."""
     from kit.learning.environment.tasks import TASKS
     from kit.learning.training.runs import RunError, all_runs
 
-    choices = [Choice(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
+    choices = [PickerItem(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
     for run in all_runs(folder):
         try:
-            choices.append(Choice(run.name, run.name, f"look at it: {run.config().choice.title}"))
+            choices.append(PickerItem(run.name, run.name, f"look at it: {run.config().choice.title}"))
         except RunError:
-            choices.append(Choice(run.name, run.name, "damaged"))
+            choices.append(PickerItem(run.name, run.name, "damaged"))
     return choices
 
 

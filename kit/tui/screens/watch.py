@@ -14,12 +14,12 @@ from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.run.view import View
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.readout_rows import PANEL_WIDTH, heading, readout, said
-from kit.tui.screens.page import Page, wrapped
-from kit.tui.session_host import Running
-from kit.tui.textual_patches import StillScreen
-from kit.tui.theme import Look
+from kit.tui.screens.message_dialog import MessageDialog, wrapped
+from kit.tui.session_host import SessionHost
+from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row
-from kit.tui.widgets.world_view import WorldView
+from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,23 +32,15 @@ PANNED: Final = {"h": (-8, 0), "j": (0, -4), "k": (0, 4), "l": (8, 0)}
 MESSAGE_ROWS: Final = 2
 BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide")]
 """From which width on: without and with the figures beside the world."""
-LOOK_INTERVAL: Final = 0.5
+POLL_INTERVAL: Final = 0.5
 """Seconds between two looks at the controller's file while the world is paused."""
 
 
-class NewView(Message):
+class ViewChanged(Message):
     """The world's thread has a newer view."""
 
 
-class Trouble(Message):
-    """Something could not be done; ``text`` says what and why."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.text = text
-
-
-class WatchScreen(StillScreen[None], DriveScreen):
+class WatchScreen(ActivePaintScreen[None], DriveScreen):
     """What every screen with a running world has. Subclasses open a world and add what can be done in it."""
 
     keys: ClassVar[Row] = ()
@@ -86,7 +78,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
 
     def __init__(
         self,
-        look: Look,
+        theme: Theme,
         place_name: str,
         *,
         seed: int = 0,
@@ -94,11 +86,11 @@ class WatchScreen(StillScreen[None], DriveScreen):
         records: bool = False,
     ) -> None:
         """``socket_dir``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
-        super().__init__(look.terminal)
+        super().__init__(theme.terminal)
         self.place_name = place_name
-        self.world = WorldView(look.encoder, look.palette)
+        self.world = WorldView(theme.encoder, theme.palette)
         self.view: View | None = None
-        self.behind: Running
+        self.host: SessionHost
         self._announced = False
         self._beams = False
         self._seed = seed
@@ -114,29 +106,29 @@ class WatchScreen(StillScreen[None], DriveScreen):
         yield TextRows(id="keys")
 
     def open_world(self) -> None:
-        """Has ``behind`` open what this screen is to show first."""
+        """Has ``host`` open what this screen is to show first."""
 
     def on_mount(self) -> None:
         says = self._is_above_another and not any("Esc" in text for text, _ in self.keys)
         way_out = row(("Bksp", "bold"), " back ") if says else ()
         self._rows("keys").show([(*self.keys, *way_out)])
         self._rows("heading").show([row((f"opening {self.place_name} ...", "dim"))])
-        self.behind = Running(
+        self.host = SessionHost(
             on_view=self._view_arrived,
-            on_trouble=self._trouble_arrived,
+            on_error=self._error_arrived,
             seed=self._seed,
             socket_dir=self._socket_dir,
             records=self._records,
         )
         self.open_world()
-        self.set_interval(LOOK_INTERVAL, self._look_around)
+        self.set_interval(POLL_INTERVAL, self._poll_files)
 
     def on_unmount(self) -> None:
-        self.behind.close()
+        self.host.close()
 
     def recording(self) -> Recording | None:
         """The drive, once the screen has been left; None where none is kept, or no world was opened."""
-        return self.behind.recording() if self._records and hasattr(self, "behind") else None
+        return self.host.recording() if self._records and hasattr(self, "host") else None
 
     # What arrives from the world's threads
 
@@ -144,17 +136,17 @@ class WatchScreen(StillScreen[None], DriveScreen):
         self.view = view
         if not self._announced:  # the newest wins: one announcement at a time is enough
             self._announced = True
-            self.post_message(NewView())
+            self.post_message(ViewChanged())
 
-    def _trouble_arrived(self, text: str) -> None:
-        self.post_message(Trouble(text))
+    def _error_arrived(self, text: str) -> None:
+        self.post_message(ErrorEvent(text))
 
-    def on_new_view(self) -> None:
+    def on_view_changed(self) -> None:
         self._announced = False
         self._show()
 
-    def on_trouble(self, event: Trouble) -> None:
-        self.app.push_screen(Page("That did not work", wrapped(event.text)))
+    def on_error_event(self, event: ErrorEvent) -> None:
+        self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))
         if self.view is None:
             self._rows("heading").show([row(("nothing is open", "dim"))])
 
@@ -164,13 +156,13 @@ class WatchScreen(StillScreen[None], DriveScreen):
     def on_screen_resume(self) -> None:
         self._show()
 
-    def mode_changed(self) -> None:
+    def drive_status_changed(self) -> None:
         self._show()
 
-    def _look_around(self) -> None:
+    def _poll_files(self) -> None:
         """While the world stands still, files may be saved all the same."""
         if self.view is not None and self.view.paused:
-            self.behind.wish(_nothing)
+            self.host.post(_nothing)
 
     def _show(self) -> None:
         width = self.size.width
@@ -178,7 +170,7 @@ class WatchScreen(StillScreen[None], DriveScreen):
         if view is None or not self.is_active:
             return
         self.world.offer(self._newest_scene)
-        self._rows("heading").show([heading(view, self.behind.pacing, width)])
+        self._rows("heading").show([heading(view, self.host.pacing, width)])
         self._rows("panel").show(readout(view, self.drive.choice.mode if self.shows_mode else None))
         self._rows("said").show(said(view, MESSAGE_ROWS, width))
 
@@ -204,19 +196,19 @@ class WatchScreen(StillScreen[None], DriveScreen):
         paused = self.view is not None and self.view.paused
         if not paused:
             self.stop_driving()
-        self.behind.set_paused(not paused)
+        self.host.set_paused(not paused)
 
     def action_step(self) -> None:
         if self.view is not None and not self.view.paused:
-            self.behind.set_paused(True)
+            self.host.set_paused(True)
         else:
-            self.behind.step()
+            self.host.step()
 
     def action_speed(self, key: str) -> None:
-        self.behind.set_factor(SPEEDS[key])
+        self.host.set_factor(SPEEDS[key])
 
     def action_reset(self) -> None:
-        self.behind.wish(lambda session: session.reset())
+        self.host.post(lambda session: session.reset())
 
     def action_pan(self, key: str) -> None:
         self.world.pan(*PANNED[key])
@@ -232,10 +224,10 @@ class WatchScreen(StillScreen[None], DriveScreen):
 
     def action_beams(self) -> None:
         self._beams = not self._beams
-        self.behind.show_beams(self._beams)
+        self.host.show_beams(self._beams)
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("Keys", self.help))
+        self.app.push_screen(MessageDialog("Keys", self.help))
 
 
 def _nothing(session: Session) -> None:

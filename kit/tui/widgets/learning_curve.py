@@ -12,10 +12,10 @@ from kit.render.roles import ANSI, Palette
 from kit.tui.widgets.frame_view import FrameView
 
 
-class CurveView(FrameView):
-    """Shows curves; give it new data no more often than people look, twice a second at most."""
+class LearningCurveView(FrameView):
+    """Shows curves; give it new data no more often than people theme, twice a second at most."""
 
-    DEFAULT_CSS = "CurveView { width: 1fr; height: 10; }"
+    DEFAULT_CSS = "LearningCurveView { width: 1fr; height: 10; }"
 
     def __init__(
         self,

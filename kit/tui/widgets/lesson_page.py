@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
-from kit.tui.widgets.lesson_scene_view import SceneView
+from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 LEAST_PICTURE: Final = 8
@@ -23,7 +23,7 @@ BESIDE: Final = 82
 
 
 @dataclass(frozen=True, slots=True)
-class Content:
+class LessonContent:
     """What stands on the sheet."""
 
     words: Sequence[Row]
@@ -41,24 +41,24 @@ class Content:
     """The key that shows more words."""
 
 
-class LessonSheet(Container):
+class LessonPage(Container):
     """``scene``: is opened and shut by whoever owns the sheet."""
 
     DEFAULT_CSS = f"""
-    LessonSheet {{ height: 1fr; layout: vertical; }}
-    LessonSheet #picture {{ height: auto; }}
-    LessonSheet #words {{ height: 1fr; }}
-    LessonSheet #ask {{ height: auto; }}
-    LessonSheet #right {{ height: 1fr; layout: vertical; }}
-    LessonSheet.-beside {{ layout: horizontal; }}
-    LessonSheet.-beside #picture {{ width: 1fr; }}
-    LessonSheet.-beside #right {{ width: {BESIDE}; }}
+    LessonPage {{ height: 1fr; layout: vertical; }}
+    LessonPage #picture {{ height: auto; }}
+    LessonPage #words {{ height: 1fr; }}
+    LessonPage #ask {{ height: auto; }}
+    LessonPage #right {{ height: 1fr; layout: vertical; }}
+    LessonPage.-beside {{ layout: horizontal; }}
+    LessonPage.-beside #picture {{ width: 1fr; }}
+    LessonPage.-beside #right {{ width: {BESIDE}; }}
     """
 
-    def __init__(self, scene: SceneView) -> None:
+    def __init__(self, scene: LessonSceneView) -> None:
         super().__init__()
         self._scene = scene
-        self._content = Content(())
+        self._content = LessonContent(())
         self._top = 0
         self._room = 1
         self._heights: dict[str, int | str] = {}
@@ -70,7 +70,7 @@ class LessonSheet(Container):
             yield TextRows(id="words")
             yield TextRows(id="ask")
 
-    def show(self, content: Content, room: int, *, beside: bool) -> None:
+    def show(self, content: LessonContent, room: int, *, beside: bool) -> None:
         """``room``: rows there are for all of it. ``beside``: the picture is, not above."""
         self._content = content
         self.set_class(beside and (content.moves or bool(content.picture)), "-beside")

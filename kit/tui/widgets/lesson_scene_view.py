@@ -11,9 +11,9 @@ from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
 from kit.school.lessons.records import Scene
-from kit.tui.session_host import Running
-from kit.tui.theme import Look
-from kit.tui.widgets.world_view import WorldView
+from kit.tui.session_host import SessionHost
+from kit.tui.theme import Theme
+from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,31 +25,24 @@ if TYPE_CHECKING:
 TELEOP: Final = "teleop"
 
 
-class SceneView(WorldView):
+class LessonSceneView(WorldView):
     """Shows one scene at a time. ``folder``: the student's controllers; ``socket_dir``: where other terminals look in."""
 
     class Moved(Message):
         """There is a newer view."""
 
-    class Trouble(Message):
-        """The scene could not be opened; ``text`` says why."""
+    DEFAULT_CSS = "LessonSceneView { width: 1fr; height: 1fr; }"
 
-        def __init__(self, text: str) -> None:
-            super().__init__()
-            self.text = text
-
-    DEFAULT_CSS = "SceneView { width: 1fr; height: 1fr; }"
-
-    def __init__(self, look: Look, folder: Path, socket_dir: Path | None = None) -> None:
-        super().__init__(look.encoder, look.palette, id="scene")
+    def __init__(self, theme: Theme, folder: Path, socket_dir: Path | None = None) -> None:
+        super().__init__(theme.encoder, theme.palette, id="scene")
         self.view: View | None = None
         """The newest; None before the first of a scene."""
         self.scene: Scene | None = None
         self._folder = folder
         self._picture: Picture | None = None
         self._announced = self._opening = False
-        self._behind = Running(
-            on_view=self._view_arrived, on_trouble=self._trouble_arrived, socket_dir=socket_dir
+        self._host = SessionHost(
+            on_view=self._view_arrived, on_error=self._error_arrived, socket_dir=socket_dir
         )
 
     @property
@@ -90,35 +83,37 @@ class SceneView(WorldView):
                 raise
             runner = session.runner
             if not by_hand:
-                runner.observers.append(_Rest(runner, round(scene.seconds / runner.simulation.step_size)))
+                runner.observers.append(
+                    _PauseAtEnd(runner, round(scene.seconds / runner.simulation.step_size))
+                )
             runner.paused = still
             self._opening = False
             return session
 
-        self._behind.open_session(make, lambda session: 1.0)
+        self._host.open_session(make, lambda session: 1.0)
 
     def go(self) -> None:
         """Lets it run."""
-        self._behind.set_paused(False)
+        self._host.set_paused(False)
 
     def hold(self, held: bool) -> None:
         """Stands still while something else is looked at."""
         if self.view is not None and not self.is_resting:
-            self._behind.set_paused(held)
+            self._host.set_paused(held)
 
     def again(self) -> None:
         """The same from its first instant on, running."""
         if self.scene is not None:
             self.open(self.scene, still=False)
 
-    def shut(self) -> None:
+    def close_session(self) -> None:
         """No scene any more."""
         self.scene = self.view = None
-        self._behind.shut()
+        self._host.close_session()
 
     def press(self, messages: tuple[str, ...], strength: float) -> None:
         """Hands driving keys to whoever listens in the scene."""
-        self._behind.wish(lambda session: session.keys.publish(messages, strength))
+        self._host.post(lambda session: session.keys.publish(messages, strength))
 
     def draw(self) -> None:
         """The newest view, as soon as the link has room."""
@@ -126,7 +121,7 @@ class SceneView(WorldView):
             self.offer(self._newest)
 
     def on_unmount(self) -> None:
-        self._behind.close()
+        self._host.close()
 
     def _newest(self) -> Picture:
         assert self._picture is not None  # nothing is offered before the first view
@@ -142,18 +137,18 @@ class SceneView(WorldView):
             self._announced = True
             self.post_message(self.Moved())
 
-    def _trouble_arrived(self, text: str) -> None:
+    def _error_arrived(self, text: str) -> None:
         if self._opening:  # the one before would run on
-            self._behind.shut()
-        self.post_message(self.Trouble(text))
+            self._host.close_session()
+        self.post_message(ErrorEvent(text))
 
-    def on_scene_view_moved(self) -> None:
+    def on_lesson_scene_view_moved(self) -> None:
         self._announced = False
         if self.screen.is_active:
             self.draw()
 
 
-class _Rest(Observer):
+class _PauseAtEnd(Observer):
     """Watches a runner, and has it stand still from a tick on."""
 
     def __init__(self, runner: Runner, ticks: int) -> None:

@@ -11,10 +11,10 @@ from kit.render.stacked_chart import Part, Shares, draw_shares
 from kit.tui.widgets.frame_view import FrameView
 
 
-class SharesView(FrameView):
-    """Shows shares; give it new data no more often than people look, twice a second at most."""
+class StackedChartView(FrameView):
+    """Shows shares; give it new data no more often than people theme, twice a second at most."""
 
-    DEFAULT_CSS = "SharesView { width: 1fr; height: 10; }"
+    DEFAULT_CSS = "StackedChartView { width: 1fr; height: 10; }"
 
     def __init__(
         self,

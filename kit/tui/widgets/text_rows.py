@@ -48,13 +48,13 @@ _ASCII: Final = str.maketrans(
     }
 )
 
-Part = tuple[str, str]
+StyledText = tuple[str, str]
 """A text and the name of its style."""
 
-Row = tuple[Part, ...]
+Row = tuple[StyledText, ...]
 
 
-def row(*parts: str | Part) -> Row:
+def row(*parts: str | StyledText) -> Row:
     """A row of texts; a bare string is plain."""
     return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
 
@@ -62,7 +62,7 @@ def row(*parts: str | Part) -> Row:
 def spread(left: Row, right: Row, width: int) -> Row:
     """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet."""
     used = sum(cell_len(text) for text, _ in right)
-    kept: list[Part] = []
+    kept: list[StyledText] = []
     room = max(0, width - used - 1)
     for text, style in left:
         text = text if cell_len(text) <= room else set_cell_size(text, room)

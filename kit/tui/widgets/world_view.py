@@ -14,9 +14,17 @@ from kit.render.encode import Braille, Encoder
 from kit.render.painter import Painter
 from kit.render.roles import ANSI, Palette
 from kit.render.scene import FloatArray, Scene
-from kit.tui.frame_throttle import FrameCredit
+from kit.tui.frame_throttle import FrameThrottle
 from kit.tui.textual_patches import ask_cursor
 from kit.tui.widgets.frame_view import FrameView
+
+
+class ErrorEvent(Message):
+    """Something that the user asked for could not be done; ``text`` says what and why."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.text = text
 
 
 class WorldView(FrameView):
@@ -38,7 +46,7 @@ class WorldView(FrameView):
         classes: str | None = None,
     ) -> None:
         super().__init__(palette, id=id, classes=classes)
-        self.credit = FrameCredit()
+        self.throttle = FrameThrottle()
         self._painter = Painter(encoder or Braille())
         self._clock = clock
         self._scene: Scene | None = None
@@ -139,28 +147,28 @@ class WorldView(FrameView):
         if self._offered is None or self._later is not None:
             return
         now = self._clock()
-        wait = self.credit.wait(now)
+        wait = self.throttle.wait(now)
         if wait > 0:
-            self._later = self.set_timer(wait, self._look_again)
+            self._later = self.set_timer(wait, self._retry)
             return
         make_scene, self._offered = self._offered, None
-        self.credit.drawn(now)
+        self.throttle.drawn(now)
         if self.show(make_scene()):
             self.call_after_refresh(self._drawn)
 
     def _heard(self, message: Message) -> None:
         """Of what arrives at the app: the terminal's answers, that it has dealt with a frame."""
         if isinstance(message, events.CursorPosition):
-            self.credit.answered(self._clock())
+            self.throttle.answered(self._clock())
             if self._later is not None:
                 self._later.stop()
-            self._look_again()
+            self._retry()
 
-    def _look_again(self) -> None:
+    def _retry(self) -> None:
         self._later = None
         self._draw_offered()
 
     def _drawn(self) -> None:
         """The frame has gone out to the terminal."""
         if ask_cursor(self.app):
-            self.credit.sent(self._clock())
+            self.throttle.sent(self._clock())

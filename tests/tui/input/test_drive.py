@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.tui.input.drive import Drive, ModeName, automatic_mode
+from kit.tui.input.drive import KeyboardDrive, ModeName, automatic_mode
 from kit.tui.input.modes import BRIDGE
 
 Step = tuple[float, str, list[str], dict[str, float]]
@@ -16,7 +16,7 @@ class Script:
 
     def __init__(self, mode: ModeName) -> None:
         self.now = 0.0
-        self.drive = Drive(lambda: self.now)
+        self.drive = KeyboardDrive(lambda: self.now)
         self.drive.choose(mode)
 
     def play(self, steps: list[Step]) -> None:
@@ -281,7 +281,7 @@ def test_the_automatic_mode(flags: int | None, hidden_by: str | None, mode: str,
 
 
 def test_a_wish_beats_the_terminal_and_can_be_taken_back() -> None:
-    drive = Drive(lambda: 0.0)
+    drive = KeyboardDrive(lambda: 0.0)
     assert drive.choice.mode == "repeat"
     drive.choose("latch")
     drive.terminal_answered(27)
@@ -291,7 +291,7 @@ def test_a_wish_beats_the_terminal_and_can_be_taken_back() -> None:
 
 
 def test_a_change_of_mode_stops_and_no_change_does_not() -> None:
-    drive = Drive(lambda: 0.0)
+    drive = KeyboardDrive(lambda: 0.0)
     assert drive.press("w") == ("p_up",)
     assert drive.terminal_answered(None) == ()
     assert drive.terminal_answered(27) == ("r_up",)
@@ -305,7 +305,7 @@ def test_a_change_of_mode_stops_and_no_change_does_not() -> None:
 def test_the_status_is_one_line_that_fits(
     flags: int | None, hidden_by: str | None, wish: ModeName | None
 ) -> None:
-    drive = Drive(lambda: 0.0)
+    drive = KeyboardDrive(lambda: 0.0)
     lines = [drive.status]
     drive.terminal_answered(flags, hidden_by)
     drive.choose(wish)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from kit.tui.input.drive import Drive
+from kit.tui.input.drive import KeyboardDrive
 from kit.tui.input.modes import RepeatMode
 from kit.tui.input.rhythm import Rhythm
 
@@ -59,9 +59,9 @@ def arrivals(sent: list[float], jitter: float, random: np.random.Generator) -> l
 
 
 def session(keyboard: Keyboard, jitter: float, seed: int, times: int) -> Drives:
-    """So many taps and holds of W, in random order, with pauses, told to one Drive."""
+    """So many taps and holds of W, in random order, with pauses, told to one KeyboardDrive."""
     random, drives, now = np.random.default_rng(seed), Drives(), [0.0]
-    drive = Drive(lambda: now[0])
+    drive = KeyboardDrive(lambda: now[0])
     start = 1.0
     for hold in random.permutation([True, False] * times):
         length = HOLD if hold else TAP

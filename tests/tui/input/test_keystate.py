@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from kit.tui.input.keys import DRIVE_KEYS, base_key, drive_key
-from kit.tui.input.keystate import KeyState, Transition
+from kit.tui.input.keystate import KeyState, KeyTransition
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ def test_transitions(steps: list[str], transitions: list[str], held: list[str]) 
     now = itertools.count()
     time = [0.0]
     state = KeyState(lambda: time[0])
-    happened: list[Transition] = []
+    happened: list[KeyTransition] = []
     for step in steps:
         time[0] = float(next(now))
         verb, _, key = step.partition(" ")

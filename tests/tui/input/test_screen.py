@@ -39,7 +39,7 @@ class Recorder(DriveScreen):
     def action_zoom(self) -> None:
         self.zooms += 1
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         self.messages += messages
         self.states.append(dict(state.held))
 
@@ -95,7 +95,7 @@ def test_a_terminal_that_must_not_be_asked_has_its_mode_at_once() -> None:
 def test_a_bad_link_shows_in_the_status() -> None:
     async def scene(screen: Recorder, pilot: Pilot[None]) -> None:
         shown: list[str] = []
-        screen.mode_changed = lambda: shown.append(screen.drive.status)  # type: ignore[method-assign]  # a spy
+        screen.drive_status_changed = lambda: shown.append(screen.drive.status)  # type: ignore[method-assign]  # a spy
         assert isinstance(screen.drive._mode, RepeatMode)
         screen.drive._mode.rhythm.uneven = True
         await pilot.press("w")
@@ -189,7 +189,7 @@ def test_one_key_goes_through_the_modes() -> None:
         await pilot.pause()
         modes = []
         for _ in range(4):
-            modes.append((screen.drive.wish, screen.drive.choice.mode))
+            modes.append((screen.drive.requested_mode, screen.drive.choice.mode))
             screen.action_next_drive_mode()
         assert modes == [(None, "exact"), ("latch", "latch"), ("repeat", "repeat"), (None, "exact")]
 

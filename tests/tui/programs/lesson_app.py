@@ -19,9 +19,11 @@ from kit.workspace import open_workspace  # noqa: E402
 
 lessons, solutions, folder = map(Path, sys.argv[1:4])
 exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]
-desk = open_workspace(folder)
-with Progress(desk.folder) as progress:
+workspace = open_workspace(folder)
+with Progress(workspace.folder) as progress:
     app = KitApp(terminal)
-    app.begin(LessonScreen(app.look, Visit(read(lessons / "01-colours"), progress, desk), desk))
+    app.begin(
+        LessonScreen(app.kit_theme, Visit(read(lessons / "01-colours"), progress, workspace), workspace)
+    )
     app.run()
 sys.exit(app.return_code or 0)

@@ -37,8 +37,8 @@ class Program(App[None]):
         self.clock = self.set_interval(1 / 20, lambda: self.view.offer(lambda: next(self.scenes)))
 
     def report_screen(self) -> None:
-        frame, lag = self.view.frame, self.view.credit.lag
-        report("screen", frame.rows() if frame else [], self.view.credit.fps, lag)
+        frame, lag = self.view.frame, self.view.throttle.lag
+        report("screen", frame.rows() if frame else [], self.view.throttle.fps, lag)
 
     def key_p(self) -> None:
         self.clock.pause()

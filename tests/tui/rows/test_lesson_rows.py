@@ -14,7 +14,7 @@ from kit.school.lessons.lesson_session import Hint
 from kit.school.lessons.reading import find_lesson, lesson_names, read
 from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
-from kit.tui.rows import lesson_rows as say
+from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson_keys import Possible, keys
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
 from kit.tui.widgets.text_rows import Row
@@ -58,42 +58,45 @@ def widest(rows: list[Row]) -> int:
 def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: Standing, width: int) -> None:
     predict, *_, make = lesson.steps
     hints = (Hint(LOST, 1, LOST.hints[0], 2), Hint(LOST, 2, LOST.hints[1], 1))
-    assert widest([say.heading(stand, make, width), say.title(make, "12 of 30 s", width)]) <= width
-    assert widest(say.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width
-    assert widest(say.question(predict, predict.options[0], True, width)) <= width
-    assert widest(say.feedback(predict, predict.options[1], width)) <= width
-    assert widest(say.verdict(REPORT, hints, width)) <= width
-    assert widest(say.file_rows("/home/" + "ada" * 60, False, True, width)) <= width
-    assert widest(say.ending(stand, width)) <= width
+    assert (
+        widest([lesson_rows.heading(stand, make, width), lesson_rows.title(make, "12 of 30 s", width)])
+        <= width
+    )
+    assert widest(lesson_rows.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width
+    assert widest(lesson_rows.question(predict, predict.options[0], True, width)) <= width
+    assert widest(lesson_rows.feedback(predict, predict.options[1], width)) <= width
+    assert widest(lesson_rows.verdict(REPORT, hints, width)) <= width
+    assert widest(lesson_rows.file_rows("/home/" + "ada" * 60, False, True, width)) <= width
+    assert widest(lesson_rows.ending(stand, width)) <= width
 
 
 def test_a_long_path_is_there_to_the_last_character() -> None:
     path = "/home/" + "ada" * 60 + "/controller.py"
-    rows = say.file_rows(path, False, False, 80)
+    rows = lesson_rows.file_rows(path, False, False, 80)
     assert "".join(written(row)[6:] for row in rows) == path
 
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
     line = "    kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
-    parts = say.broken(line, 76)
+    parts = lesson_rows.broken(line, 76)
     assert all(len(part) <= 76 for part in parts)
     assert "".join(part.removesuffix("\\") for part in parts).split() == line.split()
     assert [part.endswith(" \\") for part in parts] == [True] * (len(parts) - 1) + [False]
     code = "    x = " + "1 + " * 30 + "1"
-    assert "".join(say.broken(code, 76)) == code
+    assert "".join(lesson_rows.broken(code, 76)) == code
 
 
 def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
     stand = standing(replace(lesson, title="Services, parameters and looking inside"), [])
     step = replace(lesson.steps[0], goal="Foresee what the robot is told")
-    shown = written(say.heading(stand, step, 80))
+    shown = written(lesson_rows.heading(stand, step, 80))
     assert "Foresee what the robot is told" in shown
     assert "..." in shown
     assert shown.rstrip().endswith("▒░░░░")
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(written, say.verdict(REPORT, (Hint(LOST, 1, "Go.", 2),), 80)))
+    told = "\n".join(map(written, lesson_rows.verdict(REPORT, (Hint(LOST, 1, "Go.", 2),), 80)))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
@@ -104,16 +107,16 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
 
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: Standing) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
-    assert "The check broke: no disk" in "\n".join(map(written, say.verdict(broken, (), 80)))
-    assert "No verdict" in written(say.status(broken, stand, lesson.steps[-1], False))
+    assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80)))
+    assert "No verdict" in written(lesson_rows.status(broken, stand, lesson.steps[-1], False))
 
 
 def test_a_right_prediction_and_a_wrong_one(lesson: Lesson) -> None:
     step = lesson.steps[0]
-    right = "\n".join(map(written, say.feedback(step, step.options[0], 80)))
+    right = "\n".join(map(written, lesson_rows.feedback(step, step.options[0], 80)))
     assert "It goes ahead while there is room." in right
     assert "Only a wall" not in right
-    wrong = "\n".join(map(written, say.feedback(step, step.options[1], 80)))
+    wrong = "\n".join(map(written, lesson_rows.feedback(step, step.options[1], 80)))
     assert wrong.index("Only a wall") < wrong.index("It goes ahead")
 
 
@@ -141,7 +144,7 @@ def test_the_keys_fit_whatever_is_possible(now: Possible, width: int) -> None:
 @pytest.mark.parametrize("name", lesson_names())
 def test_every_question_is_in_sight_at_80x24_with_the_scene_and_some_words(name: str) -> None:
     for step in find_lesson(name).steps:
-        asked = len(say.question(step, None, False, 80)) + 1 if step.options else 0
+        asked = len(lesson_rows.question(step, None, False, 80)) + 1 if step.options else 0
         picture = LEAST_PICTURE if step.scene is not None else len(step.picture.splitlines())
         fixed = 3 + (2 if step.exercise is not None else 0)  # heading, title, keys; file and status
         assert 24 - fixed - asked - picture >= 3, f"{name} step {step.number}: no room for the words"

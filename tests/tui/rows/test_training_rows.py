@@ -10,7 +10,7 @@ from kit.learning.environment.episode_stats import Outcome
 from kit.learning.environment.tasks import TASKS
 from kit.learning.training.events import Event, Examined, Progress
 from kit.learning.training.run_status import Logbook, Plan, Standing
-from kit.tui.rows import training_rows as say
+from kit.tui.rows import training_rows
 from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
 from kit.tui.widgets.text_rows import Row
 
@@ -40,60 +40,62 @@ def full(cases: tuple[str, ...], terms: int) -> Standing:
 
 
 def test_outcomes_are_called_as_in_the_learning_side() -> None:
-    assert [part.name for part in say.OUTCOMES] == [outcome.value for outcome in Outcome]
-    assert all(part.glyph.isascii() for part in say.ASCII_OUTCOMES)
+    assert [part.name for part in training_rows.OUTCOMES] == [outcome.value for outcome in Outcome]
+    assert all(part.glyph.isascii() for part in training_rows.ASCII_OUTCOMES)
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 @pytest.mark.parametrize(("width", "height"), [(39, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
 def test_every_case_and_every_term_is_on_some_page(task: object, width: int, height: int) -> None:
     cases = tuple(case.name for _, case in task.courses())  # type: ignore[attr-defined]  # a Task
-    pages = say.pages(full(cases, 17), width, height)
+    pages = training_rows.pages(full(cases, 17), width, height)
     if width >= 36:
         assert all(len(text(row).rstrip()) <= width for page in pages for row in page)
         assert all(len(page) <= height for page in pages)
         shown = "\n".join(text(row) for page in pages for row in page)
-        assert all(name in shown for name in say.short_names(cases))
+        assert all(name in shown for name in training_rows.short_names(cases))
         assert shown.count("-1234.56") == 17
         assert shown.count(" 95") >= len(cases)
 
 
 def test_with_much_room_all_is_on_one_page() -> None:
-    assert len(say.pages(full(tuple("abcdefghijklmno"), 17), 46, 45)) == 1
+    assert len(training_rows.pages(full(tuple("abcdefghijklmno"), 17), 46, 45)) == 1
 
 
 def test_bars_show_what_the_counts_say() -> None:
     batch = Progress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    rows = [text(row) for row in say.pages(standing(batch), 34, 9)[0]]
+    rows = [text(row) for row in training_rows.pages(standing(batch), 34, 9)[0]]
     assert "█" * 10 + "▒" * 6 + "░" * 4 in rows[1]
     assert rows[1].split()[-2:] == ["50", "-"]
     assert rows[2].split() == ["b", "-", "-"]
 
 
 def test_a_hundred_means_all() -> None:
-    assert "99 " in text(say.pages(standing(Examined(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1])
+    assert "99 " in text(
+        training_rows.pages(standing(Examined(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
+    )
 
 
 def test_short_names_drop_the_words_that_all_begin_with() -> None:
-    assert say.short_names(["turn_a_to_b", "turn_b_to_a"]) == ["a_to_b", "b_to_a"]
-    assert say.short_names(["turn", "turn_left"]) == ["turn", "turn_left"]
-    assert say.short_names(["straight"]) == ["straight"]
-    assert say.short_names([]) == []
+    assert training_rows.short_names(["turn_a_to_b", "turn_b_to_a"]) == ["a_to_b", "b_to_a"]
+    assert training_rows.short_names(["turn", "turn_left"]) == ["turn", "turn_left"]
+    assert training_rows.short_names(["straight"]) == ["straight"]
+    assert training_rows.short_names([]) == []
 
 
 @pytest.mark.parametrize(("seconds", "told"), [(0.9, "0:00"), (62, "1:02"), (3600 * 3 + 10, "3:00:10")])
 def test_clock(seconds: float, told: str) -> None:
-    assert say.clock(seconds) == told
+    assert training_rows.clock(seconds) == told
 
 
 def test_the_lines_fit_into_eighty_columns() -> None:
     found = full(("a",), 1)
-    for part in (say.heading("x" * 90, found, 80), say.note("x" * 90, found, 80)):
+    for part in (training_rows.heading("x" * 90, found, 80), training_rows.note("x" * 90, found, 80)):
         assert len(text(part)) <= 80
-    figures = text(say.figures(found, 80))
+    figures = text(training_rows.figures(found, 80))
     assert len(figures) <= 80
     assert "1,300,000 of 4,000,000 steps   123,456 steps/s" in figures
-    assert "reward -1234.50" in text(say.figures(found, 200))
+    assert "reward -1234.50" in text(training_rows.figures(found, 200))
     for state in STATES:
         assert len(text(keys(state))) <= 80
         assert "mine" in farewell("mine", state)
@@ -103,14 +105,14 @@ def test_the_lines_fit_into_eighty_columns() -> None:
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:
     batch = Progress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
     found = standing(batch, alive=False)
-    assert "p goes on" in text(say.note("mine", found, 80))
-    assert "interrupted" in text(say.heading("mine", found, 80))
+    assert "p goes on" in text(training_rows.note("mine", found, 80))
+    assert "interrupted" in text(training_rows.heading("mine", found, 80))
 
 
 def test_curves_for_little_and_for_much_room() -> None:
     found = full(("a", "b"), 1)
-    assert len(say.curves(found, "success", 41)) == 2
-    assert len(say.curves(found, "success", 80)) == 3
-    assert say.axes(found, "success").goal == 0.9
-    assert say.axes(found, "reward").goal is None
-    assert say.curves(found, "reward", 80)[0].y.tolist() == [-1234.5, -1234.5]
+    assert len(training_rows.curves(found, "success", 41)) == 2
+    assert len(training_rows.curves(found, "success", 80)) == 3
+    assert training_rows.axes(found, "success").goal == 0.9
+    assert training_rows.axes(found, "reward").goal is None
+    assert training_rows.curves(found, "reward", 80)[0].y.tolist() == [-1234.5, -1234.5]

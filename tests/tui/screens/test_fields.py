@@ -17,19 +17,19 @@ from kit.render.roles import Role
 from kit.ros.node.client import Client
 from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
-from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
-from kit.tui.theme import Look
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.theme import Theme
 
 Scene = Callable[[FieldsScreen, Pilot[None]], Awaitable[None]]
 
 
 def play(scene: Scene, folder: Path, *, place: str = "pair_turn_180", controller: str = "fields") -> None:
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalWishes(False, "braille", None))
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, "braille", None))
 
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=(80, 24)) as pilot:
-            screen = FieldsScreen(Look.of(terminal), place, controller, folder=folder, runs=folder)
+            screen = FieldsScreen(Theme.of(terminal), place, controller, folder=folder, runs=folder)
             await app.push_screen(screen)
             await scene(screen, pilot)
 
@@ -77,7 +77,7 @@ def test_an_intensity_changes_the_picture_at_once_and_the_controller_too(tmp_pat
         await pilot.press("i", *["right_square_bracket"] * 8)
         assert "32.15" in panel(screen)
         await until(pilot, lambda: seen(screen) != before)
-        await until(pilot, lambda: screen.behind.wish(asked) or pytest.approx(32.15, abs=0.01) in asked.told)
+        await until(pilot, lambda: screen.host.post(asked) or pytest.approx(32.15, abs=0.01) in asked.told)
 
     play(scene, tmp_path)
 

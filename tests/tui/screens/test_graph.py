@@ -17,13 +17,13 @@ from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
 from kit.ros.node.qos import qos_profile_sensor_data
 from kit.tui.screens.graph import CALM, FRAME, GraphScreen
-from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
-from kit.tui.theme import Look
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.theme import Theme
 
 MS = 1_000_000
 
 
-class Behind:
+class FakeHost:
     """A world in the test's own thread: a robot, a driver that hears it, and one that asks for too much."""
 
     def __init__(self) -> None:
@@ -39,12 +39,12 @@ class Behind:
         self.ring = driver.create_client(Trigger, "ring")
         self.graph.run_due()
 
-    def listen(self, listener: Callable[[Any], object] | None) -> None:
+    def set_listener(self, listener: Callable[[Any], object] | None) -> None:
         self.listener = listener
         self.show()
 
-    def wish(self, wish: Callable[[Any], object]) -> None:
-        wish(self.session)
+    def post(self, job: Callable[[Any], object]) -> None:
+        job(self.session)
 
     def set_paused(self, paused: bool) -> None:
         self.paused = paused
@@ -72,20 +72,20 @@ class Behind:
         self.show()
 
 
-Scene = Callable[[GraphScreen, Behind, Pilot[None]], Awaitable[None]]
+Scene = Callable[[GraphScreen, FakeHost, Pilot[None]], Awaitable[None]]
 
 
 def play(scene: Scene, *, glyphs: str = "braille", size: tuple[int, int] = (80, 24)) -> None:
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalWishes(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
 
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=size) as pilot:
-            behind = Behind()
-            screen = GraphScreen(Look.of(terminal), behind, "test")  # type: ignore[arg-type]  # all it uses
+            host = FakeHost()
+            screen = GraphScreen(Theme.of(terminal), host, "test")  # type: ignore[arg-type]  # all it uses
             await app.push_screen(screen)
             await settled(screen)
-            await scene(screen, behind, pilot)
+            await scene(screen, host, pilot)
 
     asyncio.run(run())
 
@@ -111,12 +111,12 @@ def text(screen: GraphScreen) -> str:
 
 
 def test_the_screen_at_eighty_columns() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         for _ in range(5):
-            behind.tick()
+            host.tick()
         await settled(screen)
         await asyncio.sleep(CALM)
-        behind.show()
+        host.show()
         await settled(screen)
         assert rows(screen)[:4] == [
             "test  2 nodes  2 topics  1 service  14 hidden",
@@ -137,12 +137,12 @@ def test_the_screen_at_eighty_columns() -> None:
 
 
 def test_a_choice_shows_its_newest_message() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("down")
         assert "/cmd_vel  geometry_msgs/msg/Twist" in text(screen)
         assert "no message yet" in text(screen)
-        behind.show()
-        behind.tick(0.25)
+        host.show()
+        host.tick(0.25)
         await settled(screen)
         assert "linear: {x: 0.25, y: 0.0, z: 0.0}" in text(screen)
         await pilot.press("enter")
@@ -158,8 +158,8 @@ def test_a_choice_shows_its_newest_message() -> None:
 
 
 def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
-        behind.tick()
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        host.tick()
         await pilot.pause()
         seen = set()
         async with asyncio.timeout(10):
@@ -173,11 +173,11 @@ def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
 
 
 def test_a_mismatch_is_chosen_first_and_explained() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("escape")
-        demanding = behind.graph.create_node("demanding")
+        demanding = host.graph.create_node("demanding")
         demanding.create_subscription(LaserScan, "scan", lambda scan: None, 10)
-        screen = GraphScreen(screen.look, behind, "test")  # type: ignore[arg-type]  # all it uses
+        screen = GraphScreen(screen.theme, host, "test")  # type: ignore[arg-type]  # all it uses
         await pilot.app.push_screen(screen)
         await settled(screen)
         assert "1 broken line" in rows(screen)[0]
@@ -192,20 +192,20 @@ def test_a_mismatch_is_chosen_first_and_explained() -> None:
 
 
 def test_joining_and_leaving_move_nothing_that_was_there() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         before = rows(screen)[1:4]
-        joined = behind.graph.create_node("joined")
+        joined = host.graph.create_node("joined")
         joined.create_publisher(Twist, "more", 10)
-        behind.show()
+        host.show()
         await asyncio.sleep(CALM)
-        behind.show()
+        host.show()
         await settled(screen)
         assert "/joined" in text(screen)
         assert rows(screen)[1:4] == before
         joined.destroy_node()
-        behind.show()
+        host.show()
         await asyncio.sleep(CALM)
-        behind.show()
+        host.show()
         await settled(screen)
         assert "/joined" not in text(screen)
         assert rows(screen)[1:4] == before
@@ -214,7 +214,7 @@ def test_joining_and_leaving_move_nothing_that_was_there() -> None:
 
 
 def test_narrowing_and_all() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         assert "/rosout" not in text(screen)
         await pilot.press("a")
         assert "/rosout" in text(screen)
@@ -235,33 +235,33 @@ def test_narrowing_and_all() -> None:
 
 
 def test_a_step_while_paused_shows_what_was_said_in_it() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("p")
-        assert behind.paused
+        assert host.paused
         await asyncio.sleep(CALM)
         await settled(screen)
         assert rows(screen)[0].endswith("paused")
         assert not screen.is_moving
         await pilot.press("full_stop")
         assert screen.is_moving
-        assert behind.graph.now_ns == 100 * MS
+        assert host.graph.now_ns == 100 * MS
 
     play(scene)
 
 
 def test_closed_it_listens_no_more() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
-        assert behind.graph.message_listeners
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        assert host.graph.message_listeners
         await pilot.press("escape")
         await pilot.pause()
-        assert not behind.graph.message_listeners
-        assert behind.listener is None
+        assert not host.graph.message_listeners
+        assert host.listener is None
 
     play(scene)
 
 
 def test_help_explains_the_picture() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         await pilot.pause()
         assert "any key leaves" in text(screen)
@@ -270,9 +270,9 @@ def test_help_explains_the_picture() -> None:
 
 
 def test_in_plain_characters() -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         for _ in range(3):
-            behind.tick()
+            host.tick()
         await asyncio.sleep(FRAME)
         assert text(screen).isascii()
 
@@ -281,8 +281,8 @@ def test_in_plain_characters() -> None:
 
 @pytest.mark.parametrize("size", [(60, 18), (40, 10), (20, 5), (200, 60)])
 def test_any_size_will_do(size: tuple[int, int]) -> None:
-    async def scene(screen: GraphScreen, behind: Behind, pilot: Pilot[None]) -> None:
-        behind.tick()
+    async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
+        host.tick()
         await settled(screen)
         assert len(rows(screen)) == size[1]
 

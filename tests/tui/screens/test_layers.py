@@ -16,8 +16,8 @@ from kit.layers.reading import read_requirements
 from kit.layers.requirements import Contact, Sight
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers import LayersScreen
-from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
-from kit.tui.theme import Look
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
+from kit.tui.theme import Theme
 
 Scene = Callable[[LayersScreen, Pilot[None]], Awaitable[None]]
 
@@ -26,12 +26,12 @@ def play(
     scene: Scene, name: str = "slides-lasers", *, folder: Path = Path("/nowhere"), size: tuple[int, int] = (80, 24),
     glyphs: str = "braille",
 ) -> None:  # fmt: skip
-    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalWishes(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
+    terminal = decide({"TERM": "xterm-256color"}, TerminalFacts(), TerminalOptions(False, glyphs, None))  # type: ignore[arg-type]  # a word of its list
 
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=size) as pilot:
-            screen = LayersScreen(Look.of(terminal), open_task(name), name, saved_to=folder)
+            screen = LayersScreen(Theme.of(terminal), open_task(name), name, saved_to=folder)
             await app.push_screen(screen)
             await solved(screen)
             await pilot.pause()

@@ -16,7 +16,7 @@ from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.reading import read
 from kit.school.progress import Kind, Progress
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.theme import Look
+from kit.tui.theme import Theme
 from kit.workspace import Workspace, open_workspace
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text
@@ -29,16 +29,16 @@ class Student:
     """A student in the lesson of the tests."""
 
     def __init__(self, folder: Path) -> None:
-        self.desk: Workspace = open_workspace(folder / "home")
-        self.progress = Progress(self.desk.folder)
+        self.workspace: Workspace = open_workspace(folder / "home")
+        self.progress = Progress(self.workspace.folder)
         self.lesson = write_lessons(folder / "lessons") / "01-colours"
 
     @property
     def file(self) -> Path:
-        return self.desk.lessons / "01-colours" / "colour" / "answers.yaml"
+        return self.workspace.lessons / "01-colours" / "colour" / "answers.yaml"
 
-    def screen(self, look: Look) -> Screen[None]:
-        return LessonScreen(look, Visit(read(self.lesson), self.progress, self.desk), self.desk)
+    def screen(self, theme: Theme) -> Screen[None]:
+        return LessonScreen(theme, Visit(read(self.lesson), self.progress, self.workspace), self.workspace)
 
     def goes_to(self, step: int) -> None:
         """Has gone through all steps before, but for their exercises."""
@@ -248,7 +248,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     monkeypatch.setattr("kit.school.progress.WAIT_S", 0.0)
 
     async def scene(pilot: Pilot[None]) -> None:
-        with closing(sqlite3.connect(student.desk.folder / "progress.db")) as other:
+        with closing(sqlite3.connect(student.workspace.folder / "progress.db")) as other:
             other.execute("DROP TABLE events")
             other.commit()
         await pilot.press("n")

@@ -15,8 +15,8 @@ from kit.school.lessons.lesson_session import Visit
 from kit.school.lessons.reading import read
 from kit.school.progress import Kind, Progress
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.screens.lesson_drive import HandDrive
-from kit.tui.theme import Look
+from kit.tui.screens.lesson_drive import RecordedDriveScreen
+from kit.tui.theme import Theme
 from kit.workspace import open_workspace
 from tests.tui.lesson_folder import write_drive
 from tests.tui.lesson_stage import rows, seen, stage, text, until
@@ -33,18 +33,18 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "home" / "lessons" / "01-by-hand" / "drive" / "drive.npz"
 
 
-def opened(tmp_path: Path, progress: Progress, look: Look) -> Screen[None]:
-    desk = open_workspace(tmp_path / "home")
-    return LessonScreen(look, Visit(read(write_drive(tmp_path / "lessons")), progress, desk), desk)
+def opened(tmp_path: Path, progress: Progress, theme: Theme) -> Screen[None]:
+    workspace = open_workspace(tmp_path / "home")
+    return LessonScreen(theme, Visit(read(write_drive(tmp_path / "lessons")), progress, workspace), workspace)
 
 
-async def drive(pilot: Pilot[None]) -> HandDrive:
+async def drive(pilot: Pilot[None]) -> RecordedDriveScreen:
     """Opens the drive and waits until it can be driven."""
     await seen(pilot, "d opens it to be driven")
     await pilot.press("d")
     await seen(pilot, "The clock starts with your first key.")
     screen = pilot.app.screen
-    assert isinstance(screen, HandDrive)
+    assert isinstance(screen, RecordedDriveScreen)
     return screen
 
 
@@ -63,7 +63,7 @@ def test_a_drive_is_kept_when_it_is_left_and_then_checked(
         await pilot.press("w")
         await seen(pilot, "Esc back")
 
-    stage(lambda look: opened(tmp_path, progress, look), scene)
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
     recording = load(file)
     assert (recording.place, recording.case) == ("turn", "turn_a_to_b")
     assert recording.ticks > 50
@@ -80,7 +80,7 @@ def test_a_drive_that_never_began_is_not_kept_and_not_checked(
         await seen(pilot, "d drives")
         assert "Checking" not in text(pilot)
 
-    stage(lambda look: opened(tmp_path, progress, look), scene)
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert not file.exists()
 
 
@@ -95,7 +95,7 @@ def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: Progress, f
         await pilot.press("escape")
         await seen(pilot, "d drives")
 
-    stage(lambda look: opened(tmp_path, progress, look), scene)
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert not file.exists()
 
 
@@ -109,13 +109,13 @@ def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progre
             assert session.place.case is not None
             session.runner.call_service("move_model", session.place.robot, (*session.place.case.target, 0.0))
 
-        screen.behind.wish(put)
+        screen.host.post(put)
         await seen(pilot, "The target is reached, and the drive is kept.")
         await until(pilot, file.exists, "the file")
         await pilot.press("escape")
         await seen(pilot, "[no] It is a drive")  # for it was not driven all the way
 
-    stage(lambda look: opened(tmp_path, progress, look), scene)
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
 
 
 def test_who_leaves_the_kit_keeps_the_drive_too(tmp_path: Path, progress: Progress, file: Path) -> None:
@@ -124,5 +124,5 @@ def test_who_leaves_the_kit_keeps_the_drive_too(tmp_path: Path, progress: Progre
         await pilot.press("up")
         await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.3, "a moment")
 
-    stage(lambda look: opened(tmp_path, progress, look), scene)
+    stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert load(file).ticks > 30

@@ -15,11 +15,11 @@ from kit.school.game import leaderboard
 from kit.school.game.levels import all_levels
 from kit.school.progress import Kind, Progress
 from kit.tui.app import KitApp
-from kit.tui.rows import level_rows as say
-from kit.tui.screens.level_drive import LevelDrive, Result
+from kit.tui.rows import level_rows
+from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
 from kit.tui.screens.levels import LevelsScreen
-from kit.tui.screens.page import Page
-from kit.tui.terminal import TerminalFacts, TerminalWishes, decide
+from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
 LEVELS = all_levels()
@@ -35,12 +35,12 @@ def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progre
 def play(scene: Scene, progress: Progress, folder: Path) -> None:
     async def run() -> None:
         terminal = decide(
-            {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalWishes()
+            {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
         )
         app: App[None] = KitApp(terminal)
         async with app.run_test(size=(80, 24)) as pilot:
             assert isinstance(app, KitApp)
-            screen = LevelsScreen(app.look, progress, open_desk(folder))
+            screen = LevelsScreen(app.kit_theme, progress, open_desk(folder))
             await app.push_screen(screen)
             await pilot.pause()
             await scene(screen, pilot)
@@ -65,16 +65,16 @@ def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
     progress: Progress, tmp_path: Path
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
-        grid = say.grid(screen._found)
+        grid = level_rows.grid(screen._found)
         assert sorted(number for row in grid for number in row) == list(range(len(LEVELS)))
         assert 2 * len(grid) - 1 <= 24 - 7  # with the heading, what is told below, and the keys
-        assert max(map(len, grid)) * say.CELL[0] <= say.WIDTH
+        assert max(map(len, grid)) * level_rows.CELL[0] <= level_rows.WIDTH
         await pilot.press("down")
         assert not screen.chosen.is_open
         assert LEVELS[0].title in flat(pilot.app) or LEVELS[0].id in flat(pilot.app)
         await pilot.press("enter")
         await pilot.pause()
-        assert isinstance(pilot.app.screen, Page)
+        assert isinstance(pilot.app.screen, MessageDialog)
 
     play(scene, progress, tmp_path / "desk")
 
@@ -94,15 +94,15 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: Progress, tmp_path: Pa
 
         def drives() -> bool:
             if drive._judge is None:
-                drive.drove(("p_up",), drive.drive.state)
-            return isinstance(pilot.app.screen, Result)
+                drive.drive_keys_changed(("p_up",), drive.drive.state)
+            return isinstance(pilot.app.screen, DriveResultDialog)
 
         await until(pilot, drives)
         (event,) = progress.events(Kind.FINISH)
         assert event.content["reached"]
         assert event.content["bumps"] == 0
         await pilot.press("up")
-        assert isinstance(pilot.app.screen, Result)
+        assert isinstance(pilot.app.screen, DriveResultDialog)
         await pilot.press("enter")
         await pilot.pause()
         await pilot.press("escape")
@@ -120,7 +120,7 @@ def test_a_program_races(progress: Progress, tmp_path: Path) -> None:
         for key in "abreast":
             await pilot.press(key)
         await pilot.press("enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, Page))
+        await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
         assert progress.events(Kind.FINISH)[0].content["driver"] == "controller"
 
     play(scene, progress, tmp_path / "desk")

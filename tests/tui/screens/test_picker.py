@@ -7,10 +7,14 @@ import asyncio
 import pytest
 from textual.app import App
 
-from kit.tui.screens.picker import LINE, Choice, Picker
+from kit.tui.screens.picker import LINE, Picker, PickerItem
 
 LONG = "one word after the other, " * 8
-CHOICES = (Choice("a", "alpha", "the first [one]"), Choice("b", "beta", LONG), Choice("c", "gamma"))
+CHOICES = (
+    PickerItem("a", "alpha", "the first [one]"),
+    PickerItem("b", "beta", LONG),
+    PickerItem("c", "gamma"),
+)
 
 
 def pick(*keys: str) -> tuple[str, str | None]:

@@ -13,8 +13,8 @@ from textual.pilot import Pilot
 from kit.school.progress import Event, Kind, Progress
 from kit.school.quiz.quiz_session import Sitting, of_lesson, the_twelve
 from kit.school.quiz.reading import read_bank
-from kit.tui.screens.page import Page
-from kit.tui.screens.quiz import QuizScreen, Stage
+from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.screens.quiz import QuizScreen, QuizStage
 
 BANK = read_bank()
 Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
@@ -63,7 +63,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: Progress) -> None:
         assert all(option.text in flat(screen) for option in item.options)
         wrong = (item.right + 1) % 3
         await pilot.press(str(wrong + 1))
-        assert screen.stage is Stage.CHOSEN
+        assert screen.stage is QuizStage.CHOSEN
         assert any(row.startswith(f"> {wrong + 1}") for row in rows(screen))
         assert "How sure are you?" in flat(screen)
         assert kept(progress) == []
@@ -75,7 +75,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: Progress) -> None:
         assert any(row.startswith(f"+ {item.right + 1}") for row in rows(screen))
         await pilot.press("n")
         assert "question 2 of 12" in rows(screen)[0]
-        assert screen.stage is Stage.ASKED
+        assert screen.stage is QuizStage.ASKED
 
     play(scene, progress)
 
@@ -106,11 +106,11 @@ def test_not_sure_and_blank_are_told_too(progress: Progress) -> None:
 def test_a_key_too_many_changes_nothing(progress: Progress) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("n", "4", "left")
-        assert screen.stage is Stage.ASKED
+        assert screen.stage is QuizStage.ASKED
         await pilot.press("1", "0", "s", "n")
-        assert screen.stage is Stage.CHOSEN
+        assert screen.stage is QuizStage.CHOSEN
         await pilot.press("1", "2", "3", "0", "s", "s")
-        assert screen.stage is Stage.TOLD
+        assert screen.stage is QuizStage.TOLD
         assert len(kept(progress)) == 1
 
     play(scene, progress)
@@ -124,7 +124,7 @@ def test_to_the_end_and_what_came_of_it(progress: Progress) -> None:
             item = screen._item
             assert item is not None
             await pilot.press(str(item.right + 1), "4", "n")
-        assert screen.stage is Stage.OVER
+        assert screen.stage is QuizStage.OVER
         assert f"{count} of {count} right" in flat(screen)
         assert f"certain {count} of {count}" in flat(screen)
         assert "Next: tomorrow" in flat(screen)
@@ -152,7 +152,7 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: Progress) -> None:
         progress.close()
         await pilot.press("1", "1")
         assert "Not kept" in rows(screen)[-2]
-        assert screen.stage is Stage.CHOSEN
+        assert screen.stage is QuizStage.CHOSEN
 
     play(scene, progress)
 
@@ -172,7 +172,7 @@ def test_a_small_window_scrolls(progress: Progress) -> None:
 def test_help(progress: Progress) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
-        assert isinstance(screen.app.screen, Page)
+        assert isinstance(screen.app.screen, MessageDialog)
         await pilot.press("x")
         assert screen.app.screen is screen
 

@@ -10,10 +10,10 @@ from textual.screen import Screen
 
 from kit.controllers.workspace_files import open_desk
 from kit.school.progress import FILE, Kind, Progress
-from kit.tui.overview import School
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.start_keys import MENU
-from kit.tui.theme import Look
+from kit.tui.student_store import StudentStore
+from kit.tui.theme import Theme
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 
@@ -25,15 +25,15 @@ class House:
 
     def __init__(self, folder: Path) -> None:
         self.lessons = write_lessons(folder / "lessons", more=2)
-        self.desk = open_desk(folder / "home")
+        self.workspace = open_desk(folder / "home")
 
     def note(self, *events: tuple[Kind, str]) -> None:
-        with Progress(self.desk.folder) as progress:
+        with Progress(self.workspace.folder) as progress:
             for kind, subject in events:
                 progress.add(kind, subject)
 
-    def open(self, look: Look) -> Screen[None]:
-        return StartScreen(look, School(self.desk, self.lessons))
+    def open(self, theme: Theme) -> Screen[None]:
+        return StartScreen(theme, StudentStore(self.workspace, self.lessons))
 
     def play(self, scene: Scene, size: tuple[int, int] = (80, 24)) -> None:
         stage(self.open, scene, size=size)
@@ -139,7 +139,7 @@ def test_lines_are_chosen_with_tab_too(house: House) -> None:
 
 
 def test_progress_says_what_was_passed(house: House) -> None:
-    with Progress(house.desk.folder) as progress:
+    with Progress(house.workspace.folder) as progress:
         points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
         progress.add(Kind.ATTEMPT, "01-colours/colour", points)
         progress.add(Kind.ATTEMPT, "01-colours/corner", {**points, "points": 1.0, "verdict": "fail"})
@@ -155,7 +155,7 @@ def test_progress_says_what_was_passed(house: House) -> None:
 
 
 def test_a_damaged_journal_is_told_once(house: House) -> None:
-    (house.desk.folder / FILE).write_bytes(b"no database at all" * 100)
+    (house.workspace.folder / FILE).write_bytes(b"no database at all" * 100)
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "was damaged")
@@ -170,7 +170,7 @@ def test_a_damaged_journal_is_told_once(house: House) -> None:
 
 
 def test_a_journal_that_cannot_be_opened_leaves_the_robot_to_drive(house: House) -> None:
-    (house.desk.folder / FILE).mkdir()
+    (house.workspace.folder / FILE).mkdir()
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Progress cannot be read.")

@@ -317,6 +317,6 @@ def test_an_answering_terminal_gets_a_steady_stream() -> None:
             app.view.offer(lambda: shown.append(scene := next(every)) or scene)
             await pilot.pause(0.02)
         assert 8 <= len(shown) <= 20 * (time.monotonic() - start) + 2
-        assert app.view.credit.lag is not None
+        assert app.view.throttle.lag is not None
 
     run_in(app, script, SIZE)

@@ -17,7 +17,7 @@ from textual.widgets import Static
 
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyDriver
-from kit.tui.input.modes import Kind
+from kit.tui.input.modes import KeyEventKind
 from kit.tui.input.parser import KeyboardAnswer
 from kit.tui.input.screen import DriveScreen
 
@@ -30,14 +30,14 @@ class Driving(DriveScreen):
     def compose(self) -> ComposeResult:
         yield Static("driving", id="picture")
 
-    def heard(self, kind: Kind | None, key: str, messages: tuple[str, ...]) -> None:
+    def key_received(self, kind: KeyEventKind | None, key: str, messages: tuple[str, ...]) -> None:
         report("timeout" if kind is None else kind.name.lower(), key, *messages)
 
-    def drove(self, messages: tuple[str, ...], state: DriveState) -> None:
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         if not messages:
             report("strength", dict(state.held))
 
-    def mode_changed(self) -> None:
+    def drive_status_changed(self) -> None:
         report("mode", self.drive.choice.mode)
 
     def on_keyboard_answer(self, event: KeyboardAnswer) -> None:

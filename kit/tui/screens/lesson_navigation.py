@@ -10,26 +10,26 @@ from textual.screen import Screen
 
 from kit.school.lessons.records import Command, How
 from kit.tui.screens.lesson_keys import LESSON_HELP
-from kit.tui.screens.page import Page
-from kit.tui.screens.picker import Choice, Picker
+from kit.tui.screens.message_dialog import MessageDialog
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import run_aside
 
 if TYPE_CHECKING:
     from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.records import Step
-    from kit.tui.exercise_model import Workbench
-    from kit.tui.theme import Look
+    from kit.tui.exercise_model import ExerciseModel
+    from kit.tui.theme import Theme
     from kit.workspace import Workspace
 
 
-class WayKeys(Screen[None]):
+class NavigationActions(Screen[None]):
     """What a lesson's screen opens and where it goes."""
 
-    look: Look
+    theme: Theme
     visit: Visit
-    desk: Workspace
+    workspace: Workspace
     step: Step
-    bench: Workbench | None
+    model: ExerciseModel | None
     is_over: bool
     """Whether the last step lies behind."""
 
@@ -45,15 +45,15 @@ class WayKeys(Screen[None]):
         """Shows a step from its beginning."""
         raise NotImplementedError
 
-    def filled(self, text: str) -> str:
+    def with_paths(self, text: str) -> str:
         """With the student's own paths."""
         raise NotImplementedError
 
-    def hold(self, held: bool) -> None:
+    def hold_scene(self, held: bool) -> None:
         """Has the scene stand still while something else is looked at, or go on if it was going."""
         raise NotImplementedError
 
-    def tell(self, title: str, text: str) -> None:
+    def show_error(self, title: str, text: str) -> None:
         """What went wrong, as a page over the step."""
         raise NotImplementedError
 
@@ -61,7 +61,7 @@ class WayKeys(Screen[None]):
     async def action_steps(self) -> None:
         standing = self.visit.standing
         choices = [
-            Choice(
+            PickerItem(
                 str(step.number),
                 f"{'[x]' if standing.is_step_done(step) else '[ ]'} {step.number}",
                 step.title,
@@ -75,7 +75,7 @@ class WayKeys(Screen[None]):
             self.enter(self.visit.step(int(chosen)))
 
     def action_help(self) -> None:
-        self.app.push_screen(Page("This lesson", LESSON_HELP))
+        self.app.push_screen(MessageDialog("This lesson", LESSON_HELP))
 
     def action_leave(self) -> None:
         if len(self.app.screen_stack) > 2:
@@ -96,24 +96,24 @@ class WayKeys(Screen[None]):
             return
         chosen: str | None = "0"
         if len(commands) > 1:
-            choices = [Choice(str(at), self.filled(each.line)) for at, each in enumerate(commands)]
+            choices = [PickerItem(str(at), self.with_paths(each.line)) for at, each in enumerate(commands)]
             chosen = await self.app.push_screen_wait(Picker("Open", choices))
         if chosen is None:
             return
         command = commands[int(chosen)]
-        self.hold(True)
+        self.hold_scene(True)
         done = run_aside(
             self.app,
-            self.filled(command.line),
-            self.look.terminal,
-            workspace=self.desk.folder,
-            folder=self.bench.file.parent if self.bench is not None else None,
+            self.with_paths(command.line),
+            self.theme.terminal,
+            workspace=self.workspace.folder,
+            folder=self.model.file.parent if self.model is not None else None,
             waits=command.how is How.ALONE,
         )
-        self.hold(False)
+        self.hold_scene(False)
         if not done:
-            self.tell(
-                "That cannot be opened here", f"Type it in a second terminal: {self.filled(command.line)}"
+            self.show_error(
+                "That cannot be opened here", f"Type it in a second terminal: {self.with_paths(command.line)}"
             )
 
     @work

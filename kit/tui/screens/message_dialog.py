@@ -26,11 +26,11 @@ def wrapped(text: str, style: str = "") -> list[Row]:
     ]
 
 
-class Page(ModalScreen[None]):
+class MessageDialog(ModalScreen[None]):
     DEFAULT_CSS = f"""
-    Page {{ align: center middle; }}
-    Page > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
-    Page TextRows {{ height: auto; }}
+    MessageDialog {{ align: center middle; }}
+    MessageDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
+    MessageDialog TextRows {{ height: auto; }}
     """
 
     def __init__(self, title: str, rows: Sequence[Row]) -> None:

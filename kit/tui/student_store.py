@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is draw
 
 
 @dataclass(frozen=True, slots=True)
-class Overview:
+class StudentOverview:
     """Where a student stands."""
 
     shelf: tuple[Entry, ...] = ()
@@ -38,11 +38,11 @@ class Overview:
         return not any(each.is_begun for each in self.shelf)
 
 
-class School:
+class StudentStore:
     """One student's lessons and journal. ``lessons``: another folder than the kit's own."""
 
-    def __init__(self, desk: Workspace, lessons: Path | None = None) -> None:
-        self.desk = desk
+    def __init__(self, workspace: Workspace, lessons: Path | None = None) -> None:
+        self.workspace = workspace
         self._lessons = lessons
         self._progress: Progress | None = None
         self._opening = threading.Lock()
@@ -53,7 +53,7 @@ class School:
 
         with self._opening:
             if self._progress is None:
-                self._progress = Progress(self.desk.folder)
+                self._progress = Progress(self.workspace.folder)
             return self._progress
 
     def take_notice(self) -> str:
@@ -63,7 +63,7 @@ class School:
             notice, self._progress.notice = self._progress.notice, ""
         return notice
 
-    def look(self) -> Overview:
+    def read_overview(self) -> StudentOverview:
         """Reads everything. Slow: to be called in another thread."""
         from kit.school.lessons.catalogue import entries, going_on
         from kit.school.progress import ProgressError
@@ -72,14 +72,14 @@ class School:
             events = self.progress().events()
             shelf = entries(events, self._lessons)
         except (ProgressError, FileNotFoundError) as error:
-            return Overview(problem=str(error))
-        return Overview(shelf, going_on(shelf), self._due())
+            return StudentOverview(problem=str(error))
+        return StudentOverview(shelf, going_on(shelf), self._due())
 
     def visit(self, lesson: Lesson) -> Visit:
         """To go through a lesson. Raises ProgressError."""
         from kit.school.lessons.lesson_session import Visit
 
-        return Visit(lesson, self.progress(), self.desk)
+        return Visit(lesson, self.progress(), self.workspace)
 
     def close(self) -> None:
         with self._opening:

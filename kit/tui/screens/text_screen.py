@@ -10,13 +10,13 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.tui.rows.key_rows import key_line
-from kit.tui.textual_patches import StillScreen
+from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 KEYS: Final = key_line(("up down PgUp PgDn", "scroll"), ("Esc", "back"))
 
 
-class ScrollPage(StillScreen[None]):
+class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; Esc, q or Enter goes back."""
 
     AUTO_FOCUS = ""
@@ -30,9 +30,9 @@ class ScrollPage(StillScreen[None]):
         Binding("escape,q,enter", "back", show=False),
     ]
     DEFAULT_CSS = """
-    ScrollPage { layout: vertical; }
-    ScrollPage #heading, ScrollPage #keys { height: 1; }
-    ScrollPage #body { height: 1fr; }
+    TextScreen { layout: vertical; }
+    TextScreen #heading, TextScreen #keys { height: 1; }
+    TextScreen #body { height: 1fr; }
     """
 
     def __init__(self, title: str, rows: Sequence[Row]) -> None:
