@@ -15,7 +15,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.render.scene import Body, Disc, Scene
 from kit.render.world_text import nearest_wall, plain_rows
-from kit.run.metrics import Score
+from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
 from kit.run.scenario import Place
 from kit.world.records import Circle, Polygon
@@ -52,7 +52,7 @@ class DriveRecord:
     place: Place
     limit_s: float
     recording: Recording
-    score: Score
+    score: DriveMetrics
     failure: Failure | None
     """Why the program stopped, if it did not stop well."""
     traffic: Mapping[str, TopicTraffic]

@@ -27,6 +27,8 @@ from kit.msg.message import Message
 from kit.msg.std_msgs import String
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+from kit.run.episode import controller_arguments, run_until, when, when_failed
+from kit.run.metrics import MetricsRecorder
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 
@@ -140,7 +142,7 @@ def examine_environment(
         graph = Graph(log_sink=lambda record: None)
         simulation = Simulation(with_laser_noise(task.place.world, 0.0), seed=1, step_size=STEP)
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
-        arguments = [file.stem, task.class_name, *_parameters(task.place)]
+        arguments = [file.stem, task.class_name, *controller_arguments(task.place)]
         # It listens before there is anything to hear.
         examination = _Examination(runner, task, seed)
         guest = Guest.start(
@@ -152,18 +154,6 @@ def examine_environment(
             lines = guest.take_output().lines
     examination.record.printed = tuple(printable(line.text) for line in lines)[:MAX_PRINTED_LINES]
     return examination.record
-
-
-def _parameters(place: Place) -> list[str]:
-    """What every program is told of the place."""
-    home = place.start or Pose()
-    return [
-        "--ros-args",
-        "-p",
-        f"home:=[{home.x!r}, {home.y!r}, {home.theta!r}]",
-        "-p",
-        f"model:={place.robot}",
-    ]
 
 
 class _Examination:
@@ -179,7 +169,8 @@ class _Examination:
         self._robot = task.place.robot
         self._answers: list[str] = []
         self._ranges: tuple[float, ...] = ()
-        self._touched = False
+        self._metrics = MetricsRecorder.for_scenario(task.place)
+        runner.observers.append(self._metrics)
         node = runner.graph.create_node("grader")
         self._request_publisher = node.create_publisher(String, REQUEST_TOPIC, 10)
         node.create_subscription(String, ANSWER_TOPIC, self._on_answer, 10)
@@ -222,16 +213,15 @@ class _Examination:
             overdue += is_due or overdue > 0
 
     def _make_step(self, action: int) -> StepRecord:
-        before, self._touched = self._pose(), False
+        before, contact_steps = self._pose(), self._metrics.contact_steps(self._robot)
         answer = self._call(f"step({action})", call="step", action=action)
         self.record.steps += 1
         case = self._task.place.case
         assert case is not None  # the sheet's reader sees to it
         distance = self._runner.simulation.hull_distance(self._robot, case.target)
         returned, inside = answer.get("returned", {}), answer.get("inside") is True
-        return StepRecord(
-            action, returned, inside, before, self._pose(), self._touched, distance, self._ranges
-        )
+        touched = self._metrics.contact_steps(self._robot) > contact_steps
+        return StepRecord(action, returned, inside, before, self._pose(), touched, distance, self._ranges)
 
     def _make_pilot(self) -> Callable[[int], int]:
         """Chooses moves along the way: turn towards the next point, then go."""
@@ -261,18 +251,25 @@ class _Examination:
 
     def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
         """Ticks until the answer comes."""
-        for _ in range(round(timeout_s / STEP)):
-            self._runner.exchange_until_idle()
-            if self._answers:
-                return self._decode_answer(self._answers.pop())
-            self._runner.tick()
-            self._touched = self._touched or self._runner.simulation.touches(self._robot)
-            if self._guest is not None and self._guest.failure is not None:
-                raise GuestError(self._guest.failure)
-            if self._guest is not None and self._guest.has_ended:
-                raise GuestError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
+        guest = self._guest
+        assert guest is not None  # ``run_all`` has set it
+        run_until(
+            self._runner,
+            limit_s=timeout_s,
+            ends=(when_failed(guest), when(lambda: guest.has_ended), when(self._has_answer)),
+        )
+        if guest.failure is not None:
+            raise GuestError(guest.failure)
+        if guest.has_ended:
+            raise GuestError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
+        if self._answers:
+            return self._decode_answer(self._answers.pop())
         message = f"{what} did not come back within {timeout_s:g} simulated seconds. Does it wait for a message that nobody sends?"
         raise GuestError(Failure(FailureKind.TIMEOUT, message))
+
+    def _has_answer(self) -> bool:
+        self._runner.exchange_until_idle()
+        return bool(self._answers)
 
     def _decode_answer(self, text: str) -> Mapping[str, Json]:
         try:

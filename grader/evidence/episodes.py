@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 import sys
 from collections.abc import Mapping
@@ -22,9 +21,9 @@ from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+from kit.run.episode import controller_arguments, run_until, when_failed, when_reached
 from kit.run.headless import Fingerprint
-from kit.run.lockstep import Observer
-from kit.run.metrics import Trip
+from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder
 from kit.run.runner import Runner
 from kit.run.scenario import Place
@@ -121,27 +120,6 @@ class TrafficRecorder:
         }
 
 
-class BumpRecorder(Observer):
-    """Notes, as one of the runner's observers, when the robot begins to touch something."""
-
-    def __init__(self, robot: str | None) -> None:
-        self._robot = robot
-        self._ticks: list[int] = []
-        self._count = 0
-        self._touching = False
-
-    @property
-    def ticks(self) -> tuple[int, ...]:
-        return tuple(self._ticks)
-
-    def on_step(self, simulation: Simulation) -> None:
-        touching = self._robot in simulation.model_names and simulation.touches(str(self._robot))
-        if touching and not self._touching:
-            self._ticks.append(self._count)
-        self._touching = touching
-        self._count += 1
-
-
 def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> DriveRecord:
     """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
     trial = spec.trial
@@ -152,9 +130,8 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
     )
     runner = RestrictedRunner(simulation, graph, trial.services)
     recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
-    trip, fingerprint = Trip(place.driven, place.case), Fingerprint()
-    bumps = BumpRecorder(place.robot)
-    runner.observers += [recorder, trip, fingerprint, bumps]
+    metrics, fingerprint = MetricsRecorder.for_scenario(place), Fingerprint()
+    runner.observers += [recorder, metrics, fingerprint]
     home = shifted_start(trial, spec.seed)
     if place.robot is not None:
         if home != trial.home():
@@ -162,8 +139,8 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         runner.allow_home(place.robot, home)
     traffic_recorder = TrafficRecorder(graph)
     service_caller = ServiceCaller(graph, trial.calls)
-    arguments = [*_arguments(place, home), *_parameters(trial)]
-    failure, printed = _drive(runner, trip, spec, file, arguments, limits, level, service_caller)
+    arguments = [*controller_arguments(place, home), *_parameters(trial)]
+    failure, printed = _drive(runner, metrics, spec, file, arguments, limits, level, service_caller)
     traffic_recorder.stop()
     return DriveRecord(
         trial=trial.name,
@@ -173,7 +150,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         place=place,
         limit_s=trial.time_s,
         recording=recorder.recording(),
-        score=trip.score,
+        score=metrics.metrics,
         failure=failure,
         traffic=traffic_recorder.traffic(),
         refused=tuple(runner.refused[:MAX_PRINTED_LINES]),
@@ -181,13 +158,13 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         fingerprint=fingerprint.text,
         level=int(level),
         answers=service_caller.answers(),
-        bump_ticks=bumps.ticks,
+        bump_ticks=() if place.robot is None else metrics.bump_steps(place.robot),
     )
 
 
 def _drive(
     runner: RestrictedRunner,
-    trip: Trip,
+    metrics: MetricsRecorder,
     spec: EpisodeSpec,
     file: Path,
     arguments: list[str],
@@ -202,11 +179,13 @@ def _drive(
         return error.failure, ()
     with guest:
         runner.participants.append(guest)
-        for tick in range(round(spec.trial.time_s / STEP)):
-            service_caller.call_due(tick * STEP)
-            runner.tick()
-            if guest.failure is not None or (spec.trial.until_reached and trip.score.reached_s is not None):
-                break
+        ends = [when_failed(guest), *([when_reached(metrics)] if spec.trial.until_reached else [])]
+        run_until(
+            runner,
+            limit_s=spec.trial.time_s,
+            ends=ends,
+            before_tick=lambda number: service_caller.call_due(number * STEP),
+        )
         failure = guest.failure
     lines = [printable(line.text) for line in guest.take_output().lines]
     return failure, tuple(lines[:MAX_PRINTED_LINES])
@@ -245,19 +224,6 @@ def _with_laser_noise(model: Model, noise: float) -> Model:
         for plugin in model.plugins
     )
     return replace(model, plugins=plugins)
-
-
-def _arguments(place: Place, home: Pose) -> list[str]:
-    """What every program is told of the place, as ``kit.run.session`` tells it."""
-    if place.robot is None or not all(map(math.isfinite, home)):
-        return []
-    return [
-        "--ros-args",
-        "-p",
-        f"home:=[{home.x!r}, {home.y!r}, {home.theta!r}]",
-        "-p",
-        f"model:={place.robot}",
-    ]
 
 
 def _parameters(trial: Trial) -> list[str]:

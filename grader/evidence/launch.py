@@ -37,6 +37,7 @@ from kit.render.world_text import plain_rows
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
 from kit.ros.packages import PackageError
+from kit.run.episode import run_until, when
 from kit.run.recording import Recorder
 from kit.run.runner import Runner
 from kit.run.view import Showing
@@ -236,10 +237,7 @@ def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQuerie
 
 
 def _tick_until_over(ticker: Runner | Worldless, launch: Launch, ticks: int) -> None:
-    for _ in range(ticks):
-        if launch.is_over:
-            break
-        ticker.tick()
+    run_until(ticker, ticks=ticks, ends=(when(lambda: launch.is_over),))
 
 
 def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, Any]:
@@ -255,8 +253,7 @@ def _parameters(graph: Graph, ticker: Runner | Worldless, queries: ParameterQuer
         client = asking_node.create_client(GetParameters, f"{node}/get_parameters")
         if client.service_is_ready():
             requests[node] = names, client.call_async(GetParameters.Request(names=list(names)))
-    for _ in range(ANSWER_TICKS if requests else 0):
-        ticker.tick()
+    run_until(ticker, ticks=ANSWER_TICKS if requests else 0)
     found = {}
     for node, (names, future) in requests.items():
         answer = future.result() if future.done() else None

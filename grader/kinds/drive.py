@@ -37,11 +37,13 @@ from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
+from kit.ros.graph.graph import Graph
+from kit.run.episode import run_until
 from kit.run.headless import Fingerprint
-from kit.run.metrics import Score, Trip
-from kit.run.recording import ACCEPT, Playback, Recording, RecordingError, load
+from kit.run.metrics import DriveMetrics, MetricsRecorder
+from kit.run.recording import ACCEPT, Playback, Recorder, Recording, RecordingError, load
+from kit.run.runner import Runner
 from kit.run.scenario import Place
-from kit.sim.services import tell
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -168,7 +170,7 @@ class _Attempt:
     first: int
     after: int
     """Ticks."""
-    score: Score
+    score: DriveMetrics
 
     @property
     def rank(self) -> tuple[bool, float, float]:
@@ -185,45 +187,48 @@ class _Rerun:
     def __init__(self, task: HandDriveTask, recording: Recording) -> None:
         assert task.place is not None
         self._place = task.place
-        self._simulation = Simulation(
+        simulation = Simulation(
             task.place.world, seed=recording.seed, step_size=STEP, wanted=lambda topic: False
         )
+        self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
         self._recording = recording
-        self._trip = Trip(task.place.driven, task.place.case)
-        ends = self._simulation.endpoints_of(task.place.robot or "")
+        self._metrics = MetricsRecorder.for_scenario(task.place)
+        self._recorder = Recorder(recording.place, recording.case, simulation)
+        ends = simulation.endpoints_of(task.place.robot or "")
         self._topics = {end.topic for end in ends if end.direction == "subscribe" and end.type is Twist}
         self.fingerprint = Fingerprint()
-        self.poses = np.empty((recording.ticks, len(task.place.world.models), 3))
+        self.poses = np.empty((0, len(task.place.world.models), 3))
+        """(ticks, models, 3): where everything was, once it has been run."""
 
     def attempts(self) -> list[_Attempt]:
         """Runs it. Raises RecordingError."""
         playback = Playback(self._recording, self._accept, self._tell)
+        self._runner.participants.append(playback)
+        self._runner.observers += [playback, self._metrics, self.fingerprint, self._recorder]
         resets = {entry.tick for entry in self._recording.inputs if entry.kind == "reset"}
-        found, first = [], 0
-        for tick in range(self._recording.ticks):
+        found: list[_Attempt] = []
+
+        def split(tick: int) -> None:
+            first = found[-1].after if found else 0
             if tick in resets and tick > first:
-                found.append(_Attempt(first, tick, self._trip.score))
-                first = tick
-            playback.exchange()
-            self._simulation.step()
-            playback.on_step(self._simulation)
-            self._trip.on_step(self._simulation)
-            self.fingerprint.on_step(self._simulation)
-            self.poses[tick] = self._simulation.poses()
-        return [*found, _Attempt(first, self._recording.ticks, self._trip.score)]
+                found.append(_Attempt(first, tick, self._metrics.metrics))
+
+        run_until(self._runner, ticks=self._recording.ticks, before_tick=split)
+        self.poses = self._recorder.recording().poses.reshape(self._recording.ticks, -1, 3)
+        first = found[-1].after if found else 0
+        return [*found, _Attempt(first, self._recording.ticks, self._metrics.metrics)]
 
     def _accept(self, topic: str, message: Any) -> None:
         if topic not in self._topics or not isinstance(message, Twist):
             raise ValueError(f"nobody drives with messages on {topic}")
         if not all(map(math.isfinite, (message.linear.x, message.linear.y, message.angular.z))):
             raise ValueError("a speed that is no number")
-        self._simulation.accept(topic, message)
+        self._runner.accept(topic, message)
 
     def _tell(self, service: str, *arguments: Any) -> None:
         if service != "reset" and not self._is_going_home(service, arguments):
             raise ValueError("only the keys drive here")
-        tell(self._simulation, service, *arguments)
-        self._trip.on_service(service, *arguments)
+        self._runner.call_service(service, *arguments)
 
     def _is_going_home(self, service: str, arguments: tuple[Any, ...]) -> bool:
         home = self._place.start

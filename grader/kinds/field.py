@@ -23,7 +23,7 @@ from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVE_CHECKS
 from grader.evidence.drive_record import DriveRecord
-from grader.evidence.episodes import BumpRecorder, shifted_start
+from grader.evidence.episodes import shifted_start
 from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from kit.fields import adjacency
@@ -36,10 +36,12 @@ from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.ros.graph.graph import Graph
+from kit.run.episode import run_until, when_all_reached
 from kit.run.headless import Fingerprint
-from kit.run.lockstep import Observer
-from kit.run.metrics import Score, Trip
+from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.recording import Recorder, Recording
+from kit.run.runner import Runner
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
@@ -260,9 +262,9 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
         printed=(),
         fingerprint=field_run.fingerprint.text,
         level=0,
-        bump_ticks=field_run.bumps[0].ticks,
+        bump_ticks=() if place.robot is None else field_run.metrics.bump_steps(place.robot),
         course=course,
-        all_reached_s=field_run.reached_s,
+        all_reached_s=field_run.metrics.all_reached_s,
     )
 
 
@@ -297,46 +299,34 @@ class _FieldRun:
         self._course = course
         self._simulation = simulation
         self._recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
-        self._trip = Trip(place.driven, place.case)
-        self.bumps = [BumpRecorder(name) for name in place.partners]
+        self.metrics = MetricsRecorder.for_scenario(place)
         self.fingerprint = Fingerprint()
-        self._observers: list[Observer] = [self._recorder, self._trip, self.fingerprint, *self.bumps]
-        self.reached_s: float | None = None
+        self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
+        self._runner.observers += [self._recorder, self.metrics, self.fingerprint]
 
     def run(self, trial: Trial) -> None:
-        for tick in range(round(trial.time_s / STEP)):
-            if tick % DECISION_INTERVAL == 0:
-                self._decide()
-            self._simulation.step()
-            for observer in self._observers:
-                observer.on_step(self._simulation)
-            if self._have_all_arrived():
-                self.reached_s = self._simulation.time_ns / 1e9
-                break
+        run_until(
+            self._runner,
+            limit_s=trial.time_s,
+            ends=(when_all_reached(self.metrics),),
+            before_tick=lambda number: self._decide() if number % DECISION_INTERVAL == 0 else None,
+        )
 
     def recording(self) -> Recording:
         return self._recorder.recording()
 
-    def score(self) -> Score:
+    def score(self) -> DriveMetrics:
         """The first robot's, with everybody's bumps."""
-        return replace(self._trip.score, bumps=sum(len(each.ticks) for each in self.bumps))
+        return replace(self.metrics.metrics, bumps=self.metrics.total_bumps)
 
     def _decide(self) -> None:
         poses = [Pose(*self._simulation.pose(name)) for name in self._place.partners]
-        stands = any(each.ticks for each in self.bumps)
+        stands = self.metrics.total_bumps > 0
         commands = decide(poses, self._course.target, self._course.layout).commands
         for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
             fine = math.isfinite(forward) and math.isfinite(turn) and not stands
             command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if fine else Twist()
-            self._recorder.on_message(robot.commands, command)
-            self._simulation.accept(robot.commands, command)
-
-    def _have_all_arrived(self) -> bool:
-        course = self._course
-        return all(
-            self._simulation.hull_distance(name, course.target) <= course.target_radius
-            for name in self._place.partners
-        )
+            self._runner.accept(robot.commands, command)
 
 
 def collect(

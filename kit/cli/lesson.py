@@ -98,6 +98,7 @@ def _watch(scene: Scene) -> None:
     from kit.cli.plain import HEIGHT, WIDTH
     from kit.controllers import find
     from kit.render.world_text import plain_rows, report
+    from kit.run.episode import run_until, when_failed
     from kit.run.scenario import find_place
     from kit.run.session import Session
     from kit.run.view import Showing
@@ -108,14 +109,11 @@ def _watch(scene: Scene) -> None:
         session.wait_until_driven()
         showing = Showing(session)
         click.echo(f"At the start: {report(showing.view().scene)}")
-        for _ in range(round(scene.seconds / session.runner.simulation.step_size)):
-            session.runner.tick()
-            if session.failure is not None:
-                break
+        run_until(session.runner, limit_s=scene.seconds, ends=(when_failed(session),))
         session.look_around()
         view = showing.view()
         click.echo("\n".join(plain_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
-        way = f"{view.score.distance_m:.1f} m driven, {view.score.bumps} bumps"
+        way = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
         click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
 
 

@@ -17,7 +17,8 @@ from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.render.world_text import plain_rows, report
 from kit.ros.log import LogRecord
-from kit.run.pacing import MAXIMUM, REAL_TIME, Pace
+from kit.run.episode import EndCondition, EndReason, run_until
+from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 from kit.run.recording import Recorder, save
 from kit.run.scenario import Place, find_place
 from kit.run.session import Session
@@ -29,7 +30,7 @@ LONGEST: Final = 3600.0
 """Seconds that one line may run."""
 
 LISTEN_EVERY: Final = 10
-"""Ticks between two looks at what the controller has printed."""
+"""Ticks after which the controller's output is read."""
 
 WIDTH, HEIGHT = 78, 20
 
@@ -87,15 +88,13 @@ class Plain:
         if session.controller is not None and _modified(self._controller.file) not in (None, self._saved):
             self._seat(session)
         failure = session.failure
-        step_size = session.runner.simulation.step_size
-        pace = Pace(step_size, factor)
-        for tick in range(round(seconds / step_size)):
-            pace.wait()
-            session.runner.tick()
-            if tick % LISTEN_EVERY == 0:
-                session.listen()
-            if session.failure is not failure:
-                break
+        run_until(
+            session.runner,
+            limit_s=seconds,
+            ends=(EndCondition(EndReason.FAILED, lambda: session.failure is not failure),),
+            schedule=Schedule(session.runner.step_size, factor=factor),
+            before_tick=lambda number: session.listen() if number % LISTEN_EVERY == 0 else None,
+        )
         session.look_around()
         if session.failure is not failure:
             click.echo(f"the controller stopped: {session.failure}")
@@ -117,7 +116,7 @@ class Plain:
 
     def look(self) -> None:
         view = Showing(self._session).view()
-        score = view.score
+        score = view.metrics
         click.echo(f"at {clock(view.time_s)}: {report(view.scene)}")
         for side, distance in view.nearest:
             click.echo(f"  {side}: {'nothing in range' if distance is None else f'{distance:.2f} m'}")

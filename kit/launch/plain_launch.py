@@ -5,22 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Protocol
 
 from kit.launch.graph_only import Worldless
 from kit.launch.launch_run import Launch
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
+from kit.run.episode import EndCondition, EndReason, Tickable, run_until, when
 from kit.run.lockstep import ClosableParticipant, Participant
-from kit.run.pacing import MAXIMUM, REAL_TIME, Pace
-
-
-class Ticker(Protocol):
-    """A runner, or what stands in for it without a world."""
-
-    participants: list[Participant]
-
-    def tick(self) -> None: ...
+from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 
 
 @dataclass(slots=True)
@@ -39,7 +31,7 @@ class Limit:
     def is_reached(self, now_ns: int) -> bool:
         return self.ticks == 0 or (self.until_s is not None and now_ns >= round(self.until_s * 1e9))
 
-    def ticked(self) -> None:
+    def count_tick(self) -> None:
         if self.ticks is not None:
             self.ticks -= 1
 
@@ -73,27 +65,30 @@ def run_plainly(
             launch.start()
             worldless = Worldless(launch.graph)
             worldless.participants += [launch, *company_there]
-            pace = Pace(worldless.step_size, factor or REAL_TIME)
-            _go_on(launch, worldless, pace, limit, lambda: launch.world is not None or _is_idle(launch))
+            schedule = Schedule(worldless.step_size, factor=factor or REAL_TIME)
+            _go_on(launch, worldless, schedule, limit, lambda: launch.world is not None or _is_idle(launch))
         if launch.world is not None and not launch.is_over:
             from kit.launch.session import LaunchedSession  # only now: it brings the physics
 
             session = stack.enter_context(LaunchedSession(launch, seed=seed))
             launch.graph.log.sink = log
             step_size = launch.world.step_size
-            pace = Pace(step_size, factor or launch.world.factor)
-            session.runner.on_rate = lambda rate: pace.set_factor(rate * step_size)
+            schedule = Schedule(step_size, factor=factor or launch.world.factor)
+            session.runner.on_rate = lambda rate: schedule.set_factor(rate * step_size)
             session.runner.participants += company_there
             launch.start()
-            _go_on(launch, session.runner, pace, limit, lambda: False)
+            _go_on(launch, session.runner, schedule, limit, lambda: False)
 
 
-def _go_on(launch: Launch, ticker: Ticker, pace: Pace, limit: Limit, is_enough: Callable[[], bool]) -> None:
+def _go_on(
+    launch: Launch, run: Tickable, schedule: Schedule, limit: Limit, is_enough: Callable[[], bool]
+) -> None:
+    ends = (
+        when(lambda: launch.is_over or is_enough()),
+        EndCondition(EndReason.LIMIT, lambda: limit.is_reached(launch.graph.now_ns)),
+    )
     try:
-        while not (launch.is_over or is_enough() or limit.is_reached(launch.graph.now_ns)):
-            pace.wait()
-            ticker.tick()
-            limit.ticked()
+        run_until(run, ends=ends, schedule=schedule, before_tick=lambda number: limit.count_tick())
     except KeyboardInterrupt:
         launch.interrupt("ctrl-c")
         raise

@@ -14,7 +14,8 @@ from kit.launch.processes import Ended, Printed, Process
 from kit.launch.program_lookup import Means, is_ours, start
 from kit.launch.requests import Start
 from kit.ros.graph.graph import Graph
-from kit.run.pacing import Pace
+from kit.run.episode import run_until, when
+from kit.run.pacing import Schedule
 
 Say = Callable[[Printed], None]
 
@@ -46,11 +47,16 @@ class Single:
         with InspectionServer(worldless.graph, sockets, self._request.title) as server:
             process = self._started(worldless.graph)
             worldless.participants += [process, server]
-            pace = Pace(worldless.step_size)
+            ended: Ended | None = None
+
+            def has_ended() -> bool:
+                nonlocal ended
+                ended = self._look(process, say)
+                return ended is not None
+
             try:
-                while (ended := self._look(process, say)) is None:
-                    pace.wait()
-                    worldless.tick()
+                run_until(worldless, ends=(when(has_ended),), schedule=Schedule(worldless.step_size))
+                assert ended is not None  # nothing else ends this
                 return ended
             finally:
                 self._print(process, say)

@@ -16,17 +16,18 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
+from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
 from kit.run.lockstep import ClosableParticipant, Observer
-from kit.run.metrics import Score
-from kit.run.pacing import MAXIMUM, Pace
+from kit.run.metrics import DriveMetrics
+from kit.run.pacing import MAXIMUM, Schedule
 from kit.run.recording import Recorder, save
 from kit.run.scenario import Place
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
 from kit.workspace import check_writable
 
-CHECK_EVERY = 100
-"""Ticks between two looks at what was asked for besides the ticks themselves."""
+LISTEN_EVERY = 100
+"""Ticks after which the controller's output is read."""
 
 
 class Fingerprint(Observer):
@@ -34,8 +35,11 @@ class Fingerprint(Observer):
 
     def __init__(self) -> None:
         self._digest = hashlib.sha256()
+        self.steps = 0
+        """Steps made so far; resets do not restart this."""
 
     def on_step(self, simulation: Simulation) -> None:
+        self.steps += 1
         for pose in simulation.poses():
             self._digest.update(struct.pack("<3d", *pose))
 
@@ -52,7 +56,7 @@ class Summary:
     controller: str
     seed: int
     ticks: int
-    score: Score
+    metrics: DriveMetrics
     pose: Pose | None
     """Where the robot ended."""
     fingerprint: str
@@ -68,11 +72,11 @@ class Summary:
             "controller": self.controller,
             "seed": self.seed,
             "ticks": self.ticks,
-            "time_s": self.score.time_s,
-            "distance_m": round(self.score.distance_m, 6),
-            "bumps": self.score.bumps,
-            "reached_s": self.score.reached_s,
-            "target_m": self.score.target_m,
+            "time_s": self.metrics.time_s,
+            "distance_m": round(self.metrics.distance_m, 6),
+            "bumps": self.metrics.bumps,
+            "reached_s": self.metrics.reached_s,
+            "target_m": self.metrics.target_m,
             "pose": None if self.pose is None else list(self.pose),
             "fingerprint": self.fingerprint,
             "wall_s": round(self.wall_s, 3),
@@ -82,28 +86,28 @@ class Summary:
 
     def text(self) -> str:
         """A few aligned lines."""
-        score = self.score
-        if score.target_m is None:
+        metrics = self.metrics
+        if metrics.target_m is None:
             target = "this world has none"
-        elif score.reached_s is None:
-            target = f"not reached; {score.target_m:.2f} m away at the end"
+        elif metrics.reached_s is None:
+            target = f"not reached; {metrics.target_m:.2f} m away at the end"
         else:
-            target = f"reached after {score.reached_s:.1f} s"
+            target = f"reached after {metrics.reached_s:.1f} s"
         end = (
             "no robot"
             if self.pose is None
             else "x {:.3f} m, y {:.3f} m, heading {:.3f} rad".format(*self.pose)
         )
-        factor = score.time_s / self.wall_s if self.wall_s > 0 else 0.0
+        factor = metrics.time_s / self.wall_s if self.wall_s > 0 else 0.0
         rows = [
             ("place", self.place),
             ("controller", f"{self.controller}, seed {self.seed}"),
             (
                 "run",
-                f"{self.ticks} steps, {score.time_s:.2f} s of simulated time, {factor:.0f} times real time",
+                f"{self.ticks} steps, {metrics.time_s:.2f} s of simulated time, {factor:.0f} times real time",
             ),
             ("target", target),
-            ("way", f"{score.distance_m:.2f} m, {score.bumps} bumps"),
+            ("way", f"{metrics.distance_m:.2f} m, {metrics.bumps} bumps"),
             ("end", end),
             ("fingerprint", self.fingerprint),
         ]
@@ -124,14 +128,12 @@ def run_headless(
     until_reached: bool = False,
     record: Path | None = None,
     company: Sequence[Callable[[Graph], ClosableParticipant]] = (),
-    on_progress: Callable[[int], None] | None = None,
     on_message: Callable[[LogRecord], object] = lambda record: None,
 ) -> Summary:
     """Runs ``steps`` ticks, fewer if the controller fails, if the target is reached and that was asked for, or
     on Ctrl-C. ``factor``: simulated seconds per second; a run that is paced waits while it is paused.
 
-    ``on_progress`` is told the ticks done, a few times a second; ``on_message`` what nodes log and print. Raises
-    OSError if ``record`` cannot be written, before the run if that can be known, and what opening ``company``
+    ``on_message`` is called with what nodes log and print. Raises OSError if ``record`` cannot be written, before the run if that can be known, and what opening ``company``
     raises.
     """
     fingerprint = Fingerprint()
@@ -154,19 +156,20 @@ def run_headless(
         session.drive_with(controller)
         session.wait_until_driven()
         start = time.perf_counter()
-        done, interrupted = 0, False
-        is_paced, pace = factor != MAXIMUM, Pace(runner.simulation.step_size, factor)
+        interrupted, is_paced = False, factor != MAXIMUM
+        ends = [when_failed(session)]
+        if until_reached:
+            ends.append(when_reached(session.metrics))
+        if is_paced:  # time spent in a pause does not count
+            ends.append(EndCondition(EndReason.LIMIT, lambda: fingerprint.steps >= steps))
         try:
-            while done < steps and session.failure is None:
-                pace.wait()
-                runner.tick()
-                done += not (is_paced and runner.paused)
-                if until_reached and session.trip.score.reached_s is not None:
-                    break
-                if done % CHECK_EVERY == 0:
-                    session.listen()
-                    if on_progress is not None:
-                        on_progress(done)
+            run_until(
+                runner,
+                ticks=None if is_paced else steps,
+                ends=ends,
+                schedule=Schedule(runner.step_size, factor=factor) if is_paced else None,
+                before_tick=lambda number: session.listen() if number % LISTEN_EVERY == 0 else None,
+            )
         except KeyboardInterrupt:
             interrupted = True
         session.listen()
@@ -179,7 +182,7 @@ def run_headless(
             controller.name,
             seed,
             runner.simulation.tick,
-            session.trip.score,
+            session.metrics.metrics,
             poses.get(place.robot) if place.robot else None,
             fingerprint.text,
             wall,

@@ -26,24 +26,37 @@ class Pacing:
 
 
 class Schedule:
-    """When ticks are due: ``factor`` simulated seconds per wall second, catching up a little but never a lot."""
+    """When ticks are due: ``factor`` simulated seconds per wall second, catching up a little but never a lot.
 
-    def __init__(self, step: float, now: float) -> None:
-        self._step = step
-        self._factor = REAL_TIME
-        self._next = now
+    A loop that only ticks calls ``wait`` before each tick; one that has more to do asks ``is_due`` and calls
+    ``count_tick`` after each. ``now``: monotonic time [s], by default that of the call.
+    """
+
+    def __init__(self, step_size: float, now: float | None = None, *, factor: float = REAL_TIME) -> None:
+        self._step_size = step_size
+        self._factor = factor
+        self._next = time.monotonic() if now is None else now
 
     def set_factor(self, factor: float) -> None:
+        """Changes the simulated seconds per wall second; ``inf``: every tick is due at once."""
         self._factor = factor
 
-    def restart(self, now: float) -> None:
-        self._next = now + self._step / self._factor
+    def wait(self) -> None:
+        """Sleeps until the next tick is due, and counts it."""
+        while not self.is_due(now := time.monotonic()):
+            time.sleep(self.seconds_until_next(now))
+        self.count_tick()
 
-    def wait_for_next(self, now: float) -> float:
-        """Seconds until the next tick is due, 0 when one is."""
+    def restart(self, now: float) -> None:
+        """Forgets what is overdue: the next tick is due one step from ``now``."""
+        self._next = now + self._step_size / self._factor
+
+    def seconds_until_next(self, now: float) -> float:
+        """0 when a tick is due."""
         return 0.0 if self._factor == MAXIMUM else max(0.0, self._next - now)
 
-    def due(self, now: float) -> bool:
+    def is_due(self, now: float) -> bool:
+        """Whether the next tick should be made by ``now``."""
         if self._factor == MAXIMUM:
             self._next = now
             return True
@@ -51,25 +64,9 @@ class Schedule:
             self._next = now
         return now >= self._next
 
-    def ticked(self) -> None:
-        self._next += self._step / self._factor
-
-
-class Pace:
-    """The same for whoever ticks in a loop of its own: ``wait`` before each tick."""
-
-    def __init__(self, step: float, factor: float = REAL_TIME) -> None:
-        self._schedule = Schedule(step, time.monotonic())
-        self._schedule.set_factor(factor)
-
-    def set_factor(self, factor: float) -> None:
-        self._schedule.set_factor(factor)
-
-    def wait(self) -> None:
-        """Until the next tick is due."""
-        while not self._schedule.due(now := time.monotonic()):
-            time.sleep(self._schedule.wait_for_next(now))
-        self._schedule.ticked()
+    def count_tick(self) -> None:
+        """The next tick is due one step later."""
+        self._next += self._step_size / self._factor
 
 
 class Meter:

@@ -13,7 +13,6 @@ import zlib
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,8 +22,11 @@ from numpy.typing import NDArray
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
+from kit.ros.graph.graph import Graph
+from kit.run.episode import run_until
 from kit.run.lockstep import Observer
-from kit.sim.services import SERVICES, tell
+from kit.run.runner import Runner
+from kit.sim.services import SERVICES
 from kit.sim.simulation import Simulation, SimulationError
 from kit.workspace import write_atomically
 from kit.world.records import World
@@ -201,12 +203,11 @@ def rerun(recording: Recording, world: World) -> Recording:
     """
     simulation = Simulation(world, seed=recording.seed, step_size=recording.step_size)
     recorder = Recorder(recording.place, recording.case, simulation)
-    playback = Playback(recording, simulation.accept, partial(tell, simulation))
-    for _ in range(recording.ticks):
-        playback.exchange()
-        simulation.step()
-        playback.on_step(simulation)
-        recorder.on_step(simulation)
+    runner = Runner(simulation, Graph(log_sink=lambda record: None))
+    playback = Playback(recording, runner.accept, runner.call_service)
+    runner.participants.append(playback)
+    runner.observers += [playback, recorder]
+    run_until(runner, ticks=recording.ticks)
     return recorder.recording()
 
 

@@ -42,6 +42,11 @@ class Runner:
         offer_world_services(self._node, self)
         self._connect_devices()
 
+    @property
+    def step_size(self) -> float:
+        """Simulated seconds per tick."""
+        return self.simulation.step_size
+
     def tick(self) -> None:
         """One tick: the nodes' timers and callbacks due now, then devices, physics, devices, observers."""
         self.exchange_until_idle()

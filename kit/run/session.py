@@ -6,7 +6,6 @@ whoever ticks the runner: a face posts its wishes to the world's thread.
 
 from __future__ import annotations
 
-import json
 import re
 from collections import deque
 from collections.abc import Callable
@@ -22,7 +21,8 @@ from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.controller_switcher import Seat
-from kit.run.metrics import Trip
+from kit.run.episode import controller_arguments
+from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Playback, Recording
 from kit.run.runner import Runner
 from kit.run.scenario import Place
@@ -64,12 +64,12 @@ class Session:
             ends = (end for name in place.partners for end in simulation.endpoints_of(name))
             self._looked_at = frozenset(end.topic for end in ends)
         self.runner = Runner(simulation, self.graph)
-        self.trip = Trip(place.driven, place.case)
-        self.runner.observers.append(self.trip)
+        self.metrics = MetricsRecorder.for_scenario(place)
+        self.runner.observers.append(self.metrics)
         self.keys = KeystrokePublisher(self.graph)
         self.seat = Seat(
             self.runner,
-            self._arguments(),
+            controller_arguments(place),
             seed=seed,
             limits=limits,
             level=level,
@@ -160,24 +160,3 @@ class Session:
 
     def _is_wanted(self, topic: str) -> bool:
         return topic in self._looked_at or self.graph.subscription_count(topic) > 0
-
-    def _arguments(self) -> list[str]:
-        """What every controller is told of the place: its robot's name and where home is; which world it is in,
-        who drives there, and where to. Its topics are in the robot's namespace, but for those with a slash."""
-        place, robot = self.place, self.place.driven
-        if robot is None:
-            return []
-        start = robot.pose
-        told = {
-            "home": f"[{start.x!r}, {start.y!r}, {start.theta!r}]",
-            "model": robot.name,
-            "models": json.dumps(place.partners),
-            "world": json.dumps(str(place.world.file.absolute())),
-        }
-        if place.charges is not None:
-            told["charges"] = json.dumps(str(place.charges.absolute()))
-        if place.case is not None:
-            x, y = place.case.target
-            told |= {"target": f"[{x!r}, {y!r}]", "target_radius": repr(float(place.case.target_radius))}
-        words = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
-        return ["--ros-args", *words, *(["-r", f"__ns:=/{robot.namespace}"] if robot.namespace else [])]

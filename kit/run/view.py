@@ -13,7 +13,7 @@ from kit.host.failure import Failure
 from kit.render.scene import Body, Disc, FloatArray, Scene
 from kit.render.trail import Trail
 from kit.ros.log import LogRecord
-from kit.run.metrics import Score
+from kit.run.metrics import DriveMetrics
 from kit.sim.state import SimulationState
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class View:
     """Forward [m/s] and turning [rad/s]."""
     nearest: tuple[tuple[str, float | None], ...]
     """For each side of the robot what its laser saw nearest [m]; None: nothing in range. Empty: no laser."""
-    score: Score
+    metrics: DriveMetrics
     paused: bool
     controller: str | None
     failure: Failure | None
@@ -107,7 +107,7 @@ class Showing:
             pose=driven.pose if driven else None,
             speed=_forward_and_turn(driven.pose, driven.velocity) if driven else (0.0, 0.0),
             nearest=_nearest(standing.scans[0]) if standing.scans else (),
-            score=session.trip.score,
+            metrics=session.metrics.metrics,
             paused=session.runner.paused,
             controller=session.controller.name if session.controller else None,
             failure=session.failure,

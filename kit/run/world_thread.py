@@ -92,7 +92,7 @@ class LiveRun:
         while True:
             with self._wake:
                 if not self._jobs and not self._steps and not self._stopping:
-                    self._wake.wait(None if runner.paused else clock.wait_for_next(time.monotonic()))
+                    self._wake.wait(None if runner.paused else clock.seconds_until_next(time.monotonic()))
                 jobs, self._jobs = self._jobs, []
                 steps, self._steps = self._steps, 0
                 if self._stopping:
@@ -120,9 +120,9 @@ class LiveRun:
         runner, step = self._runner, self._runner.simulation.step_size
         end = time.monotonic() + SLICE
         ticks = 0
-        while not runner.paused and clock.due(now := time.monotonic()):
+        while not runner.paused and clock.is_due(now := time.monotonic()):
             runner.tick()
-            clock.ticked()
+            clock.count_tick()
             ticks += 1
             if now >= end or self._jobs or self._stopping:
                 break

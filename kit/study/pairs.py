@@ -16,7 +16,9 @@ from kit.fields.controller_setup import Course, middle_of
 from kit.geometry import Pose
 from kit.render.scene import Body
 from kit.render.world_text import nearest_wall
+from kit.run.episode import run_until, when, when_failed
 from kit.run.lockstep import Observer
+from kit.run.metrics import MetricsRecorder
 from kit.run.scenario import Place
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
@@ -140,8 +142,7 @@ def try_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> Outc
         session.runner.observers.append(log)
         session.drive_with(controller)
         session.wait_until_driven()
-        while log.end is None and session.failure is None:
-            session.runner.tick()
+        run_until(session.runner, ends=(when(lambda: log.end is not None), when_failed(session)))
         session.look_around()
         return log.outcome(log.end or "failed", _why(log, session, course))
 
@@ -175,7 +176,7 @@ class _Log(Observer):
 
     def __init__(self, place: Place) -> None:
         assert place.case is not None
-        self._case = place.case
+        self._metrics = MetricsRecorder.for_scenario(place)
         self._names = place.partners
         walls = [layer.walls.segments for layer in place.world.layers if layer.walls is not None]
         self._walls = np.concatenate([np.empty((0, 4)), *walls])
@@ -194,7 +195,8 @@ class _Log(Observer):
     def on_step(self, simulation: Simulation) -> None:
         if self.end is not None:
             return
-        if any(simulation.touches(name) for name in self._names):
+        self._metrics.on_step(simulation)
+        if self._metrics.total_bumps:
             self.end, self.touched = "collided", self._contact(simulation)
         if simulation.tick % SAMPLE:
             return
@@ -204,8 +206,7 @@ class _Log(Observer):
         if len(poses) == 2:
             self._sides.append(self._beside(simulation, *poses))
         self._nearest = min(self._nearest, self._wall_distance(simulation))
-        reach = [simulation.hull_distance(name, self._case.target) for name in self._names]
-        if max(reach) <= self._case.target_radius:
+        if self._metrics.all_reached_s is not None:
             self.end = self.end or "reached"
         elif len(self._recent) == self._recent.maxlen and math.dist(self._recent[0], self.middle) < STUCK_M:
             self.end = self.end or "stuck"

@@ -74,7 +74,7 @@ def test_every_controller_of_the_kit_drives(name: str) -> None:
         session.keys.publish(["p_up"])
         run(session, 8.0)  # some turn on the spot first
         assert session.failure is None
-        assert session.trip.score.distance_m > 0.3
+        assert session.metrics.metrics.distance_m > 0.3
 
 
 def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
@@ -85,7 +85,7 @@ def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
         session.wait_until_driven()
         run(session, 1.0)
         assert session.failure is None
-        assert session.trip.score.distance_m == 0.0
+        assert session.metrics.metrics.distance_m == 0.0
     mine.file.write_text("# mine\n")
     assert in_folder(open_desk(tmp_path / "desk").controllers)[0].file.read_text() == "# mine\n"
 
@@ -161,12 +161,12 @@ def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
         slowest = 1.0
         for _ in range(1500):
             run(session, 0.01)
-            if session.trip.score.bumps:
+            if session.metrics.metrics.bumps:
                 break
-            if session.trip.score.distance_m > 0.2:
+            if session.metrics.metrics.distance_m > 0.2:
                 slowest = min(slowest, speed(session))
         assert slowest == pytest.approx(0.25, abs=1e-3)
-        assert session.trip.score.bumps == 1
+        assert session.metrics.metrics.bumps == 1
         run(session, 0.1)
         assert session.runner.simulation.pose("serp") == pytest.approx(start, abs=1e-6)
         assert any("front" in record.text for record in session.messages)
@@ -177,12 +177,12 @@ def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
         session.drive_with(find(str(write(tmp_path, 0.3))))
         session.wait_until_driven()
         run(session, 1.0)
-        assert session.trip.score.distance_m > 0.2
+        assert session.metrics.metrics.distance_m > 0.2
         session.reset()
         assert session.runner.simulation.tick == 0
         session.wait_until_driven()
         run(session, 0.5)
-        assert session.trip.score.distance_m == pytest.approx(0.15, abs=0.03)
+        assert session.metrics.metrics.distance_m == pytest.approx(0.15, abs=0.03)
 
 
 def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
@@ -204,8 +204,8 @@ def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     place = find_place("hall_straight")
     summary = run_headless(place, find(str(write(tmp_path, 0.3))), steps=2000, until_reached=True)
     assert place.case is not None
-    assert summary.score.reached_s is not None
-    assert summary.score.target_m == pytest.approx(place.case.target_radius, abs=0.01)
+    assert summary.metrics.reached_s is not None
+    assert summary.metrics.target_m == pytest.approx(place.case.target_radius, abs=0.01)
     assert summary.pose is not None
     # the nose is 0.048 m ahead of the axle, from which the pose counts
     ahead = place.case.target[1] - summary.pose.y
@@ -217,12 +217,12 @@ def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
         session.drive_with(find(str(write(tmp_path))))
         session.wait_until_driven()
         run(session, 1.0)
-        assert session.trip.score.distance_m == pytest.approx(0.2, abs=0.03)
+        assert session.metrics.metrics.distance_m == pytest.approx(0.2, abs=0.03)
         session.drive_with(find("teleop"))
         session.wait_until_driven()
         session.keys.publish(["p_up"])
         run(session, 0.5)
-        assert session.trip.score.distance_m == pytest.approx(0.45, abs=0.06)
+        assert session.metrics.metrics.distance_m == pytest.approx(0.45, abs=0.06)
 
 
 def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> None:
@@ -262,7 +262,7 @@ def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
         for x in (0.01, 0.5, -0.5):
             session.runner.call_service("move_model", "serp", (x, 0.0, 0.0))
             run(session, 0.02)
-        assert session.trip.score.distance_m == pytest.approx(0.0, abs=1e-9)
+        assert session.metrics.metrics.distance_m == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_drivers_stand_in_the_order_of_the_file() -> None:

@@ -19,8 +19,8 @@ from kit.world.catalogue import find_map
 
 def due_ticks(schedule: Schedule, now: float) -> int:
     count = 0
-    while schedule.due(now):
-        schedule.ticked()
+    while schedule.is_due(now):
+        schedule.count_tick()
         count += 1
         assert count < 10_000
     return count
@@ -33,7 +33,7 @@ def test_so_many_ticks_are_due_as_the_factor_says(factor: float, ticks: int) -> 
     schedule.restart(0.0)
     total = sum(due_ticks(schedule, step * 0.02) for step in range(1, 6))
     assert total == pytest.approx(ticks, abs=1)
-    assert 0 <= schedule.wait_for_next(0.1) <= 0.01 / factor + 1e-9
+    assert 0 <= schedule.seconds_until_next(0.1) <= 0.01 / factor + 1e-9
 
 
 def test_a_run_that_fell_far_behind_does_not_jump() -> None:
@@ -44,8 +44,8 @@ def test_a_run_that_fell_far_behind_does_not_jump() -> None:
 def test_as_fast_as_it_goes_is_always_due() -> None:
     schedule = Schedule(0.01, 0.0)
     schedule.set_factor(MAXIMUM)
-    assert all(schedule.due(0.0) for _ in range(50))
-    assert schedule.wait_for_next(0.0) == 0.0
+    assert all(schedule.is_due(0.0) for _ in range(50))
+    assert schedule.seconds_until_next(0.0) == 0.0
 
 
 def test_the_meter_says_what_was_reached() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from contextlib import ExitStack
 from pathlib import Path
@@ -21,9 +20,11 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.render.scene import Disc, FloatArray
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.lockstep import Observer
-from kit.run.metrics import Trip
+from kit.run.metrics import MetricsRecorder
 from kit.run.runner import Runner
+from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import Case
 from kit.world.hull import convex_hull
@@ -115,11 +116,16 @@ def run_world(world: World, order: WorldRunSpec) -> RunFacts:
     case = None
     if order.target is not None and model is not None:
         case = Case("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    trip, eye, ear = Trip(model, case), PathRecorder(model, world), TopicRecorder(graph)
-    runner.observers += [trip, eye]
-    problem, ticks = _drive(runner, trip, order, model, wanted in driving), simulation.tick
+    scenario = Place(str(world.file), "", world, None if model is None else model.name, case)
+    metrics, eye, ear = (
+        MetricsRecorder.for_scenario(scenario),
+        PathRecorder(model, world),
+        TopicRecorder(graph),
+    )
+    runner.observers += [metrics, eye]
+    problem, ticks = _drive(runner, metrics, order, scenario, wanted in driving), simulation.tick
     ear.stop()
-    score, radius = trip.score, 0.0 if model is None else model_width(model) / 2
+    score, radius = metrics.metrics, 0.0 if model is None else model_width(model) / 2
     way = closed = False
     if model is not None:
         way, closed = search_path(all_wall_segments(world), model.pose[:2], order.target, radius)
@@ -144,38 +150,30 @@ def run_world(world: World, order: WorldRunSpec) -> RunFacts:
     )
 
 
-def _drive(runner: Runner, trip: Trip, order: WorldRunSpec, model: Model | None, drives: bool) -> str:
+def _drive(
+    runner: Runner, metrics: MetricsRecorder, order: WorldRunSpec, scenario: Place, drives: bool
+) -> str:
     """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
     with ExitStack() as stack:
         guest: Guest | None = None
         if order.driver:
-            if model is None or not drives:
+            if scenario.driven is None or not drives:
                 wanted = f"The model {order.robot}" if order.robot else "No model of this world"
                 return f"{wanted} has {'no' if order.robot else 'a'} drive for our driver to move."
             try:
                 guest = Guest.start(
-                    runner.graph, Path(order.driver), args=_told(model, order), seed=order.seed
+                    runner.graph, Path(order.driver), args=controller_arguments(scenario), seed=order.seed
                 )
             except GuestError as error:
                 return f"Our driver does not start: {error}"
             runner.participants.append(stack.enter_context(guest))
-        for _ in range(round(order.time_s / STEP)):
-            runner.tick()
-            if guest is not None and guest.failure is not None:
-                return f"Our driver stopped: {guest.failure}"
-            if order.until_reached and trip.score.reached_s is not None:
-                break
+        ends = [when_failed(guest)] if guest is not None else []
+        if order.until_reached:
+            ends.append(when_reached(metrics))
+        end = run_until(runner, limit_s=order.time_s, ends=ends)
+        if guest is not None and end is EndReason.FAILED:
+            return f"Our driver stopped: {guest.failure}"
     return ""
-
-
-def _told(model: Model, order: WorldRunSpec) -> list[str]:
-    """What a controller is told of its place, as ``kit.run.session`` tells it."""
-    x, y, theta = model.pose
-    told = {"home": f"[{x!r}, {y!r}, {theta!r}]", "model": json.dumps(model.name)}
-    if order.target is not None:
-        told["target"] = "[{!r}, {!r}]".format(*order.target)
-    words = [word for name, value in told.items() for word in ("-p", f"{name}:={value}")]
-    return ["--ros-args", *words, *(["-r", f"__ns:=/{model.namespace}"] if model.namespace else [])]
 
 
 def model_width(model: Model) -> float:

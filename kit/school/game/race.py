@@ -15,7 +15,9 @@ from kit.host.failure import Failure
 from kit.host.sandbox.confinement import DESK_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import allows
+from kit.run.episode import EndCondition, EndReason, run_until, when_failed
 from kit.run.lockstep import Observer
+from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Place
 from kit.run.session import Session
@@ -28,8 +30,8 @@ if TYPE_CHECKING:
 
 LONGEST: Final = 6.0
 """A drive ends when it has taken so many times the level's par."""
-LOOK_EVERY: Final = 10
-"""Ticks between two looks at the program."""
+LISTEN_EVERY: Final = 10
+"""Ticks after which the program's output is read."""
 FASTEST: Final = 1.05
 """m/s that the robot may be driven at: it could be told more, but no such robot would do it."""
 STRIDE: Final = 0.5
@@ -88,22 +90,27 @@ class Judge(Observer):
         self._begin()
 
     def _begin(self) -> None:
-        self._touching: dict[str, bool] = {}
-        self._bumps = 0
+        self._metrics = MetricsRecorder.for_scenario(self._place)
         self._seconds = 0.0
-        self._reached: float | None = None
         self._foul = ""
         self._at: dict[str, tuple[float, float]] = {}
 
     @property
     def finish(self) -> Finish:
         """As of the last tick."""
-        seconds = self._seconds if self._reached is None else self._reached
-        return Finish(self._reached is not None and not self._foul, seconds, self._bumps, foul=self._foul)
+        reached_s = self._metrics.all_reached_s
+        seconds = self._seconds if reached_s is None else reached_s
+        has_reached = reached_s is not None and not self._foul
+        return Finish(has_reached, seconds, self._metrics.total_bumps, foul=self._foul)
+
+    @property
+    def when_finished(self) -> EndCondition:
+        """Ends the race when all have reached the target without a foul."""
+        return EndCondition(EndReason.REACHED, lambda: self.finish.reached)
 
     def on_service(self, service: str, *arguments: Any) -> None:
         """Whoever changes the world does not race in it."""
-        if service in ALLOWED[1:] or self._reached is not None:
+        if service in ALLOWED[1:] or self._metrics.all_reached_s is not None:
             return
         homes = dict(zip(self._place.partners, self._place.starts, strict=True))
         if service != ALLOWED[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
@@ -114,23 +121,16 @@ class Judge(Observer):
             self._begin()
         self._last_tick = simulation.tick
         self._seconds = simulation.time_ns / 1e9
-        if self._reached is not None:
+        if self._metrics.all_reached_s is not None:
             return
+        self._metrics.on_step(simulation)
         for name in self._place.partners:
-            touching = simulation.touches(name)
-            self._bumps += touching and not self._touching.get(name, False)
-            self._touching[name] = touching
             pose = simulation.pose(name)
             before = self._at.get(name, (pose.x, pose.y))
             stride = math.hypot(pose.x - before[0], pose.y - before[1])
             self._at[name] = pose.x, pose.y
             if FASTEST * simulation.step_size < stride < STRIDE:
                 self._foul = f"it drove faster than {FASTEST:g} m/s, which this robot cannot"
-        case = self._place.case
-        if case is not None and all(
-            simulation.hull_distance(name, case.target) <= case.target_radius for name in self._place.partners
-        ):
-            self._reached = self._seconds
 
 
 def reference(level: Level) -> tuple[Finish, Recording]:
@@ -178,10 +178,7 @@ def judged(level: Level, recording: Recording) -> Finish:
         judge = Judge(place)
         session.runner.observers.append(judge)
         session.play_back(recording)
-        for _ in range(recording.ticks):
-            session.runner.tick()
-            if judge.finish.reached:
-                break
+        run_until(session.runner, ticks=recording.ticks, ends=(judge.when_finished,))
         return judge.finish
 
 
@@ -198,13 +195,18 @@ def _run(
         session.runner.observers += [judge, recorder]
         sit(session)
         step = simulation.step_size
-        for tick in range(math.ceil(LONGEST * level.par / step)):
-            if session.failure is not None or judge.finish.reached:
-                break
-            session.runner.tick()
-            if tick % LOOK_EVERY == 0:
+
+        def listen(tick: int) -> None:
+            if tick % LISTEN_EVERY == 0:
                 session.listen()
                 if on_second is not None:
                     on_second(tick * step)
+
+        run_until(
+            session.runner,
+            ticks=math.ceil(LONGEST * level.par / step),
+            ends=(when_failed(session), judge.when_finished),
+            before_tick=listen,
+        )
         found = judge.finish
         return replace(found, failure=session.failure), recorder.recording()

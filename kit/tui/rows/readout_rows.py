@@ -53,7 +53,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
             _figure(side, "-" if distance is None else f"{distance:.2f}", "m")
             for side, distance in view.nearest
         ]
-    score = view.score
+    score = view.metrics
     rows.append(_title("drive"))
     rows.append(_figure("way", f"{score.distance_m:.1f}", "m"))
     rows.append(_figure("bumps", f"{score.bumps}", ""))

@@ -223,7 +223,7 @@ class FieldsScreen(PlayScreen):
             beside = "yes" if adjacency.by_geometry(poses[0], poses[1]) else "no"
             rows.append(row(("side by side", "dim")))
             rows.append(row(f" {beside:<8}", (f"{float(adjacency.graded(poses[0], poses[1])):9.2f}", "bold")))
-        if self.view is not None and self.view.score.reached_s is not None:
+        if self.view is not None and self.view.metrics.reached_s is not None:
             rows.append(row(("target reached", "good")))
         return rows
 

@@ -112,7 +112,7 @@ class RecordedDriveScreen(WatchScreen):
         self._is_open = self._is_open or (view is not None and view.tick == 0)
         if view is None or not self._is_open or view.failure is not None:
             return
-        if view.score.reached_s is not None and not self._reached:
+        if view.metrics.reached_s is not None and not self._reached:
             self._reached = True
             self.stop_driving()
             self.host.set_paused(True)

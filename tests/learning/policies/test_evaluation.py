@@ -135,8 +135,8 @@ def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     file.write_text(node_source(always(TaskChoice("hallway"), 1)))
     summary = run_headless(find_place("hall_straight"), find(str(file)), steps=1200, until_reached=True)
     assert summary.failure is None
-    assert summary.score.reached_s is not None
-    assert summary.score.bumps == 0
+    assert summary.metrics.reached_s is not None
+    assert summary.metrics.bumps == 0
 
 
 def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:

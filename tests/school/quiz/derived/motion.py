@@ -106,7 +106,7 @@ def teleop_home(item: Item, folder: Path) -> Finding:
         for _ in range(6000):
             session.runner.tick()
             pose = simulation.pose(session.place.robot)
-            if session.trip.score.bumps and math.dist(pose[:2], start[:2]) < 0.05:
+            if session.metrics.metrics.bumps and math.dist(pose[:2], start[:2]) < 0.05:
                 break
             farthest = pose
     away = math.dist(farthest[:2], start[:2])
