@@ -9,7 +9,6 @@ from typing import Any
 
 from grader.evidence.service_calls import ServiceCall
 from grader.scoring import Anchors
-from grader.teacher_tests import TeacherTest
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
@@ -85,6 +84,22 @@ class Criterion:
     hints: tuple[str, ...]
     feedback: str
     """The check's own sentence, to be filled with what was measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class TeacherTest:
+    """One test function of a teacher's, as its file declares it."""
+
+    id: str
+    points: float
+    feedback: str = ""
+    visibility: Visibility = Visibility.VISIBLE
+    hints: tuple[str, ...] = ()
+
+    @property
+    def title(self) -> str:
+        words = self.id.removeprefix("test_").replace("_", " ").strip()
+        return words[:1].upper() + words[1:]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,19 +6,21 @@ import math
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from types import MappingProxyType
-from typing import Any, Final, Protocol
+from typing import Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.kinds.contract import find_kind
 from grader.submission import Submission
 from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
 
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
@@ -49,37 +51,20 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 """All that is said of a failure where seeds are secret: an error's own text could carry away what was seen."""
 
 
-class Evidence(Protocol):
-    """Something a criterion is measured on: a drive, or a reward under examination."""
-
-    @property
-    def label(self) -> str: ...
-    @property
-    def secret(self) -> bool: ...
-    @property
-    def failure(self) -> Failure | None: ...
-    @property
-    def outcome(self) -> str: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def printed(self) -> tuple[str, ...]: ...
-    def explain(self, check: str, params: Any) -> str:
-        """What else there is to say of it in the light of a check, in a sentence; may be empty."""
-
-    def picture(self, check: str = "") -> str:
-        """It in plain characters, in the light of a check; may be empty."""
+class LevelTooLow(Exception):
+    """Secrets would be used at a lower confinement than the assignment allows; the message says what to do."""
 
 
-class EvidenceCollector(Protocol):
-    """Runs a submission and returns what was seen."""
+@dataclass(frozen=True, slots=True)
+class GradingOptions:
+    """How to grade."""
 
-    level: Level
-
-    def evidence(self, criterion: Criterion) -> Sequence[Evidence]: ...
-
-    def all(self) -> Sequence[Evidence]:
-        """What has been gathered so far."""
+    level: Level | None = None
+    """How far to lock programs in; None: as the assignment says."""
+    secret: bool = False
+    """Whether the secret seeds are used: for the grade."""
+    may_fall: bool = True
+    """Whether practice goes on at a lower level where the machine has none higher."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +105,10 @@ class Grading:
     def result(self) -> GradingResult:
         """All criteria judged."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
-        tests += run_teacher_tests(self, self.assignment.teacher_tests, self.assignment.teacher_test_files)
-        collected = self._collector.all()
+        tests += run_teacher_tests(
+            self, self.assignment.folder, self.assignment.teacher_tests, self.assignment.teacher_test_files
+        )
+        collected = self._collector.collected()
         if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
             time.sleep(SHUTDOWN_WAIT_S)
         return GradingResult(
@@ -281,6 +268,29 @@ class Grading:
 
     def _criterion(self, identity: str) -> Criterion:
         return next(each for each in self.assignment.criteria if each.id == identity)
+
+
+@contextmanager
+def open_grading(assignment: Assignment, submission: Submission, terms: GradingOptions) -> Iterator[Grading]:
+    """A grading, ready to judge. Raises LevelTooLow."""
+    level = assignment.level if terms.level is None else terms.level
+    if terms.secret and level < assignment.level:
+        raise LevelTooLow(
+            f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
+            f"not at {int(level)}. `kit doctor` says what this machine can do."
+        )
+    with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
+        shield_this_process()
+    with submission.in_temporary_folder() as file:
+        options = EvidenceOptions(level, terms.secret, terms.may_fall and terms.level is None)
+        with find_kind(assignment.kind).collect(assignment, file, options) as collector:
+            yield Grading(assignment, submission, collector, secret=terms.secret)
+
+
+def grade(assignment: Assignment, submission: Submission, terms: GradingOptions) -> GradingResult:
+    """The result of one submission. Raises LevelTooLow."""
+    with open_grading(assignment, submission, terms) as grading:
+        return grading.result()
 
 
 def _share(criterion: Criterion, shares: Sequence[float]) -> float:

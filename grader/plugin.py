@@ -19,10 +19,9 @@ import pytest
 
 from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
-from grader.grading import Grading
+from grader.grading import Grading, GradingOptions, LevelTooLow, open_grading
 from grader.reading import ASSIGNMENT_FILE, read
 from grader.reports.cleaning import plain
-from grader.session import GradingOptions, LevelTooLow, open_grading
 from grader.submission import read_submission
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level

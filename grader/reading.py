@@ -12,11 +12,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final
 
-from grader.assignment import HINT_STEPS, Assignment, Criterion, SeedSet, Trial
+from grader.assignment import HINT_STEPS, Assignment, Criterion, SeedSet, TeacherTest, Trial
 from grader.checks.contract import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import Anchors
-from grader.teacher_tests import TeacherTest, read_declared
+from grader.teacher_tests import read_declared
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER, MIB, Limits
 from kit.school.result import Visibility

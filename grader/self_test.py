@@ -14,8 +14,8 @@ from typing import Final
 
 from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, SeedSet
+from grader.grading import GradingOptions, grade
 from grader.scoring import required_passes, unfair_fail_probability
-from grader.session import GradingOptions, grade
 from grader.submission import read_submission
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 

@@ -21,31 +21,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from grader.assignment import TeacherTest
+from grader.evidence.contract import EvidenceSource
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
     import pytest
 
-    from grader.grading import Grading
-
 MARK: Final = "points"
 MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's own test is worth"
-
-
-@dataclass(frozen=True, slots=True)
-class TeacherTest:
-    """One test function, as its file declares it."""
-
-    id: str
-    points: float
-    feedback: str = ""
-    visibility: Visibility = Visibility.VISIBLE
-    hints: tuple[str, ...] = ()
-
-    @property
-    def title(self) -> str:
-        message = self.id.removeprefix("test_").replace("_", " ").strip()
-        return message[:1].upper() + message[1:]
 
 
 def read_declared(file: Path) -> Iterator[TeacherTest]:
@@ -87,7 +71,7 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
 class _Session:
     """A pytest plugin that lends the grading out and notes what came of each test."""
 
-    grading: Grading
+    grading: EvidenceSource
     outcomes: dict[str, list[tuple[CriterionStatus, str]]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
@@ -96,13 +80,12 @@ class _Session:
 
 
 def run_teacher_tests(
-    grading: Grading, tests: Sequence[TeacherTest], files: Sequence[Path]
+    grading: EvidenceSource, folder: Path, tests: Sequence[TeacherTest], files: Sequence[Path]
 ) -> tuple[CriterionResult, ...]:
     """Runs the tests in this process. What breaks in them is the teacher's and costs no student a point."""
     if not tests:
         return ()
     session = _Session(grading)
-    folder = grading.assignment.folder
     with _isolated_environment():
         import pytest
 
@@ -139,7 +122,7 @@ def _plugin(session: _Session) -> object:
             config.addinivalue_line("markers", MARK_HELP)
 
         @pytest.fixture(scope="session")
-        def grading(self) -> Grading:
+        def grading(self) -> EvidenceSource:
             return session.grading
 
         @pytest.hookimpl(wrapper=True)

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.grading import GradingOptions
 from grader.reading import read as read_assignment
 from grader.self_test import STARTER, try_works
-from grader.session import GradingOptions
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
 from kit.school.lessons.checking import check

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.checks.contract import Check, NoParams, check
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.environment import EnvironmentEpisode, EnvironmentRecord, sector_minima
-from grader.kinds.contract import EvidenceRecord
 from kit.geometry import Pose
 
 SECTORS: Final = 9
@@ -272,7 +272,7 @@ Facts = Callable[[EnvironmentRecord], Iterator[str]]
 
 
 def _measure(facts: Facts, evidence: EvidenceRecord) -> float:
-    return _share(list(facts(evidence.found)))
+    return _share(list(facts(evidence.content)))
 
 
 @check(none=0, full=1, unit="%")

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts
-from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
 UNSPECIFIED: Final = math.nan
@@ -56,15 +56,15 @@ RunFaults = Callable[[WorldRun, Any], Iterator[str]]
 
 def count_faults(evidence: EvidenceRecord, faults: Faults, params: Any) -> float:
     """How many things are wrong; nan for a world that cannot be read."""
-    world: WorldFacts = evidence.found.world
+    world: WorldFacts = evidence.content.world
     return math.nan if world.problems else float(sum(1 for _ in faults(world, params)))
 
 
 def count_run_faults(evidence: EvidenceRecord, faults: RunFaults, params: Any) -> float:
     """The same of a run; nan where there was none."""
-    if not isinstance(evidence.found, WorldRun) or evidence.found.run.problem:
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
         return math.nan
-    return float(sum(1 for _ in faults(evidence.found, params)))
+    return float(sum(1 for _ in faults(evidence.content, params)))
 
 
 def metres(value: float) -> str:

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import Box, WorldFacts
-from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted
 
 
 @check(none=0, full=1, words=("does not load", "loads"))
 def loads(evidence: EvidenceRecord, params: NoParams) -> float:
     """The world does not load. Each line says what is wrong, in which file, and where:"""
-    return 0.0 if evidence.found.world.problems else 1.0
+    return 0.0 if evidence.content.world.problems else 1.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import NO_WORDS, count_faults
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import WorldFacts
-from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
 
@@ -99,7 +99,7 @@ def sights(evidence: EvidenceRecord, params: SightParams) -> float:
 @check(none=17, full=16, unit="layers")
 def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """The world has {actual}; {full} would do."""
-    world: WorldFacts = evidence.found.world
+    world: WorldFacts = evidence.content.world
     return math.nan if world.problems else float(len(world.layers))
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from grader.checks.contract import check
 from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
-from grader.kinds.contract import EvidenceRecord
 from kit.world.problems import quoted, suggestion
 
 

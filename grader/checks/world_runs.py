@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from grader.checks.contract import NoParams, check
 from grader.checks.faults import NO_WORDS, WorldRun, count_run_faults
-from grader.kinds.contract import EvidenceRecord
+from grader.evidence.contract import EvidenceRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,17 +81,17 @@ def drives(evidence: EvidenceRecord, params: NoParams) -> float:
 @check(none=1, full=0, unit="bumps", params=NoParams)
 def bumps(evidence: EvidenceRecord, params: NoParams) -> float:
     """While our driver drove, the robot touched something: {actual} ({where})."""
-    if not isinstance(evidence.found, WorldRun) or evidence.found.run.problem:
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
         return math.nan
-    return float(evidence.found.run.bumps)
+    return float(evidence.content.run.bumps)
 
 
 @check(none=0, full=1, words=("not stopped", "stopped"))
 def stopped(evidence: EvidenceRecord, params: NoParams) -> float:
     """Our driver went straight at where something solid should be, and nothing stopped it ({where})."""
-    if not isinstance(evidence.found, WorldRun) or evidence.found.run.problem:
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
         return math.nan
-    return float(evidence.found.run.bumps > 0)
+    return float(evidence.content.run.bumps > 0)
 
 
 def no_way(run: WorldRun, params: NoParams) -> Iterator[str]:
@@ -124,6 +124,6 @@ def apart(run: WorldRun, params: NoParams) -> Iterator[str]:
 @check(none=0.05, full=0.01, unit="m", params=NoParams)
 def together(evidence: EvidenceRecord, params: NoParams) -> float:
     """While it drove the model came apart by {actual} ({where}); at most {full} is allowed."""
-    if not isinstance(evidence.found, WorldRun) or evidence.found.run.problem:
+    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
         return math.nan
-    return float(evidence.found.run.joint_gap)
+    return float(evidence.content.run.joint_gap)

@@ -11,7 +11,8 @@ import click
 from grader.cli import options
 
 if TYPE_CHECKING:
-    from grader.grading import Evidence, Grading
+    from grader.evidence.contract import Evidence
+    from grader.grading import Grading
     from kit.school.result import GradingResult
 
 EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
@@ -69,8 +70,8 @@ def command(
     Exit code: 0 it passes; 1 it does not; 2 something named is wrong or missing; 3 the grader is broken, no grade.
     """
     from grader.archives import SubmissionRefused
+    from grader.grading import GradingOptions, LevelTooLow, open_grading
     from grader.reports import FORMATS
-    from grader.session import GradingOptions, LevelTooLow, open_grading
     from grader.submission import read_submission
 
     format_name = "json" if as_json else format_name
@@ -126,8 +127,8 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
 
 def _picture_title(worst: Evidence) -> tuple[str, bool]:
     """What the picture shows; and whether it can be watched moving."""
+    from grader.evidence.contract import EvidenceRecord
     from grader.evidence.drive_record import DriveRecord
-    from grader.kinds.contract import EvidenceRecord
 
     if isinstance(worst, DriveRecord):
         return f"The worst episode, {worst.label} ({worst.outcome})", True

@@ -59,7 +59,7 @@ def command(
     """
     from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.cohort.queue import Queue, QueueError, prepare_queue
-    from grader.session import GradingOptions
+    from grader.grading import GradingOptions
     from kit.host.sandbox.probe import highest
 
     def count(key: str) -> None:

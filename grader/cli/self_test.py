@@ -23,9 +23,9 @@ def command(folder: Path, solutions: Path | None, level: int | None) -> None:
 
     Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
     """
+    from grader.grading import GradingOptions, LevelTooLow
     from grader.reports.cleaning import plain
     from grader.self_test import SUCCESSES, try_works, unfair_fail_odds
-    from grader.session import GradingOptions, LevelTooLow
 
     assignment = options.read_assignment(folder)
     terms = GradingOptions(

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 from grader.archives import SubmissionRefused, is_archive
 from grader.assignment import Assignment
+from grader.grading import GradingOptions
 from grader.reading import read
-from grader.session import GradingOptions
 from grader.submission import IGNORED_NAMES, Submission, read_submission
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level

@@ -15,7 +15,7 @@ from typing import IO, Final
 
 from grader.assignment import Assignment
 from grader.cohort.queue import Queue
-from grader.session import grade
+from grader.grading import grade
 from grader.version import grader_version
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 

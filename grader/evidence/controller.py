@@ -33,7 +33,7 @@ class ControllerEpisodes:
             for secret, place, seed in self._seeds(self._assignment.trial(name), criterion.seeds)
         ]
 
-    def all(self) -> Sequence[DriveRecord]:
+    def collected(self) -> Sequence[DriveRecord]:
         return list(self._drives.values())
 
     def _seeds(self, trial: Trial, which: SeedSet) -> list[tuple[bool, int, int]]:

@@ -199,7 +199,7 @@ class RewardCollector:
     def evidence(self, criterion: Criterion) -> Sequence[RewardEvidence]:
         return [self._evidence]
 
-    def all(self) -> Sequence[RewardEvidence]:
+    def collected(self) -> Sequence[RewardEvidence]:
         return [self._evidence]
 
 

@@ -18,25 +18,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import check
-from grader.kinds.contract import (
-    AssignmentFiles,
-    EvidenceOptions,
-    EvidenceRecord,
-    FixedEvidence,
-    Kind,
-    KindSettings,
-    read_submitted_yaml,
-)
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from kit.host.failure import Failure
 from kit.world.problems import quoted, suggestion
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 MAX_ANSWER: Final = 200
 """Characters of one answer."""
@@ -112,7 +102,7 @@ class AnswerParams:
 @check(none=0, full=1, unit="%", params=AnswerParams)
 def answers(evidence: EvidenceRecord, params: AnswerParams) -> float:
     """Of these questions {actual} are answered rightly."""
-    submitted: SubmittedAnswers = evidence.found
+    submitted: SubmittedAnswers = evidence.content
     names = params.keys or tuple(submitted.task.keys)
     if not set(names) <= set(submitted.task.keys):
         raise LookupError(f"no question {sorted(set(names) - set(submitted.task.keys))}")

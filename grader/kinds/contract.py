@@ -1,28 +1,25 @@
-"""What a kind of assignment is, and the simplest evidence there is: one look at what was handed in."""
+"""Kinds of assignment: the record each kind module offers, how it is found, and what several kinds share."""
 
 from __future__ import annotations
 
 import pkgutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import Any, Final, TypeVar
 
+from grader.assignment import Assignment, Trial
 from grader.checks.contract import Check
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from kit.host.failure import Failure, FailureKind
-from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
 from kit.world.documents import Documents
 from kit.world.files import Enclosure
 from kit.world.problems import Problems, WorldError
 from kit.world.records import Place
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.assignment import Assignment, Criterion, Trial
-    from grader.grading import Evidence, EvidenceCollector
 
 Parsed = TypeVar("Parsed")
 
@@ -43,7 +40,7 @@ class AssignmentFiles:
 
 @dataclass(frozen=True, slots=True)
 class KindSettings:
-    """What a kind reads of the sheet for itself."""
+    """What a kind reads from the assignment's files for itself."""
 
     trials: tuple[Trial, ...] = ()
     """Kinds of episodes, where the kind has episodes."""
@@ -52,27 +49,17 @@ class KindSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class EvidenceOptions:
-    """How one submission is to be looked at."""
-
-    level: Level
-    secret: bool
-    may_fall: bool
-    """Whether a machine that cannot confine so far may confine less."""
-
-
-@dataclass(frozen=True, slots=True)
 class Kind:
     """One kind of assignment."""
 
     endings: tuple[str, ...]
-    """What the name of the file handed in may end with."""
+    """Endings that the submitted file's name may have."""
     checks: Mapping[str, Check]
     """By name."""
     read_settings: Callable[[AssignmentFiles], KindSettings]
-    """Notes mistakes in the sections; need not finish them."""
+    """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
-    """(assignment, the main file handed in, conditions) -> who gathers evidence."""
+    """(assignment, the main submitted file, options) -> the collector of its evidence."""
 
 
 def kind_names() -> tuple[str, ...]:
@@ -89,43 +76,6 @@ def find_kind(kind: str) -> Kind:
     """The kind's record; its module is imported when it is first asked for."""
     kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
     return kind_record
-
-
-@dataclass(eq=False)
-class EvidenceRecord:
-    """One look at what was handed in: what was found, or why nothing could be found."""
-
-    found: Any = None
-    """The kind's own record, for its checks."""
-    failure: Failure | None = None
-    label: str = "what you handed in"
-    secret: bool = False
-    outcome: str = "looked at"
-    steps: int = 0
-    printed: tuple[str, ...] = ()
-    explain_with: Callable[[str, Any], str] = lambda check, params: ""
-    """(a check's name, its params) -> what else there is to say."""
-    draw_with: Callable[[str], str] = lambda check: ""
-
-    def explain(self, check: str, params: Any) -> str:
-        return self.explain_with(check, params)
-
-    def picture(self, check: str = "") -> str:
-        return self.draw_with(check)
-
-
-class FixedEvidence:
-    """A gatherer of evidence that is gathered once, for every criterion the same."""
-
-    def __init__(self, evidence: Sequence[Evidence], level: Level) -> None:
-        self.level = level
-        self._evidence = tuple(evidence)
-
-    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return self._evidence
-
-    def all(self) -> Sequence[Evidence]:
-        return self._evidence
 
 
 def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:

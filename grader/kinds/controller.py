@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.checks.drives import CHECKS
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.geometry import Pose
 from kit.run.scenario import Place as Where
 from kit.run.scenario import find_place
@@ -19,9 +20,6 @@ from kit.sim.services import SERVICES
 from kit.world.catalogue import Case
 from kit.world.problems import WorldError, quoted, suggestion
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 LONGEST_EPISODE: Final = 3600.0
 """s"""

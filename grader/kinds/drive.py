@@ -16,7 +16,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.lib import format as npy
@@ -24,15 +24,15 @@ from numpy.lib import format as npy
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
 from grader.checks.drives import CHECKS
-from grader.evidence.drive_record import DriveRecord
-from grader.kinds.contract import (
-    AssignmentFiles,
+from grader.evidence.contract import (
+    Evidence,
+    EvidenceCollector,
     EvidenceOptions,
     EvidenceRecord,
     FixedEvidence,
-    Kind,
-    KindSettings,
 )
+from grader.evidence.drive_record import DriveRecord
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
@@ -45,9 +45,6 @@ from kit.run.recording import ACCEPT, Playback, Recorder, Recording, RecordingEr
 from kit.run.runner import Runner
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
-
-if TYPE_CHECKING:
-    from grader.grading import Evidence, EvidenceCollector
 
 STEP: Final = 0.01
 """s: as the kit's own faces tick."""

@@ -21,27 +21,18 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.environments import CHECKS, complaint
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
-from grader.kinds.contract import (
-    AssignmentFiles,
-    EvidenceOptions,
-    EvidenceRecord,
-    FixedEvidence,
-    Kind,
-    KindSettings,
-)
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
 from kit.world.problems import quoted
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 MOST_STEPS: Final = 400
 """Of an episode: one is driven to its very end."""

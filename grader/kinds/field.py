@@ -15,16 +15,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.checks.contract import Check, NoParams, check
 from grader.checks.drives import CHECKS as DRIVE_CHECKS
+from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.evidence.drive_record import DriveRecord
 from grader.evidence.episodes import shifted_start
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from kit.fields import adjacency
 from kit.fields.controller_setup import Course
@@ -45,9 +46,6 @@ from kit.run.runner import Runner
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from grader.grading import Evidence, EvidenceCollector
 
 STEP: Final = 0.01
 """s"""
@@ -218,7 +216,7 @@ class FieldDriveCollector:
                 ]
         return evidence
 
-    def all(self) -> Sequence[Evidence]:
+    def collected(self) -> Sequence[Evidence]:
         return list(self._evidence.values())
 
     def _drive(self, trial: Trial, seed: int, label: str, *, secret: bool) -> Evidence:

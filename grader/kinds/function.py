@@ -27,20 +27,18 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
 from kit.world.problems import quoted, suggestion
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 REFERENCE: Final = "reference.py"
 CASES_SUFFIX: Final = "_cases"
@@ -111,7 +109,7 @@ class FunctionParams:
 @check(none=0.5, full=1, unit="%", params=FunctionParams)
 def agrees(evidence: EvidenceRecord, params: FunctionParams) -> float:
     """It returns what it should in {actual} of the cases."""
-    comparison: FunctionComparison = evidence.found
+    comparison: FunctionComparison = evidence.content
     return 1.0 - len(comparison.differences) / comparison.cases
 
 
@@ -183,7 +181,7 @@ class FunctionCollector:
         ]
         return [self._record(name, hidden) for hidden in spec if secret or not hidden]
 
-    def all(self) -> Sequence[EvidenceRecord]:
+    def collected(self) -> Sequence[EvidenceRecord]:
         return list(self._records.values())
 
     def _function(self, name: str) -> FunctionSpec:

@@ -17,19 +17,17 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, package_copy, run_launch
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.world.problems import quoted
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 QUOTES: Final = "'\""
 MAX_RUN_S: Final = 60.0
@@ -269,7 +267,7 @@ class LaunchCollector:
             if (not chosen or run.name in chosen) and (self._secret or not run.secret)
         ]
 
-    def all(self) -> Sequence[LaunchRecord]:
+    def collected(self) -> Sequence[LaunchRecord]:
         return list(self._records.values())
 
     def _run(self, run: LaunchCase) -> LaunchRecord:

@@ -22,15 +22,8 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
-from grader.kinds.contract import (
-    AssignmentFiles,
-    EvidenceOptions,
-    EvidenceRecord,
-    Kind,
-    KindSettings,
-    collect_once,
-    read_submitted_yaml,
-)
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
 from kit.host.failure import Failure
 from kit.layers.assignment import Assignment as Plan
 from kit.layers.assignment import Breach, NamedLayer, breaches
@@ -68,26 +61,26 @@ class SubmittedPlan:
 @check(none=1, full=0, words=("all of them", "not all"))
 def complete(evidence: EvidenceRecord, params: NoParams) -> float:
     """Not everything that must happen happens in your plan:"""
-    return float(sum(breach.wanted for breach in evidence.found.breaches))
+    return float(sum(breach.wanted for breach in evidence.content.breaches))
 
 
 @check(none=1, full=0, words=("nothing else", "more than was asked"))
 def nothing_more(evidence: EvidenceRecord, params: NoParams) -> float:
     """In your plan something happens that must not:"""
-    return float(sum(not breach.wanted for breach in evidence.found.breaches))
+    return float(sum(not breach.wanted for breach in evidence.content.breaches))
 
 
 @check(none=17, full=16, unit="layers")
 def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """Your plan has {actual}; it can be done with {full}."""
-    return float(len(evidence.found.plan.layers))
+    return float(len(evidence.content.plan.layers))
 
 
 @check(none=0, full=1, unit="lines")
 def proof(evidence: EvidenceRecord, params: NoParams) -> float:
     """A proof is a list of things that must happen, no two of which fit one layer: then each needs a layer of its
     own. Yours proves {actual}; {full} are wanted."""
-    plan: SubmittedPlan = evidence.found
+    plan: SubmittedPlan = evidence.content
     return 0.0 if next(plan.combinable_pairs(), None) else float(len(plan.proof))
 
 

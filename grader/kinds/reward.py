@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, Kind, KindSettings
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.world.problems import quoted
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from grader.grading import EvidenceCollector
 
 LARGEST_PLAN: Final = 40
 """Rows and columns of a grid."""

@@ -22,6 +22,7 @@ from typing import Final
 
 from grader.assignment import Assignment
 from grader.checks.contract import Check, check
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training import (
     CaseOrder,
     StopRule,
@@ -30,15 +31,7 @@ from grader.evidence.training import (
     TrainingSettings,
     run_trainings,
 )
-from grader.kinds.contract import (
-    AssignmentFiles,
-    EvidenceOptions,
-    EvidenceRecord,
-    Kind,
-    KindSettings,
-    collect_once,
-    read_submitted_yaml,
-)
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.learning.environment.task_spec import TaskChoice
@@ -70,7 +63,7 @@ class ReliableParams:
 def succeeds(evidence: EvidenceRecord, params: object) -> float:
     """After these trainings the robot surely reaches its target in {actual} of the episodes; {full} earns all points.
     (“Surely”: the lower end of Wilson's interval, all exams together.)"""
-    results: TrainingResults = evidence.found
+    results: TrainingResults = evidence.content
     return results.success_lower_bound()
 
 
@@ -78,14 +71,14 @@ def succeeds(evidence: EvidenceRecord, params: object) -> float:
 def every_case(evidence: EvidenceRecord, params: object) -> float:
     """In the case that goes worst the robot surely reaches its target in {actual} of the episodes; {full} earns all
     points."""
-    results: TrainingResults = evidence.found
+    results: TrainingResults = evidence.content
     return results.success_lower_bound(results.worst_case)
 
 
 @check(none=0.3, full=1, unit="%", params=ReliableParams)
 def reliable(evidence: EvidenceRecord, params: ReliableParams) -> float:
     """Only {actual} of the trainings led to a policy that is good enough: the others had less luck with their seed."""
-    results: TrainingResults = evidence.found
+    results: TrainingResults = evidence.content
     return sum(training.accuracy >= params.goal for training in results.trainings) / len(results.trainings)
 
 
@@ -93,14 +86,14 @@ def reliable(evidence: EvidenceRecord, params: ReliableParams) -> float:
 def honest(evidence: EvidenceRecord, params: object) -> float:
     """What a training's own last test says of its policy must be true: it promised {actual} more, as a share of
     episodes, than the exam found; {full} is allowed."""
-    results: TrainingResults = evidence.found
+    results: TrainingResults = evidence.content
     return max(max(0.0, training.claimed - training.accuracy) for training in results.trainings)
 
 
 @check(none=1.0, full=0.7, unit="%")
 def steps_used(evidence: EvidenceRecord, params: object) -> float:
     """The trainings used {actual} of the steps they might; {full} or less earns all points. When is it good enough?"""
-    results: TrainingResults = evidence.found
+    results: TrainingResults = evidence.content
     return sum(training.steps for training in results.trainings) / (
         len(results.trainings) * results.budget.steps
     )

@@ -21,9 +21,10 @@ from typing import TYPE_CHECKING, Final, Self
 from grader.assignment import Assignment, Criterion, SeedSet, Shift, Trial
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUNS, explain
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
-from grader.kinds.contract import AssignmentFiles, EvidenceOptions, EvidenceRecord, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.controllers import find
 from kit.host.failure import GuestError
 from kit.host.sandbox.confinement import Level
@@ -35,7 +36,7 @@ from kit.world.yaml_section import Section
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    from grader.grading import EvidenceCollector
+    from grader.evidence.contract import EvidenceCollector
 
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
@@ -133,7 +134,7 @@ class WorldCollector:
 
     def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
         first = self._read_contents()
-        contents: WorldContents | None = first.found
+        contents: WorldContents | None = first.content
         if criterion.check not in RUNS or contents is None or contents.world.problems:
             return [first]
         return [
@@ -142,7 +143,7 @@ class WorldCollector:
             for seed, secret, number in self._seeds(self._assignment.trial(name), criterion.seeds)
         ]
 
-    def all(self) -> Sequence[EvidenceRecord]:
+    def collected(self) -> Sequence[EvidenceRecord]:
         return [*([] if self._read is None else [self._read]), *self._records.values()]
 
     def _seeds(self, trial: Trial, which: SeedSet) -> Iterator[tuple[int, bool, int]]:
@@ -167,7 +168,7 @@ class WorldCollector:
             spec = self._assignment.task.specs[trial.name]
             spec = replace(spec, seed=seed)
             try:
-                contents = self._read_contents().found
+                contents = self._read_contents().content
                 facts = self._running_process().run(spec, self._assignment.limits.total_s or 120.0)
                 record = _record(WorldRun(contents.world, facts, spec.target is not None), label)
                 record.steps = round(facts.seconds / 0.01)

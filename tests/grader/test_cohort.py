@@ -35,8 +35,8 @@ from grader.cohort.gradebook import GradebookRow, as_csv, as_json, changes, grad
 from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_policy, read_submission_times
 from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
 from grader.cohort.work import WorkerPool, grade_job
+from grader.grading import GradingOptions
 from grader.reading import read
-from grader.session import GradingOptions
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe

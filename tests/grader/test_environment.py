@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from grader.evidence.environment import sector_minima
+from grader.grading import GradingOptions, grade
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.observations import NINE

@@ -15,11 +15,11 @@ from click.testing import CliRunner
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.checks import contract, drives
+from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds import controller
 from grader.kinds.contract import find_kind, kind_names
 from grader.reading import read
 from grader.self_test import try_works, unfair_fail_odds
-from grader.session import GradingOptions, LevelTooLow, grade, open_grading
 from grader.submission import Submission
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level

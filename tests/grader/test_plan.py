@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.grading import GradingOptions, grade
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult

@@ -9,8 +9,8 @@ import pytest
 from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.cohort.work import grade_job
+from grader.grading import GradingOptions, grade
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from grader.teacher_tests import read_declared
 from kit.host.sandbox.confinement import Level

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training import CaseOrder, StopRule, TrainingResults
-from grader.kinds.contract import EvidenceOptions, EvidenceRecord
+from grader.grading import GradingOptions, grade
 from grader.kinds.training import collect_evidence
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus
@@ -47,7 +47,7 @@ def trained(folder: Path, text: str, conditions: EvidenceOptions = DESK) -> Evid
 
 
 def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
-    one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").found for _ in range(2))
+    one, two = (trained(folder, "batch: 5000\nsteps: 10000\n").content for _ in range(2))
     assert one == two
     assert [training.steps for training in one.trainings] == [10_000, 10_000]
     assert all(len(training.tests) == 2 for training in one.trainings)
@@ -55,22 +55,22 @@ def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
 
 def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     text = "batch: 5000\nsteps: 5000\n"
-    public = trained(folder, text).found
+    public = trained(folder, text).content
     (folder / "secret.yaml").write_text("seeds: [7]\n")
-    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True, may_fall=False)).found
+    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True, may_fall=False)).content
     assert len(secret.trainings) == 1
     assert secret.trainings[0].tests != public.trainings[0].tests
 
 
 def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
-    seen: TrainingResults = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").found
+    seen: TrainingResults = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").content
     assert seen.worst_case == "turn_b_to_a"
     assert seen.pooled("turn_a_to_b").share - seen.pooled("turn_b_to_a").share > 0.2
     assert seen.success_lower_bound() < sum(seen.pooled(case).share for case in seen.budget.cases) / 2
 
 
 def test_a_first_good_test_stops(folder: Path) -> None:
-    seen: TrainingResults = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").found
+    seen: TrainingResults = trained(folder, "batch: 1000\ntest_episodes: 2\nstop: first\ngoal: 0.5\n").content
     assert seen.settings.stop is StopRule.FIRST
     assert any(training.steps < 20_000 for training in seen.trainings)
     assert all(training.claimed >= 0.5 for training in seen.trainings if training.steps < 20_000)
@@ -78,12 +78,12 @@ def test_a_first_good_test_stops(folder: Path) -> None:
 
 def test_the_best_policy_is_the_one_of_the_best_test(folder: Path) -> None:
     text = "batch: 2000\ntest_episodes: 100\nlearning_rate: [0.9, 0.9]\nkeep: {}\n"
-    best, newest = (trained(folder, text.format(keep)).found for keep in ("best", "newest"))
+    best, newest = (trained(folder, text.format(keep)).content for keep in ("best", "newest"))
     assert sum(each.accuracy for each in best.trainings) > sum(each.accuracy for each in newest.trainings)
 
 
 def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> None:
-    seen: TrainingResults = trained(folder, "batch: 5000\norder: apart\n").found
+    seen: TrainingResults = trained(folder, "batch: 5000\norder: apart\n").content
     assert seen.settings.order is CaseOrder.APART
     first, last = seen.trainings[0].tests[0], seen.trainings[0].tests[-1]
     assert last.counts["turn_b_to_a"].share > first.counts["turn_b_to_a"].share

@@ -15,14 +15,14 @@ from PIL import Image
 from grader.checks.contract import NoParams
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, FAULTS, RUNS, explain
+from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.path_search import search_path
 from grader.evidence.world.process import WorldProcess
 from grader.evidence.world.world_reading import read_world_facts
 from grader.evidence.world.world_run import run_world
-from grader.kinds.contract import EvidenceRecord
+from grader.grading import GradingOptions, grade
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import read_submission
 from kit.host.failure import FailureKind, GuestError
 from kit.host.sandbox.confinement import Level

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from grader.assignment import Assignment
+from grader.grading import GradingOptions, grade
 from grader.reading import read
-from grader.session import GradingOptions, grade
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import Input, Recording, load, save

@@ -1,0 +1,117 @@
+"""The contract between evidence, checks and grading: what a piece of evidence offers, and who collects it.
+
+Checks measure evidence and never see the student's program. Whatever collects it runs the program at a confinement
+level, and records what it did.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from grader.assignment import Criterion
+from kit.host.failure import Failure
+from kit.host.sandbox.confinement import Level
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceOptions:
+    """How to collect evidence about one submission."""
+
+    level: Level
+    secret: bool
+    """Whether the secret seeds are used too."""
+    may_fall: bool
+    """Whether a machine that cannot confine so far may confine less."""
+
+
+class Evidence(Protocol):
+    """Something a criterion is measured on: one drive, one reward function, one set of trainings."""
+
+    @property
+    def label(self) -> str:
+        """Names it without giving a secret away: ``maze, secret seed 2``."""
+
+    @property
+    def secret(self) -> bool:
+        """True if it comes from a secret seed."""
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the program failed; None if it did not."""
+
+    @property
+    def outcome(self) -> str:
+        """What happened, in a few words."""
+
+    @property
+    def steps(self) -> int:
+        """How many steps were simulated."""
+
+    @property
+    def printed(self) -> tuple[str, ...]:
+        """The lines that the program printed."""
+
+    def explain(self, check: str, params: Any) -> str:
+        """A sentence about what a check found in it, for the student; may be empty."""
+
+    def picture(self, check: str = "") -> str:
+        """A picture of it in plain characters, for a check; may be empty."""
+
+
+class EvidenceCollector(Protocol):
+    """Runs a submission and records what it does."""
+
+    level: Level
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        """The evidence for a criterion; runs what has not run yet."""
+
+    def collected(self) -> Sequence[Evidence]:
+        """All evidence collected so far."""
+
+
+class EvidenceSource(Protocol):
+    """Evidence by a criterion's id: what teacher tests are given."""
+
+    def evidence(self, criterion_id: str) -> Sequence[Evidence]:
+        """The evidence that this criterion is judged on. Raises StopIteration for an unknown id."""
+
+
+@dataclass(eq=False)
+class EvidenceRecord:
+    """Evidence whose content is a record of its kind's own, or a failure."""
+
+    content: Any = None
+    """The kind's own record, for its checks."""
+    failure: Failure | None = None
+    label: str = "what you handed in"
+    secret: bool = False
+    outcome: str = "examined"
+    steps: int = 0
+    printed: tuple[str, ...] = ()
+    explain_with: Callable[[str, Any], str] = lambda check, params: ""
+    """(name of a check, its params) -> the sentence that ``explain`` returns."""
+    draw_with: Callable[[str], str] = lambda check: ""
+    """(name of a check) -> the picture."""
+
+    def explain(self, check: str, params: Any) -> str:
+        return self.explain_with(check, params)
+
+    def picture(self, check: str = "") -> str:
+        return self.draw_with(check)
+
+
+class FixedEvidence:
+    """A collector of evidence that is complete from the start and the same for every criterion."""
+
+    def __init__(self, evidence: Sequence[Evidence], level: Level) -> None:
+        self.level = level
+        self._evidence = tuple(evidence)
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._evidence
+
+    def collected(self) -> Sequence[Evidence]:
+        return self._evidence
