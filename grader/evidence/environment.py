@@ -25,8 +25,9 @@ from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json, ProtocolError, decode, printable
 from kit.msg.message import Message
 from kit.msg.std_msgs import String
+from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import create_graph_node
 from kit.run.episode import controller_arguments, run_until, when, when_failed
 from kit.run.metrics import MetricsRecorder
 from kit.run.scenario import Place
@@ -171,7 +172,7 @@ class _Examination:
         self._ranges: tuple[float, ...] = ()
         self._metrics = MetricsRecorder.for_scenario(task.place)
         runner.observers.append(self._metrics)
-        node = runner.graph.create_node("grader")
+        node = create_graph_node(runner.graph, "grader")
         self._request_publisher = node.create_publisher(String, REQUEST_TOPIC, 10)
         node.create_subscription(String, ANSWER_TOPIC, self._on_answer, 10)
         runner.graph.add_message_listener(self._on_message)
@@ -283,7 +284,7 @@ class _Examination:
     def _on_answer(self, message: String) -> None:
         self._answers.append(message.data)
 
-    def _on_message(self, _: int, node: Node, topic: str, message: Message) -> None:
+    def _on_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
         if topic == self._task.scan and node.handle.full_name == "/flatland_server":
             self._ranges = tuple(getattr(message, "ranges", ()))
 

@@ -19,8 +19,8 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
 from kit.msg.message import Message, type_name
+from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
 from kit.run.episode import controller_arguments, run_until, when_failed, when_reached
 from kit.run.headless import Fingerprint
 from kit.run.metrics import MetricsRecorder
@@ -106,7 +106,7 @@ class TrafficRecorder:
         self._nodes: dict[tuple[str, str], set[str]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
-    def _on_message(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+    def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         if node.handle.full_name == WORLD_NODE:
             return
         key = name, type_name(type(message))

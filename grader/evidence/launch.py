@@ -36,6 +36,7 @@ from kit.msg.rcl_interfaces import GetParameters, ParameterType
 from kit.render.world_text import plain_rows
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.node.node import create_graph_node
 from kit.ros.packages import PackageError
 from kit.run.episode import run_until, when
 from kit.run.recording import Recorder
@@ -247,7 +248,7 @@ def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, 
 
 def _parameters(graph: Graph, ticker: Runner | Worldless, queries: ParameterQueries) -> Mapping[str, str]:
     """Asks the nodes themselves."""
-    asking_node = graph.create_node("grader_queries")
+    asking_node = create_graph_node(graph, "grader_queries")
     requests = {}
     for node, names in queries.parameters.items():
         client = asking_node.create_client(GetParameters, f"{node}/get_parameters")

@@ -14,6 +14,7 @@ from kit.msg.interfaces import find_service
 from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
 from kit.ros.node.client import Client
+from kit.ros.node.node import create_graph_node
 from kit.world.yaml_section import Section
 
 NO_ANSWER: Final = "no answer"
@@ -60,7 +61,7 @@ class ServiceCaller:
 
     def __init__(self, graph: Graph, calls: tuple[ServiceCall, ...]) -> None:
         self._calls = sorted(calls, key=lambda call: call.at_s)
-        self._node = graph.create_node("grader_calls") if calls else None
+        self._node = create_graph_node(graph, "grader_calls") if calls else None
         self._clients: dict[str, Client[Any, Any]] = {}
         self._futures: dict[str, Future[Any] | None] = {}
 

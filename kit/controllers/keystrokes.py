@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from kit.msg.std_msgs import Float32, String
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 
 TOPIC = "/teleopkeys"
 STRENGTH_TOPIC = "/teleopkeys/strength"
@@ -20,7 +21,7 @@ class KeystrokePublisher:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        node = graph.create_node("TeleOpKeys")
+        node = create_graph_node(graph, "TeleOpKeys")
         self._keys = node.create_publisher(String, TOPIC, 10)
         self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC, 10)
         self._strength = 1.0

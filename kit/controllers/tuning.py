@@ -6,13 +6,14 @@ from collections.abc import Mapping
 
 from kit.msg.rcl_interfaces import Parameter, ParameterType, ParameterValue, SetParameters
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 
 
 class Tuner:
     """Of one node, by its service ``set_parameters``. Never waits; a node without the service is left alone."""
 
     def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:
-        self._node = graph.create_node(f"{node}_tuner", namespace)
+        self._node = create_graph_node(graph, f"{node}_tuner", namespace)
         self._client = self._node.create_client(SetParameters, f"{node}/set_parameters")
         self._told: dict[str, float] | None = None
 

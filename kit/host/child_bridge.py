@@ -15,8 +15,8 @@ from kit.host.proxy_nodes import Census, Mirror
 from kit.host.waiter import Exchange, PipePump
 from kit.host.wire import Json
 from kit.msg.message import Message
+from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph, Waiter
-from kit.ros.node.node import Node
 from kit.ros.node.service import Call
 
 
@@ -70,7 +70,7 @@ class Embassy:
         self._events += news
         self.has_had_nodes = self.has_had_nodes or bool(news)
 
-    def _overhear(self, _: int, node: Node, topic: str, message: Message) -> None:
+    def _overhear(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
         """Everything that the program's own nodes publish, whether or not anybody listens."""
         if "/srv/" not in type(message).__ros_type__:
             self._tell_news()

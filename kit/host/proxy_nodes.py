@@ -15,7 +15,7 @@ among a side's own nodes and tells the other side. Both directions use both, and
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
@@ -24,9 +24,10 @@ from kit.msg.message import Message, type_name
 from kit.msg.message import Service as Definition
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.execution.context import context_of
 from kit.ros.graph.naming import validate_full_topic_name, validate_namespace, validate_node_name
 from kit.ros.node.client import Client
-from kit.ros.node.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
 from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import QoSProfile
@@ -35,8 +36,9 @@ from kit.ros.node.subscription import Subscription
 from kit.ros.parameters.parameter import Parameter
 
 if TYPE_CHECKING:
+    from kit.ros.graph.directory import NodeEntry
     from kit.ros.graph.graph import Graph
-    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.node_handle import NodeHandle
 
 MOST: Final = 2000
 """Nodes and endpoints that one student's program may have."""
@@ -64,7 +66,7 @@ class RemoteNode(Node):
     def __init__(self, graph: Graph, name: str, namespace: str) -> None:
         super().__init__(
             name,
-            context=graph.context,
+            context=context_of(graph),
             namespace=namespace,
             use_global_arguments=False,
             enable_rosout=False,
@@ -167,11 +169,11 @@ class Mirror:
         self._graph = graph
         self._listener = listener
         self._nodes: dict[int, RemoteNode] = {}
-        self._handles: set[NodeHandle] = set()
+        self._handles: set[NodeEntry] = set()
         self._ends: dict[int, End] = {}
         self._types: dict[str, Interface] = {}
 
-    def __contains__(self, handle: NodeHandle) -> bool:
+    def __contains__(self, handle: NodeEntry) -> bool:
         return handle in self._handles
 
     def end(self, identity: Json, kind: type[E]) -> E:
@@ -288,8 +290,8 @@ class Census:
         self._graph = graph
         self._mirror = mirror
         self._version = -1
-        self._nodes: dict[NodeHandle, int] = {}
-        self._publishers: dict[tuple[NodeHandle, str], int] = {}
+        self._nodes: dict[NodeEntry, int] = {}
+        self._publishers: dict[tuple[NodeEntry, str], int] = {}
         self.ends: dict[int, End] = {}
         """This side's own endpoints by number."""
 
@@ -333,12 +335,12 @@ class Census:
         }
         return events
 
-    def publisher(self, handle: NodeHandle, topic: str) -> int:
+    def publisher(self, handle: NodeEntry, topic: str) -> int:
         """The number of a node's publisher of a topic."""
         return self._publishers[handle, topic]
 
 
-def _ends(handle: NodeHandle) -> list[tuple[str, list[Any]]]:
+def _ends(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:
     return [
         ("publisher", handle.publishers),
         ("subscription", handle.subscriptions),

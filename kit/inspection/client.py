@@ -19,6 +19,7 @@ from kit.host.wire import Json, ProtocolError
 from kit.inspection.framed_socket import FramedSocket
 from kit.inspection.world_sockets import RunningWorld, connect
 from kit.msg.message import Message, Service
+from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
@@ -83,7 +84,7 @@ class InspectionClient:
         """Makes a node without the usual publishers and services (``/rosout``, parameter services)."""
         node = Node(
             name,
-            context=self.graph.context,
+            context=context_of(self.graph),
             use_global_arguments=False,
             enable_rosout=False,
             start_parameter_services=False,
@@ -113,7 +114,7 @@ class InspectionClient:
         self, node: Node, until: Callable[[], object] = lambda: False, future: Future[Any] | None = None
     ) -> None:
         """Runs the node's callbacks until ``until()``, which is checked after each of them."""
-        with SingleThreadedExecutor(context=self.graph.context) as executor:
+        with SingleThreadedExecutor(context=context_of(self.graph)) as executor:
             executor.add_node(node)
             while not until():
                 if future is None:

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from kit.msg.fields import Many, Nested
 from kit.msg.interfaces import Interface, definition, find_message
 from kit.msg.message import Message, type_name
+from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
-from kit.ros.graph.node_handle import NodeHandle
-from kit.ros.node.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
 from kit.ros.node.time import Duration
 
@@ -38,7 +38,7 @@ def services(graph: Graph, *, hidden: bool) -> NamesAndTypes:
     return [entry for entry in found if hidden or not topic_or_service_is_hidden(entry[0])]
 
 
-def node_info(handle: NodeHandle, *, hidden: bool) -> Iterator[str]:
+def node_info(handle: NodeEntry, *, hidden: bool) -> Iterator[str]:
     """The lines of ``node info``: an empty section holds an empty line, as in ROS 2."""
     yield handle.full_name
     sections: tuple[tuple[str, Iterable[tuple[str, str]]], ...] = (

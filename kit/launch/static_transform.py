@@ -11,7 +11,7 @@ from kit.msg.tf2_msgs import TFMessage
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.execution.arguments import parse_ros_arguments, split_ros_arguments
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import Time
 from kit.ros.rotations import quaternion_from_euler
@@ -34,7 +34,7 @@ def publish_transform(graph: Graph, arguments: Sequence[str]) -> Node:
         roll, pitch, yaw = (numbers.get(name, 0.0) for name in ("roll", "pitch", "yaw"))
         rotation = tuple(float(part) for part in quaternion_from_euler(roll, pitch, yaw))
     name = ros.node_name(NAME)
-    node = graph.create_node(name, ros.namespace(name, "/"))
+    node = create_graph_node(graph, name, ros.namespace(name, "/"))
     lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     x, y, z, w = rotation
     transform = TransformStamped(

@@ -30,10 +30,9 @@ from kit.msg.message import Message
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
-from kit.ros.node.event_handler import SubscriptionEventCallbacks
-from kit.ros.node.node import Node
+from kit.ros.node.endpoint import SubscriptionEventCallbacks
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from kit.ros.node.qos_matching import fitting_qos
 from kit.ros.node.subscription import Subscription
 from kit.ros.node.time import Duration
 from kit.ros.serialization import Distro, Serializer
@@ -122,7 +121,7 @@ class BagRecorder:
         except (OSError, WriterError) as problem:
             raise BagError(f"{folder}: no bag can be written there ({_reason(problem)}).") from None
         if self._node is None:
-            self._node = graph.create_node(RECORDER)
+            self._node = create_graph_node(graph, RECORDER)
         self.exchange()
 
     def __enter__(self) -> Self:
@@ -185,7 +184,13 @@ class BagRecorder:
             rihs01=self._serializer.type_hash(cls),
             offered_qos_profiles=[_offered(publisher.qos_profile) for publisher in publishers],
         )
-        _Tap(self._node, cls, topic, fitting_qos(self._graph, topic), lambda msg: self._keep(connection, msg))
+        _Tap(
+            self._node,
+            cls,
+            topic,
+            self._graph.directory.matching_qos(topic),
+            lambda msg: self._keep(connection, msg),
+        )
 
     def _keep(self, connection: Connection, message: Message) -> None:
         if self.failure is None:

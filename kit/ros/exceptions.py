@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kit.ros.node.node import Node
     from kit.ros.parameters.parameter import Parameter
 
 
@@ -60,14 +59,13 @@ class WouldDeadlock(RuntimeError):
 
 
 class NodeFailure(RuntimeError):
-    """A callback of ``node`` raised ``cause`` (also ``__cause__``) while nodes ran in lock-step."""
+    """A callback of the node ``node_name`` raised ``cause`` (also ``__cause__``) while nodes ran in lock-step."""
 
-    def __init__(self, node: Node | None, cause: BaseException) -> None:
-        self.node = node
+    def __init__(self, node_name: str | None, cause: BaseException) -> None:
+        self.node_name = node_name
         self.cause = cause
         self.__cause__ = cause
-        name = node.get_fully_qualified_name() if node is not None else "a task"
-        super().__init__(f"{name} failed: {type(cause).__name__}: {cause}")
+        super().__init__(f"{node_name or 'a task'} failed: {type(cause).__name__}: {cause}")
 
 
 class NameValidationException(Exception):

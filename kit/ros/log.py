@@ -6,12 +6,12 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
-    from kit.ros.node.clock import Clock
+    from kit.ros.node.time import Time
 
 
 class LoggingSeverity(IntEnum):
@@ -82,6 +82,12 @@ class _Site:
 
     count: int = 0
     last_ns: int | None = None
+
+
+class TimeSource(Protocol):
+    """A clock that throttles log lines."""
+
+    def now(self) -> Time: ...
 
 
 class RcutilsLogger:
@@ -160,7 +166,7 @@ class RcutilsLogger:
         once: bool = False,
         skip_first: bool = False,
         throttle_duration_sec: float | None = None,
-        throttle_time_source_type: Clock | None = None,
+        throttle_time_source_type: TimeSource | None = None,
     ) -> bool:
         site = self._sites.setdefault(place, _Site())
         site.count += 1

@@ -193,7 +193,7 @@ class Buffer:
             return
         graph = self._node.handle.graph
         work = graph.thread_state.work
-        if work is not None and work[0].exclusive:
+        if work is not None and work[0].is_exclusive:
             return
         until = graph.now_ns + timeout.nanoseconds
         graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")

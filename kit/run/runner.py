@@ -12,6 +12,7 @@ from typing import Any
 
 from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
 from kit.run.world_services import offer_world_services
 from kit.sim.plugin import Endpoint, Outgoing
@@ -36,7 +37,7 @@ class Runner:
         self._paused_steps: list[
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
-        self._node = graph.create_node("flatland_server")
+        self._node = create_graph_node(graph, "flatland_server")
         self._endpoints: dict[Endpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
         offer_world_services(self._node, self)

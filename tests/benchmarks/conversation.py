@@ -17,8 +17,10 @@ from statistics import median
 
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
+from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.run.runner import Runner
 from kit.run.scenario import place_on_map
 from kit.sim.simulation import Simulation
@@ -41,7 +43,7 @@ def per_second(work: Callable[[], object], count: int) -> float:
 def lock_step() -> float:
     """Scans published and received by all readers, per second."""
     graph = Graph()
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     received: list[int] = []
     for _ in range(READERS):
         node.create_subscription(LaserScan, "scan", lambda scan: received.append(1), 10)
@@ -61,13 +63,13 @@ def lock_step() -> float:
 def free_running() -> float:
     """The same to another thread, which spins."""
     graph = Graph(None)
-    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
     received: list[int] = []
     for _ in range(READERS):
         listener.create_subscription(LaserScan, "scan", lambda scan: received.append(1), SCANS)
     publisher = talker.create_publisher(LaserScan, "scan", 10)
     ranges = array("f", [1.5]) * RAYS
-    executor = SingleThreadedExecutor(context=graph.context)
+    executor = SingleThreadedExecutor(context=context_of(graph))
     executor.add_node(listener)
     thread = threading.Thread(target=executor.spin)
     thread.start()
@@ -113,7 +115,7 @@ def graph_ticks() -> Callable[[], object]:
     graph = Graph()
     world = place_on_map(find_map("maze")).world
     runner = Runner(Simulation(world, wanted=lambda topic: graph.subscription_count(topic) > 0), graph)
-    node = graph.create_node("driver")
+    node = create_graph_node(graph, "driver")
     drive = node.create_publisher(Twist, "/cmd_vel", 10)
     node.create_subscription(LaserScan, "/static_laser", lambda scan: drive.publish(command(scan)), 10)
 
@@ -161,7 +163,7 @@ def main() -> None:
     print(
         f"import kit.ros [ms]                               {start_ms('import kit.ros.execution.client_library'):10.1f}"
     )
-    node = "from kit.ros.graph.graph import Graph; Graph().create_node('n')"
+    node = "from kit.ros.node.node import create_graph_node as c; from kit.ros.graph.graph import Graph; c(Graph(), 'n')"
     print(f"import and make a node [ms]                       {start_ms(node):10.1f}")
 
 

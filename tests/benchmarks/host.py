@@ -19,6 +19,9 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from kit.ros.execution.context import context_of
+from kit.ros.node.node import create_graph_node
+
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.controllers import find
@@ -42,7 +45,7 @@ def steps_per_second(controller: Path, *, level: Level | None) -> float:
     """With a guest on this level, or, for None, with the same node in this process."""
     graph = Graph(log_sink=lambda record: None)
     commands: list[Twist] = []
-    world = graph.create_node("world")
+    world = create_graph_node(graph, "world")
     world.create_subscription(Twist, "cmd_vel", commands.append, 10)
     scans = world.create_publisher(LaserScan, "static_laser", 10)
     scan = LaserScan(ranges=array("f", [math.nan if i % 9 == 0 else 0.5 + i / 91 for i in range(91)]))
@@ -74,7 +77,7 @@ def in_this_process(graph: Graph, controller: Path) -> Any:
     assert spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
-    with default_context(graph.context):
+    with default_context(context_of(graph)):
         return module.Avoid()
 
 

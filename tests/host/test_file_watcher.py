@@ -12,6 +12,7 @@ from kit.host.file_watcher import EMPTY_S, SETTLED_S, FileWatch
 from kit.host.node_process import Guest
 from kit.msg.std_msgs import String
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from tests.host.conftest import QUICK, Student
 
 
@@ -107,7 +108,7 @@ class Greeter(Node):
 def test_the_old_version_drives_until_the_new_one_has_started(student: Student) -> None:
     graph = Graph()
     heard: list[String] = []
-    graph.create_node("desk").create_subscription(String, "/greetings", heard.append, 10)
+    create_graph_node(graph, "desk").create_subscription(String, "/greetings", heard.append, 10)
 
     def tick(guest: Guest) -> list[str]:
         heard.clear()

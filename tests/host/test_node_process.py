@@ -20,7 +20,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import SetBool, Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from tests.host.conftest import QUICK, Student
 
@@ -59,7 +59,7 @@ class Bench:
     def __init__(self) -> None:
         self.graph = Graph(log_sink=lambda record: self.log.append(record.text))
         self.log: list[str] = []
-        self.node: Node = self.graph.create_node("bench")
+        self.node: Node = create_graph_node(self.graph, "bench")
         self.heard: list[Any] = []
         self.guests: list[Guest] = []
         self._publishers: dict[str, Any] = {}
@@ -185,7 +185,7 @@ def test_a_guest_sees_the_graph(bench: Bench, student: Student) -> None:
     )
     bench.start(file)
     bench.say("/questions", String())
-    late = bench.graph.create_node("late")
+    late = create_graph_node(bench.graph, "late")
     bench.say("/questions", String())
     late.destroy_node()
     bench.say("/questions", String())

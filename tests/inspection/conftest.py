@@ -18,6 +18,7 @@ from kit.msg.rcl_interfaces import IntegerRange, ParameterDescriptor
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import SetBool
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import Time
 from kit.run.scenario import place_on_map
 from kit.run.session import Session
@@ -31,7 +32,7 @@ class Talker:
     """A node with a bit of everything: says something ten times a second, answers, has parameters."""
 
     def __init__(self, graph: Graph) -> None:
-        self.node = node = graph.create_node("talker", "/demo")
+        self.node = node = create_graph_node(graph, "talker", "/demo")
         self.heard: list[str] = []
         node.declare_parameter("words", "hello")
         node.declare_parameter("volume.high", 0.5)

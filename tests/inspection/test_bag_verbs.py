@@ -10,6 +10,7 @@ import pytest
 from kit.msg.std_msgs import String
 from kit.ros.bags import BagRecorder, Storage
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import SPEED, Kit, Stage
 
 INFO = """
@@ -34,7 +35,7 @@ def bag(tmp_path: Path) -> Path:
 def write(folder: Path, storage: Storage = "mcap") -> Path:
     """Five words, a tenth of a second apart, from 1.5 s on."""
     graph = Graph(1_500_000_000)
-    node = graph.create_node("writer")
+    node = create_graph_node(graph, "writer")
     publisher = node.create_publisher(String, "words", 10)
     node.create_publisher(String, "more", 10)
     with BagRecorder(graph, folder, topics=["/words", "/more"], storage=storage):
@@ -55,7 +56,7 @@ def test_a_bag_is_said_again_at_its_own_pace(
     storage: Storage, kit_ros: Kit, stage: Stage, tmp_path: Path
 ) -> None:
     times: list[int] = []
-    node = stage.graph.create_node("clock_watcher")
+    node = create_graph_node(stage.graph, "clock_watcher")
     node.create_subscription(String, "/demo/orders", lambda message: times.append(stage.graph.now_ns), 10)
     folder = write(tmp_path / "again", storage)
     stage.live.set_factor(1.0)  # a busy machine is late by wall time: the slower the world, the less that is

@@ -23,6 +23,7 @@ from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
+from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import until
 
 TICK_NS = 10_000_000
@@ -34,7 +35,7 @@ class Ticking:
     def __init__(self, folder: Path, name: str = "world") -> None:
         self.log: list[LogRecord] = []
         self.graph = Graph(log_sink=self.log.append)
-        self.node = self.graph.create_node("inside")
+        self.node = create_graph_node(self.graph, "inside")
         self.server = InspectionServer(self.graph, sockets_folder(folder), name)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)

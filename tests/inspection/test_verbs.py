@@ -9,6 +9,7 @@ from textwrap import dedent
 import pytest
 
 from kit.cli.ros import VERBS
+from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import Kit, Stage, until
 
 NODE_INFO = """\
@@ -217,7 +218,7 @@ def test_stamps_are_filled_in_when_they_are_said(kit_ros: Kit, stage: Stage) -> 
 
 
 def test_parameters_are_set_kept_and_loaded(kit_ros: Kit, tmp_path: Path, stage: Stage) -> None:
-    node = stage.graph.create_node("settings")
+    node = create_graph_node(stage.graph, "settings")
     node.declare_parameter("a", 1.5)
     node.declare_parameter("b.c", [1, 2])
     dumped, _, _ = kit_ros("param", "dump", "/settings")

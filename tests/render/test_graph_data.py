@@ -9,13 +9,14 @@ from kit.msg.std_srvs import Trigger
 from kit.render.graph_data import conversation
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 
 
 @pytest.fixture
 def state() -> GraphState:
     graph = Graph(log_sink=lambda record: None)
-    talker, listener = graph.create_node("talker"), graph.create_node("listener")
+    talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
     talker.create_publisher(String, "words", qos_profile_sensor_data)
     listener.create_subscription(String, "words", print, 10)
     listener.create_service(Trigger, "used", lambda request, response: response)
@@ -48,5 +49,5 @@ def test_narrowing_keeps_what_is_joined_to_the_name(state: GraphState) -> None:
 
 def test_a_node_without_anything_to_say_is_there_all_the_same() -> None:
     graph = Graph(log_sink=lambda record: None)
-    graph.create_node("silent")
+    create_graph_node(graph, "silent")
     assert conversation(snapshot(graph)).nodes == ("/silent",)

@@ -17,6 +17,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 TICK_NS = 10_000_000
@@ -27,7 +28,7 @@ def record(
 ) -> Graph:
     """A second of scans, commands, collisions, and a topic that begins late."""
     graph = Graph()
-    node = graph.create_node("robot")
+    node = create_graph_node(graph, "robot")
     scans = node.create_publisher(
         LaserScan, "scan", QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
@@ -137,7 +138,7 @@ def test_a_full_disk_ends_the_bag_and_not_the_publisher(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     graph = Graph()
-    publisher = graph.create_node("robot").create_publisher(String, "words", 10)
+    publisher = create_graph_node(graph, "robot").create_publisher(String, "words", 10)
     recorder = BagRecorder(graph, tmp_path / "bag")
     publisher.publish(String(data="one"))
 

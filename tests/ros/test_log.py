@@ -13,16 +13,16 @@ from kit.ros.execution.client_library import (
     get_logger_level,
     set_logger_level,
 )
-from kit.ros.execution.context import default_context
+from kit.ros.execution.context import context_of, default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord, get_logging_severity_from_string
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile
 
 
 @pytest.fixture
 def node(graph: Graph) -> Node:
-    return graph.create_node("node", "/ns")
+    return create_graph_node(graph, "node", "/ns")
 
 
 def test_a_line_looks_as_in_ros(graph: Graph, node: Node, lines: list[LogRecord]) -> None:
@@ -34,7 +34,7 @@ def test_a_line_looks_as_in_ros(graph: Graph, node: Node, lines: list[LogRecord]
 
 
 def test_without_a_sink_it_goes_to_the_error_stream(capsys: pytest.CaptureFixture[str]) -> None:
-    Graph().create_node("n").get_logger().error("broken")
+    create_graph_node(Graph(), "n").get_logger().error("broken")
     assert capsys.readouterr().err == "[ERROR] [0.000000000] [n]: broken\n"
 
 
@@ -109,7 +109,7 @@ def test_lines_are_told_to_rosout_also_those_of_before(graph: Graph, node: Node)
     from kit.ros.node.qos import DurabilityPolicy
 
     latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    graph.create_node("listener").create_subscription(Log, "/rosout", heard.append, latched)
+    create_graph_node(graph, "listener").create_subscription(Log, "/rosout", heard.append, latched)
     node.get_logger().error("late")
     graph.run_due()
     assert [(message.name, message.level, message.msg) for message in heard] == [
@@ -119,12 +119,12 @@ def test_lines_are_told_to_rosout_also_those_of_before(graph: Graph, node: Node)
 
 
 def test_rosout_can_be_left_out(graph: Graph) -> None:
-    Node("quiet", context=graph.context, enable_rosout=False).get_logger().info("x")
+    Node("quiet", context=context_of(graph), enable_rosout=False).get_logger().info("x")
     assert "/rosout" not in graph.directory.topics
 
 
 def test_loggers_without_a_node(graph: Graph, lines: list[LogRecord]) -> None:
-    with default_context(graph.context):
+    with default_context(context_of(graph)):
         get_logger("tools").info("x")
         assert get_logger_level("tools") is LoggingSeverity.UNSET
         set_logger_level("tools", LoggingSeverity.WARN)

@@ -31,9 +31,9 @@ from kit.ros.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from kit.ros.execution.context import Context
+from kit.ros.execution.context import Context, context_of
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.parameters.parameter import Parameter, parameter_value_to_python
 from kit.ros.parameters.parameter_files import get_parameter_value
 
@@ -42,7 +42,7 @@ Type = Parameter.Type
 
 @pytest.fixture
 def node(graph: Graph) -> Node:
-    return graph.create_node("node")
+    return create_graph_node(graph, "node")
 
 
 def node_with(graph: Graph, *arguments: str, name: str = "node", **settings: Any) -> Node:
@@ -129,7 +129,7 @@ class TestDeclaring:
 
     def test_every_node_has_use_sim_time(self, graph: Graph, node: Node, alone: Graph) -> None:
         assert node.get_parameter("use_sim_time").value is True
-        assert alone.create_node("node").get_parameter("use_sim_time").value is False
+        assert create_graph_node(alone, "node").get_parameter("use_sim_time").value is False
 
 
 class TestReading:
@@ -149,7 +149,7 @@ class TestReading:
             node.get_parameters("ab")
 
     def test_a_node_may_allow_what_nobody_declared(self, graph: Graph) -> None:
-        node = Node("lax", context=graph.context, allow_undeclared_parameters=True)
+        node = Node("lax", context=context_of(graph), allow_undeclared_parameters=True)
         assert node.get_parameter("p").value is None
         node.set_parameters([Parameter("p", value=3)])
         assert node.get_parameter("p").value == 3
@@ -272,11 +272,11 @@ class TestCallbacks:
         assert after == [["a", "b"]]
 
     def test_changes_are_told_to_everybody(self, graph: Graph) -> None:
-        listener = graph.create_node("listener")
+        listener = create_graph_node(graph, "listener")
         events: list[ParameterEvent] = []
         listener.create_subscription(ParameterEvent, "/parameter_events", events.append, 100)
         graph.advance(1_500_000_000)
-        node = graph.create_node("node", "/ns")
+        node = create_graph_node(graph, "node", "/ns")
         node.declare_parameter("p", 1)
         node.set_parameters([Parameter("p", value=2)])
         graph.run_due()
@@ -379,14 +379,14 @@ class TestServices:
     """What ``ros2 param`` asks for."""
 
     def ask(self, graph: Graph, definition: Any, name: str, **fields: Any) -> Any:
-        client = graph.create_node("asker").create_client(definition, f"/ns/node/{name}")
+        client = create_graph_node(graph, "asker").create_client(definition, f"/ns/node/{name}")
         future = client.call_async(definition.Request(**fields))
         graph.run_due()
         return future.result()
 
     @pytest.fixture
     def served(self, graph: Graph) -> Node:
-        node = graph.create_node("node", "/ns")
+        node = create_graph_node(graph, "node", "/ns")
         node.declare_parameter("speed", 1.0, ParameterDescriptor(description="m/s"))
         return node
 
@@ -422,7 +422,7 @@ class TestServices:
         assert served.get_parameter("speed").value == 1.0
 
     def test_they_can_be_left_out(self, graph: Graph) -> None:
-        Node("node", context=graph.context, start_parameter_services=False)
+        Node("node", context=context_of(graph), start_parameter_services=False)
         assert graph.directory.services == {}
 
 

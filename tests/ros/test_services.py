@@ -12,18 +12,19 @@ from kit.msg.geometry_msgs import Pose2D
 from kit.msg.std_srvs import Empty, SetBool, Trigger
 from kit.ros.exceptions import InvalidServiceNameException, NodeFailure, WouldDeadlock
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 
 SECOND = 1_000_000_000
 
 
 @pytest.fixture
 def node(graph: Graph) -> Node:
-    return graph.create_node("node")
+    return create_graph_node(graph, "node")
 
 
 def test_a_call_is_answered_within_the_tick(graph: Graph, node: Node) -> None:
@@ -135,7 +136,7 @@ def test_nobody_there_is_warned_about(graph: Graph, node: Node, lines: list[LogR
     future = client.call_async(Trigger.Request())
     graph.run_due()
     assert not future.done()
-    assert "nobody serves '/nobody'" in lines[0].text
+    assert "no node serves '/nobody'" in lines[0].text
 
 
 def test_a_service_of_another_type_does_not_answer(node: Node) -> None:
@@ -181,9 +182,9 @@ class TestBlockingCalls:
         node.create_service(Trigger, "s", lambda request, response: Trigger.Response(message="done"))
 
     def test_in_another_thread_than_the_spinning_one(self, alone: Graph) -> None:
-        server, asker = alone.create_node("server"), alone.create_node("asker")
+        server, asker = create_graph_node(alone, "server"), create_graph_node(alone, "asker")
         self.serve(server)
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(server)
         executor.add_node(asker)
         thread = threading.Thread(target=executor.spin)
@@ -195,27 +196,27 @@ class TestBlockingCalls:
         assert response.message == "done"
 
     def test_in_a_callback_of_a_single_thread_it_is_explained_instead_of_hanging(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         self.serve(node)
         client = node.create_client(Trigger, "s")
         node.create_timer(0.001, lambda: client.call(Trigger.Request()))
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(node)
         with pytest.raises(WouldDeadlock, match="call_async"):
             executor.spin_once(timeout_sec=5)
 
     def test_many_threads_do_not_help_in_one_exclusive_group(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         self.serve(node)
         client = node.create_client(Trigger, "s")
         node.create_timer(0.001, lambda: client.call(Trigger.Request()))
-        with MultiThreadedExecutor(2, context=alone.context) as executor:
+        with MultiThreadedExecutor(2, context=context_of(alone)) as executor:
             executor.add_node(node)
             with pytest.raises(WouldDeadlock, match="callback group of its own"):
                 executor.spin()
 
     def test_many_threads_and_a_group_of_its_own_do(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         self.serve(node)
         client = node.create_client(Trigger, "s", callback_group=MutuallyExclusiveCallbackGroup())
         answers: list[Any] = []
@@ -227,20 +228,20 @@ class TestBlockingCalls:
             done.set_result(None)
 
         timer = node.create_timer(0.001, ask, callback_group=MutuallyExclusiveCallbackGroup())
-        with MultiThreadedExecutor(3, context=alone.context) as executor:
+        with MultiThreadedExecutor(3, context=context_of(alone)) as executor:
             executor.add_node(node)
             executor.spin_until_future_complete(done, timeout_sec=5)
         assert answers == ["done"]
 
     def test_a_time_out(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_service(Trigger, "s", lambda request, response: response)
         with pytest.raises(TimeoutError):
             node.create_client(Trigger, "s").call(Trigger.Request(), timeout_sec=0.02)
 
     def test_waiting_for_a_service_that_comes_later(self, alone: Graph) -> None:
-        client = alone.create_node("asker").create_client(Trigger, "s")
+        client = create_graph_node(alone, "asker").create_client(Trigger, "s")
         assert not client.wait_for_service(timeout_sec=0.01)
-        server = alone.create_node("server")
+        server = create_graph_node(alone, "server")
         threading.Timer(0.02, lambda: self.serve(server)).start()
         assert client.wait_for_service(timeout_sec=5)

@@ -14,7 +14,7 @@ from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vecto
 from kit.msg.std_msgs import Header
 from kit.ros import rotations as r
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.time import ClockType, Duration, Time
 from kit.ros.tf import (
     Buffer,
@@ -209,7 +209,7 @@ class TestFrames:
 
 class TestBroadcasting:
     def test_what_is_said_is_heard(self, graph: Graph) -> None:
-        talker, listener = graph.create_node("talker"), graph.create_node("listener")
+        talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
         static = StaticTransformBroadcaster(talker)
         static.sendTransform(placed("map", "odom", 1.0))
         static.sendTransform([placed("base", "laser", 0.25), placed("map", "odom", 2.0)])
@@ -220,14 +220,14 @@ class TestBroadcasting:
         assert where(buffer, "map", "laser", at(1)) == pytest.approx((5.25, 0, 0))
 
     def test_a_listener_can_stop(self, graph: Graph) -> None:
-        node, buffer = graph.create_node("node"), Buffer()
+        node, buffer = create_graph_node(graph, "node"), Buffer()
         TransformListener(buffer, node).unregister()
         TransformBroadcaster(node).sendTransform([placed("a", "b", 1.0)])
         graph.run_due()
         assert not buffer.can_transform("a", "b")
 
     def test_waiting_in_a_callback_that_the_news_would_wait_for_is_not_done(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         buffer, problems = Buffer(node=node), []
 
         def look(node: Node = node) -> None:

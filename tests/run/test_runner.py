@@ -14,6 +14,7 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Empty
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.run.recording import Recorder, Recording, RecordingError, load, rerun, save
 from kit.run.runner import Runner
 from kit.run.scenario import place_on_map
@@ -38,7 +39,7 @@ def forward(speed: float = 0.5, turn: float = 0.0) -> Twist:
 
 def call(runner: Runner, kind: Any, name: str, request: Any) -> Any:
     """Asks, ticks until answered, and returns the response."""
-    node = runner.graph.create_node("asker")
+    node = create_graph_node(runner.graph, "asker")
     future = node.create_client(kind, name).call_async(request)
     for _ in range(50):
         if future.done():
@@ -51,10 +52,10 @@ def call(runner: Runner, kind: Any, name: str, request: Any) -> Any:
 
 def test_a_key_reaches_the_wheels_within_the_tick(maze: World) -> None:
     runner = build(maze)
-    node = runner.graph.create_node("teleop")
+    node = create_graph_node(runner.graph, "teleop")
     drive = node.create_publisher(Twist, "/cmd_vel", 10)
     node.create_subscription(String, "/teleopkeys", lambda message: drive.publish(forward()), 10)
-    keyboard = runner.graph.create_node("keyboard").create_publisher(String, "/teleopkeys", 10)
+    keyboard = create_graph_node(runner.graph, "keyboard").create_publisher(String, "/teleopkeys", 10)
     before = runner.simulation.pose("serp")
     keyboard.publish(String(data="p_up"))
     runner.tick()
@@ -65,7 +66,9 @@ def test_a_key_reaches_the_wheels_within_the_tick(maze: World) -> None:
 def test_a_scan_is_heard_in_the_next_tick(maze: World) -> None:
     runner = build(maze)
     heard: list[LaserScan] = []
-    runner.graph.create_node("listener").create_subscription(LaserScan, "/static_laser", heard.append, 10)
+    create_graph_node(runner.graph, "listener").create_subscription(
+        LaserScan, "/static_laser", heard.append, 10
+    )
     runner.tick()
     runner.tick()
     assert len(heard) == 1
@@ -107,7 +110,9 @@ def test_models_come_go_and_move(maze: World) -> None:
     )
     assert spawned.success, spawned.message
     heard: list[LaserScan] = []
-    runner.graph.create_node("listener").create_subscription(LaserScan, "/two/static_laser", heard.append, 10)
+    create_graph_node(runner.graph, "listener").create_subscription(
+        LaserScan, "/two/static_laser", heard.append, 10
+    )
     for _ in range(15):
         runner.tick()
     assert heard
@@ -143,7 +148,7 @@ def wander(runner: Runner, ticks: int) -> Recording:
     """Drives about by what the noisy laser says, with a reset on the way, and records it."""
     recorder = Recorder("maze", None, runner.simulation)
     runner.observers.append(recorder)
-    node = runner.graph.create_node("wanderer")
+    node = create_graph_node(runner.graph, "wanderer")
     drive = node.create_publisher(Twist, "/cmd_vel", 10)
 
     def on_scan(scan: LaserScan) -> None:

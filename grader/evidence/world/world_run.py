@@ -18,8 +18,8 @@ from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
 from kit.render.scene import Disc, FloatArray
+from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
@@ -47,7 +47,7 @@ class TopicRecorder:
         self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
         self.stop = graph.add_message_listener(self._hear)
 
-    def _hear(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+    def _hear(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         if node.handle.full_name != WORLD_NODE:
             return
         count = self._counts[name] = self._counts.get(name, 0) + 1

@@ -17,7 +17,6 @@ from kit.inspection.message_text import LONGEST, NoSuchField, Style, pick, to_cs
 from kit.inspection.meters import NARROW_WINDOW, WIDE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message
 from kit.msg.message import Message
-from kit.ros.node.qos_matching import fitting_qos
 from kit.ros.node.time import Time
 
 REPORT_S: Final = 1.0
@@ -204,4 +203,4 @@ def _listen(
     client: InspectionClient, cls: type[Message], topic: str, callback: Callable[[Any], None], wishes: Wishes
 ) -> None:
     name = absolute(topic)
-    client.node.create_subscription(cls, name, callback, wishes.on(fitting_qos(client.graph, name)))
+    client.node.create_subscription(cls, name, callback, wishes.on(client.graph.directory.matching_qos(name)))

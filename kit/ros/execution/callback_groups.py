@@ -1,19 +1,67 @@
-"""Which callbacks may run at the same time."""
+"""Callback groups decide which callbacks may run at the same time; ready items are what they admit."""
 
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING
+from typing import Any, Final, NamedTuple, Protocol
 
-if TYPE_CHECKING:
-    from kit.ros.graph.ready_queue import ReadyItem
+NO_WORK: Final = object()
+"""Returned by ``ReadyItem.take`` if the work is gone: cancelled, destroyed, or already done."""
+
+
+class ItemQueue(Protocol):
+    """The part of a ReadyQueue that items and tasks use."""
+
+    @property
+    def items(self) -> deque[ReadyItem]: ...
+
+    def put(self, item: ReadyItem) -> None: ...
+
+
+class QueueOwner(Protocol):
+    """Something with a ready queue: an executor, or a node's handle."""
+
+    @property
+    def ready_queue(self) -> ItemQueue: ...
+
+
+class ItemOwner(QueueOwner, Protocol):
+    """The part of a NodeHandle that the scheduling of its items needs."""
+
+    @property
+    def full_name(self) -> str: ...
+
+
+class ReadyItem(Protocol):
+    """Something with a callback: a subscription, timer, service, client, guard condition or task."""
+
+    @property
+    def handle(self) -> ItemOwner | None:
+        """The handle of its node; None for a task without a node."""
+
+    @property
+    def callback_group(self) -> CallbackGroup | None:
+        """The group whose rule it obeys; None: it may run at any time."""
+
+    def take(self) -> Any:
+        """Takes the next piece of work out of its queue, or returns NO_WORK. Called with the graph's lock held."""
+
+    def run(self, taken: Any) -> Any:
+        """Runs the callback for what ``take`` returned. A coroutine it returns is continued by the ready queue."""
+
+
+class TakenWork(NamedTuple):
+    """An item whose turn it is, and what its ``take`` returned."""
+
+    item: ReadyItem
+    taken: Any
 
 
 class CallbackGroup:
-    """A set of entities. Which of their callbacks may overlap is for the subclasses to say.
+    """A set of entities; its subclasses define which of their callbacks may overlap.
 
-    An executor asks ``beginning_execution`` before each callback; work that is turned away waits in
-    ``waiting_items`` until the group is free again.
+    ``beginning_execution`` is called before each callback; an item that is refused waits in ``waiting_items``
+    until the group is free again.
     """
 
     def __init__(self) -> None:
@@ -27,11 +75,11 @@ class CallbackGroup:
         return entity in self.entities
 
     def can_execute(self, entity: ReadyItem) -> bool:
-        """Whether a callback of the entity could begin now."""
+        """True if a callback of the entity could begin now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: ReadyItem) -> bool:
-        """Whether a callback of the entity begins now; if so, ``ending_execution`` must follow."""
+        """Admits a callback of the entity, or returns False. If admitted, ``ending_execution`` must follow."""
         raise NotImplementedError  # not abstract: ROS 2's own class can be made too
 
     def ending_execution(self, entity: ReadyItem) -> None:
@@ -39,7 +87,7 @@ class CallbackGroup:
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """Every callback may run at any time, even beside itself."""
+    """Any callback may run at any time, also several times at once."""
 
     def can_execute(self, entity: ReadyItem) -> bool:
         return True
@@ -52,7 +100,7 @@ class ReentrantCallbackGroup(CallbackGroup):
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One callback at a time; a coroutine that awaits still counts as running."""
+    """One callback runs at a time; a coroutine that awaits still counts as running."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -60,7 +108,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     @property
     def active(self) -> ReadyItem | None:
-        """What is running now."""
+        """The entity whose callback is running, or None."""
         return self._active
 
     def can_execute(self, entity: ReadyItem) -> bool:

@@ -8,8 +8,9 @@ import threading
 from collections.abc import Sequence
 from enum import IntFlag
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from kit.msg.message import Message
 from kit.ros.execution.arguments import split_ros_arguments
 from kit.ros.execution.context import Context, get_default_context
 from kit.ros.execution.executors import Executor, SingleThreadedExecutor
@@ -19,7 +20,10 @@ from kit.ros.node.node import Node
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
+    from kit.ros.node.qos import QoSProfile
     from kit.ros.parameters.parameter import Parameter
+
+M = TypeVar("M", bound=Message)
 
 
 class SignalHandlerOptions(IntFlag):
@@ -120,9 +124,10 @@ def get_global_executor() -> Executor:
 
 def _executor_of(context: Context) -> Executor:
     with context.graph.lock:
-        if context.executor is None:
-            context.executor = SingleThreadedExecutor(context=context)
-        return context.executor
+        if context.global_executor is None:
+            context.global_executor = SingleThreadedExecutor(context=context)
+        executor: Executor = context.global_executor
+        return executor
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:
@@ -212,3 +217,33 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
     """Nanoseconds; -1 for ever, which None and negative numbers mean."""
     return -1 if timeout_sec is None or timeout_sec < 0 else int(timeout_sec * S_TO_NS)
+
+
+def wait_for_message(
+    msg_type: type[M],
+    node: Node,
+    topic: str,
+    *,
+    qos_profile: QoSProfile | int = 1,
+    time_to_wait: float = -1,
+) -> tuple[bool, M | None]:
+    """Waits for the next message on a topic without spinning the node; returns ``(True, message)``.
+
+    ``(False, None)`` after ``time_to_wait`` seconds of the graph's time, negative for no limit, or after a
+    shutdown.
+    """
+    context, graph = node.context, node.handle.graph
+    received: list[Any] = []
+
+    def arrived() -> bool:
+        # The queue is looked at directly, since no thread may be spinning the node.
+        return bool(received) or subscription.has_messages or not context.ok()
+
+    subscription = node.create_subscription(msg_type, topic, received.append, qos_profile)
+    try:
+        until = None if time_to_wait < 0 else graph.now_ns + int(time_to_wait * S_TO_NS)
+        graph.wait(arrived, until, what=f"wait_for_message() on '{subscription.topic_name}'")
+        received += subscription.take_messages()
+    finally:
+        node.destroy_subscription(subscription)
+    return (True, received[0]) if received else (False, None)

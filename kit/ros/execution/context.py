@@ -8,13 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import Any
 
 from kit.ros.execution.arguments import RosArguments, parse_ros_arguments
 from kit.ros.graph.graph import Graph
-
-if TYPE_CHECKING:
-    from kit.ros.execution.executors import Executor
+from kit.ros.log import LoggingSeverity, LogRecord
 
 
 class Context:
@@ -27,8 +25,8 @@ class Context:
         self._ok = False
         self.ended_from_outside = False
         """Whether it was not the program itself that ended it."""
-        self.executor: Executor | None = None
-        """The one of those who name none, once there was need of it."""
+        self.global_executor: Any = None
+        """The executor of ``rclpy.spin`` calls that name none; untyped, since executors are built on contexts."""
         self._may_shut_down_late = False
         self._domain_id = 0
         self._callbacks: list[Callable[[], object]] = []
@@ -166,6 +164,24 @@ def set_default_graph(graph: Graph | None) -> None:
     with _DEFAULT.lock:
         _DEFAULT.graph = graph
         _DEFAULT.context = None
+
+
+def context_of(graph: Graph) -> Context:
+    """The context that the nodes of a graph share, initialised: ``Node("name", context=context_of(graph))``."""
+    with graph.lock:
+        if graph.shared_context is None:
+            context = Context(graph)
+            context.init(())
+            graph.shared_context = context
+        shared: Context = graph.shared_context
+        return shared
+
+
+def log_as_kit(text: str, *, is_warning: bool = False) -> None:
+    """Logs a line of the kit's own in the default context's graph: for the packages in ``shims``."""
+    graph = get_default_context().graph
+    severity = LoggingSeverity.WARN if is_warning else LoggingSeverity.INFO
+    graph.log.sink(LogRecord(graph.now_ns, severity, "kit", text, "", "", 0))
 
 
 @contextmanager

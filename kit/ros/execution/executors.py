@@ -6,7 +6,7 @@ import os
 import threading
 from collections.abc import Callable
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from kit.ros.exceptions import (
     ConditionReachedException,
@@ -15,15 +15,15 @@ from kit.ros.exceptions import (
     TimeoutException,
     WouldDeadlock,
 )
+from kit.ros.execution.callback_groups import TakenWork
 from kit.ros.execution.context import Context, get_default_context
 from kit.ros.execution.task import Future, Task
-from kit.ros.graph.ready_queue import ReadyQueue, TakenWork
+from kit.ros.graph.ready_queue import ReadyQueue
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from concurrent.futures import Future as Job
 
-    from kit.ros.node.node import Node
 
 __all__ = [
     "ConditionReachedException",
@@ -36,21 +36,40 @@ __all__ = [
 ]
 
 
+class SpinnableHandle(Protocol):
+    """The part of a NodeHandle that executors use."""
+
+    def set_executor(self, executor: Executor | None) -> None: ...
+
+
+class SpinnableNode(Protocol):
+    """The part of a Node that executors use."""
+
+    @property
+    def context(self) -> Context: ...
+
+    @property
+    def executor(self) -> Executor | None: ...
+
+    @property
+    def handle(self) -> SpinnableHandle: ...
+
+
 class Executor:
     """Runs callbacks of the nodes added to it, one at a time, in the thread that spins it.
 
     Time-outs are seconds of the graph's time. Also a context manager, which shuts it down.
     """
 
-    exclusive = True
+    is_exclusive = True
     """Whether a callback that waits for another one of its executor waits for ever."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = context or get_default_context()
         self._graph = self._context.graph
-        self.ready_queue = ReadyQueue(self._graph, exclusive=self.exclusive)
+        self.ready_queue = ReadyQueue(self._graph, Task, is_exclusive=self.is_exclusive)
         """What is to be done for its nodes."""
-        self._nodes: list[Node] = []
+        self._nodes: list[SpinnableNode] = []
         self._is_shutdown = False
         self._awake = False
         self._spinner: int | None = None
@@ -74,7 +93,7 @@ class Executor:
 
     # Its nodes
 
-    def add_node(self, node: Node) -> bool:
+    def add_node(self, node: SpinnableNode) -> bool:
         """Takes on the node, also from another executor. False if it has it already."""
         with self._graph.lock:
             if node in self._nodes:
@@ -88,14 +107,14 @@ class Executor:
             node.handle.set_executor(self)
             return True
 
-    def remove_node(self, node: Node) -> None:
+    def remove_node(self, node: SpinnableNode) -> None:
         """Lets go of the node; nothing happens if it does not have it."""
         with self._graph.lock:
             if node in self._nodes:
                 self._nodes.remove(node)
                 node.handle.set_executor(None)
 
-    def get_nodes(self) -> list[Node]:
+    def get_nodes(self) -> list[SpinnableNode]:
         return list(self._nodes)
 
     # Its work
@@ -240,7 +259,7 @@ class MultiThreadedExecutor(Executor):
     ``num_threads``: how many; by default one per processor, at least two.
     """
 
-    exclusive = False
+    is_exclusive = False
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         from concurrent.futures import ThreadPoolExecutor  # only now: few programs need it

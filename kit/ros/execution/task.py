@@ -7,12 +7,17 @@ from collections.abc import Callable, Generator
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from kit.ros.graph.ready_queue import NO_WORK, ReadyItem, ReadyQueue
+from kit.ros.execution.callback_groups import (
+    NO_WORK,
+    CallbackGroup,
+    ItemOwner,
+    ItemQueue,
+    QueueOwner,
+    ReadyItem,
+)
 
 if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.execution.executors import Executor
-    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.graph.ready_queue import ReadyQueue
 
 T = TypeVar("T")
 
@@ -20,9 +25,9 @@ T = TypeVar("T")
 class Future(Generic[T]):
     """A result that comes later. Can be awaited in a coroutine callback."""
 
-    def __init__(self, *, executor: Executor | None = None) -> None:
+    def __init__(self, *, executor: QueueOwner | None = None) -> None:
         self._executor = executor
-        self._handle: NodeHandle | None = None
+        self._handle: ItemOwner | None = None
         self._lock = threading.Lock()
         self._done = False
         self._cancelled = False
@@ -89,12 +94,12 @@ class Future(Generic[T]):
                 return
         waker()
 
-    def set_owner(self, handle: NodeHandle) -> None:
+    def set_owner(self, handle: ItemOwner) -> None:
         """Has the done callbacks run where the node's callbacks run."""
         self._handle = handle
 
     @property
-    def _ready_queue(self) -> ReadyQueue | None:
+    def _ready_queue(self) -> ItemQueue | None:
         if self._handle is not None:
             return self._handle.ready_queue
         return self._executor.ready_queue if self._executor is not None else None
@@ -129,7 +134,7 @@ class Task(Future[T]):
         handler: Any,
         args: tuple[Any, ...] | None = None,
         kwargs: dict[str, Any] | None = None,
-        executor: Executor | None = None,
+        executor: QueueOwner | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._handler = handler
@@ -137,15 +142,15 @@ class Task(Future[T]):
         self._kwargs = kwargs or {}
         self._coroutine: Any = handler if type(handler) is CoroutineType else None
         self._source: ReadyItem | None = None
-        self._home: ReadyQueue | None = None
+        self._home_queue: ReadyQueue | None = None
 
     @property
-    def handle(self) -> NodeHandle | None:
+    def handle(self) -> ItemOwner | None:
         return self._handle
 
     def continue_for(self, source: ReadyItem, ready_queue: ReadyQueue) -> None:
         """Makes this task the rest of ``source``'s turn: that turn ends when the task is done."""
-        self._source, self._handle, self._home = source, source.handle, ready_queue
+        self._source, self._handle, self._home_queue = source, source.handle, ready_queue
 
     def take(self) -> Any:
         return NO_WORK if self.done() else None
@@ -187,12 +192,12 @@ class Task(Future[T]):
         super().cancel()
 
     def _resume(self) -> None:
-        ready_queue = self._ready_queue or self._home
+        ready_queue = self._ready_queue or self._home_queue
         if ready_queue is not None:
             ready_queue.put(self)
 
     def _finish_source_turn(self) -> None:
         """Ends the turn whose rest this task was."""
         source, self._source = self._source, None
-        if source is not None and self._home is not None:
-            self._home.finish(source)
+        if source is not None and self._home_queue is not None:
+            self._home_queue.finish(source)

@@ -1,43 +1,164 @@
-"""Who is there: nodes, topics with their publishers and subscriptions, services with their servers and clients."""
+"""The directory of a graph: its nodes, topics with their endpoints, and services with their servers and clients.
+
+The directory knows nodes and endpoints by the protocols below; the classes themselves are built on the graph.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from kit.msg.message import type_name
-from kit.ros.node.qos import QoSPolicyKind, first_incompatibility
+from kit.ros.node.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+    first_incompatibility,
+)
 
 if TYPE_CHECKING:
-    from kit.ros.graph.graph import Graph
-    from kit.ros.graph.node_handle import NodeHandle
-    from kit.ros.node.client import Client
-    from kit.ros.node.publisher import Publisher
-    from kit.ros.node.service import Service
-    from kit.ros.node.subscription import Subscription
+    from kit.ros.log import Log, RcutilsLogger
+
+
+class GraphNode(Protocol):
+    """The part of a Node that the graph and its listeners use."""
+
+    @property
+    def handle(self) -> NodeEntry: ...
+
+    def get_name(self) -> str: ...
+
+    def get_namespace(self) -> str: ...
+
+    def get_fully_qualified_name(self) -> str: ...
+
+
+class NodeEntry(Protocol):
+    """The part of a NodeEntry that the directory needs."""
+
+    @property
+    def node(self) -> GraphNode: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def namespace(self) -> str: ...
+
+    @property
+    def full_name(self) -> str: ...
+
+    @property
+    def logger(self) -> RcutilsLogger: ...
+
+    @property
+    def publishers(self) -> Sequence[TopicPublisher]: ...
+
+    @property
+    def subscriptions(self) -> Sequence[TopicSubscription]: ...
+
+    @property
+    def services(self) -> Sequence[ServiceServer]: ...
+
+    @property
+    def clients(self) -> Sequence[ServiceClient]: ...
+
+    def rewind(self) -> None: ...
+
+    def discard_queues(self) -> None: ...
+
+
+class MismatchReporter(Protocol):
+    """Tells a node that an endpoint of its own and another one are incompatible."""
+
+    def report(self, policy: QoSPolicyKind, warning: str) -> None: ...
+
+
+class TopicEndpoint(Protocol):
+    """A publisher or a subscription."""
+
+    @property
+    def handle(self) -> NodeEntry: ...
+
+    @property
+    def topic_name(self) -> str: ...
+
+    @property
+    def msg_type(self) -> type[Any]: ...
+
+    @property
+    def qos_profile(self) -> QoSProfile: ...
+
+    @property
+    def number(self) -> int: ...
+
+    @property
+    def incompatibility_reporter(self) -> MismatchReporter: ...
+
+
+class TopicSubscription(TopicEndpoint, Protocol):
+    def enqueue(self, msg: Any) -> None: ...
+
+
+class TopicPublisher(TopicEndpoint, Protocol):
+    routes: tuple[TopicSubscription, ...]
+
+    def send_history_to(self, subscription: TopicSubscription) -> None: ...
+
+
+class ServiceEndpoint(Protocol):
+    """A service's server or a client."""
+
+    @property
+    def handle(self) -> NodeEntry: ...
+
+    @property
+    def service_name(self) -> str: ...
+
+    @property
+    def srv_type(self) -> type[Any]: ...
+
+    @property
+    def qos_profile(self) -> QoSProfile: ...
+
+    @property
+    def number(self) -> int: ...
+
+
+class ServiceClient(ServiceEndpoint, Protocol):
+    def enqueue(self, number: int, response: Any) -> None: ...
+
+
+class ServiceServer(ServiceEndpoint, Protocol):
+    def enqueue(self, call: Any) -> None: ...
+
+
+Registered = TypeVar("Registered", bound=ServiceEndpoint)
 
 
 class Topic:
-    """A topic's publishers and subscriptions, and which of them go together."""
+    """The publishers and subscriptions of a topic, and which publisher reaches which subscription."""
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.publishers: list[Publisher[Any]] = []
-        self.subscriptions: list[Subscription[Any]] = []
+        self.publishers: list[TopicPublisher] = []
+        self.subscriptions: list[TopicSubscription] = []
 
     @property
     def type_names(self) -> list[str]:
-        """The message types in use; more than one is a mistake of somebody's."""
+        """The message types in use, sorted; more than one is a mistake in some node."""
         types = [end.msg_type for end in self.publishers] + [end.msg_type for end in self.subscriptions]
         return sorted({type_name(msg_type) for msg_type in types})
 
-    def add_publisher(self, publisher: Publisher[Any]) -> None:
+    def add_publisher(self, publisher: TopicPublisher) -> None:
         self.publishers.append(publisher)
         self._route(publisher)
         for subscription in self.subscriptions:
             _report_mismatch(publisher, subscription)
 
-    def add_subscription(self, subscription: Subscription[Any]) -> None:
+    def add_subscription(self, subscription: TopicSubscription) -> None:
         self.subscriptions.append(subscription)
         for publisher in self.publishers:
             self._route(publisher)
@@ -45,18 +166,18 @@ class Topic:
                 publisher.send_history_to(subscription)
             _report_mismatch(publisher, subscription)
 
-    def remove(self, end: Publisher[Any] | Subscription[Any]) -> None:
-        self.publishers = [other for other in self.publishers if other is not end]
-        self.subscriptions = [other for other in self.subscriptions if other is not end]
+    def remove(self, endpoint: TopicEndpoint) -> None:
+        self.publishers = [other for other in self.publishers if other is not endpoint]
+        self.subscriptions = [other for other in self.subscriptions if other is not endpoint]
         for publisher in self.publishers:
             self._route(publisher)
 
-    def _route(self, publisher: Publisher[Any]) -> None:
+    def _route(self, publisher: TopicPublisher) -> None:
         publisher.routes = tuple(sub for sub in self.subscriptions if _mismatch(publisher, sub) is None)
 
 
-def _mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> QoSPolicyKind | str | None:
-    """Why the two do not talk: the policy, or in words; None if they do."""
+def _mismatch(publisher: TopicPublisher, subscription: TopicSubscription) -> QoSPolicyKind | str | None:
+    """The policy on which the two are incompatible, or the difference of their types; None if they match."""
     if publisher.msg_type is not subscription.msg_type:
         return (
             f"{publisher.handle.full_name} publishes {type_name(publisher.msg_type)}, "
@@ -65,9 +186,9 @@ def _mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> QoS
     return first_incompatibility(publisher.qos_profile, subscription.qos_profile)
 
 
-def describe_mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> str | None:
-    """Why the two do not talk, with the policy's name first: "RELIABILITY: /a offers ..., /b asks for ..."; None
-    if they do."""
+def describe_mismatch(publisher: TopicPublisher, subscription: TopicSubscription) -> str | None:
+    """Why no message passes between the two, such as "RELIABILITY: /a offers ..., /b asks for ..."; None if they
+    match."""
     mismatch = _mismatch(publisher, subscription)
     if mismatch is None or isinstance(mismatch, str):
         return mismatch
@@ -78,8 +199,8 @@ def describe_mismatch(publisher: Publisher[Any], subscription: Subscription[Any]
     )
 
 
-def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
-    """Tells both sides, as ROS 2 does: its words first, then what they mean."""
+def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription) -> None:
+    """Warns both nodes of a mismatch: ROS 2's own message, then an explanation."""
     mismatch = _mismatch(publisher, subscription)
     if mismatch is None:
         return
@@ -106,75 +227,77 @@ def _report_mismatch(publisher: Publisher[Any], subscription: Subscription[Any])
     )
 
 
-def _setting(end: Publisher[Any] | Subscription[Any], policy: QoSPolicyKind) -> str:
-    """What an end's profile says on a policy."""
-    setting = getattr(end.qos_profile, policy.name.lower())
+def _setting(endpoint: TopicEndpoint, policy: QoSPolicyKind) -> str:
+    """The endpoint's setting of a policy, as text."""
+    setting = getattr(endpoint.qos_profile, policy.name.lower())
     return str(getattr(setting, "name", setting))
 
 
 class Directory:
-    """The register of a graph. Change it with the graph's lock held."""
+    """All nodes and endpoints of a graph. Change it with the graph's lock held."""
 
-    def __init__(self, graph: Graph) -> None:
-        self._graph = graph
+    def __init__(self, log: Log, notify: Callable[[], None]) -> None:
+        """``notify`` wakes waiting threads when a service appears."""
+        self._log = log
+        self._notify = notify
         self.version = 0
-        """Changes with every node and endpoint that comes or goes."""
-        self.nodes: tuple[NodeHandle, ...] = ()
+        """Increases with every node and endpoint that is added or removed."""
+        self.nodes: tuple[NodeEntry, ...] = ()
         self.topics: dict[str, Topic] = {}
-        self.services: dict[str, list[Service[Any, Any]]] = {}
-        self.clients: dict[str, list[Client[Any, Any]]] = {}
+        self.services: dict[str, list[ServiceServer]] = {}
+        self.clients: dict[str, list[ServiceClient]] = {}
 
-    def add_node(self, handle: NodeHandle) -> None:
+    def add_node(self, handle: NodeEntry) -> None:
         if any(other.full_name == handle.full_name for other in self.nodes):
-            self._graph.log.warning(
+            self._log.warning(
                 "rcl",
                 f"there is already a node called {handle.full_name}; two of one name get in each other's way",
             )
         self.nodes = (*self.nodes, handle)
         self.version += 1
 
-    def remove_node(self, handle: NodeHandle) -> None:
+    def remove_node(self, handle: NodeEntry) -> None:
         self.nodes = tuple(other for other in self.nodes if other is not handle)
         self.version += 1
 
-    def find_node(self, name: str, namespace: str) -> NodeHandle | None:
-        """The first node of this name."""
+    def find_node(self, name: str, namespace: str) -> NodeEntry | None:
+        """The first node of this name, or None."""
         for handle in self.nodes:
             if handle.name == name and handle.namespace == namespace:
                 return handle
         return None
 
     def get_or_create_topic(self, name: str) -> Topic:
-        """The topic of this absolute name, made if need be, for an endpoint to be added to it."""
+        """The topic of this absolute name, made if necessary, so that an endpoint can be added to it."""
         self.version += 1
         return self.topics.setdefault(name, Topic(name))
 
-    def remove_endpoint(self, end: Publisher[Any] | Subscription[Any]) -> None:
+    def remove_endpoint(self, endpoint: TopicEndpoint) -> None:
         self.version += 1
-        topic = self.topics[end.topic_name]
-        topic.remove(end)
+        topic = self.topics[endpoint.topic_name]
+        topic.remove(endpoint)
         if not topic.publishers and not topic.subscriptions:
-            del self.topics[end.topic_name]
+            del self.topics[endpoint.topic_name]
 
-    def add_service(self, service: Service[Any, Any]) -> None:
+    def add_service(self, service: ServiceServer) -> None:
         self.version += 1
         self.services.setdefault(service.service_name, []).append(service)
-        self._graph.notify()
+        self._notify()
 
-    def remove_service(self, service: Service[Any, Any]) -> None:
+    def remove_service(self, service: ServiceServer) -> None:
         self.version += 1
         _remove_from(self.services, service.service_name, service)
 
-    def add_client(self, client: Client[Any, Any]) -> None:
+    def add_client(self, client: ServiceClient) -> None:
         self.version += 1
         self.clients.setdefault(client.service_name, []).append(client)
 
-    def remove_client(self, client: Client[Any, Any]) -> None:
+    def remove_client(self, client: ServiceClient) -> None:
         self.version += 1
         _remove_from(self.clients, client.service_name, client)
 
-    def find_server(self, name: str, srv_type: type[Any]) -> Service[Any, Any] | None:
-        """The service that answers: the first of this name and type."""
+    def find_server(self, name: str, srv_type: type[Any]) -> ServiceServer | None:
+        """The server that answers requests: the first of this name and type, or None."""
         for service in self.services.get(name, ()):
             if service.srv_type is srv_type:
                 return service
@@ -185,24 +308,35 @@ class Directory:
         return [(name, topic.type_names) for name, topic in sorted(self.topics.items())]
 
     def service_names_and_types(self) -> list[tuple[str, list[str]]]:
-        """Of the services that somebody serves, sorted by name."""
+        """The services that have a server, sorted by name."""
         return [
             (name, sorted({type_name(service.srv_type) for service in servers}))
             for name, servers in sorted(self.services.items())
         ]
 
-    def publishers(self, topic: str) -> Iterator[Publisher[Any]]:
+    def publishers(self, topic: str) -> Iterator[TopicPublisher]:
         found = self.topics.get(topic)
         yield from found.publishers if found is not None else ()
 
-    def subscriptions(self, topic: str) -> Iterator[Subscription[Any]]:
+    def subscriptions(self, topic: str) -> Iterator[TopicSubscription]:
         found = self.topics.get(topic)
         yield from found.subscriptions if found is not None else ()
 
+    def matching_qos(self, topic: str) -> QoSProfile:
+        """A subscription's profile that matches every publisher of a topic; transient local if all of them are."""
+        profiles = [publisher.qos_profile for publisher in self.publishers(topic)]
+        is_reliable = all(not profile.is_best_effort for profile in profiles)
+        is_durable = bool(profiles) and all(profile.is_transient_local for profile in profiles)
+        return QoSProfile(
+            history=HistoryPolicy.KEEP_ALL,
+            reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL if is_durable else DurabilityPolicy.VOLATILE,
+        )
 
-def _remove_from(register: dict[str, list[Any]], name: str, end: object) -> None:
-    rest = [other for other in register[name] if other is not end]
+
+def _remove_from(endpoints: dict[str, list[Registered]], name: str, endpoint: ServiceEndpoint) -> None:
+    rest = [other for other in endpoints[name] if other is not endpoint]
     if rest:
-        register[name] = rest
+        endpoints[name] = rest
     else:
-        del register[name]
+        del endpoints[name]

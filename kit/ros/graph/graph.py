@@ -20,18 +20,14 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from kit.ros.exceptions import NodeFailure, WouldDeadlock
-from kit.ros.graph.directory import Directory
-from kit.ros.graph.ready_queue import ReadyItem, ReadyQueue, TakenWork
+from kit.ros.execution.callback_groups import TakenWork
+from kit.ros.execution.task import Task
+from kit.ros.graph.directory import Directory, GraphNode
+from kit.ros.graph.ready_queue import ReadyQueue, ThreadState
 from kit.ros.log import Log, LogSink, log_to_stderr
-
-if TYPE_CHECKING:
-    from kit.msg.message import Message
-    from kit.ros.execution.context import Context
-    from kit.ros.node.node import Node
 
 MAX_ROUNDS = 100
 """In one ``run_due``: how often a message may lead to the next one before the rest waits for the next tick."""
@@ -56,7 +52,7 @@ class Waiter(Protocol):
         """
 
 
-MessageListener = Callable[[int, "Node", str, "Message"], None]
+MessageListener = Callable[[int, GraphNode, str, Any], None]
 """``(time_ns, node, topic, message)``: called for every message published, every request and every response.
 
 The name of a request's or response's service takes the place of the topic. The message is the sender's own:
@@ -75,13 +71,6 @@ class WaitingThread(NamedTuple):
     """True for a thread of a MultiThreadedExecutor: ``Graph.running_pool_callbacks`` counts it."""
 
 
-class _ThreadState(threading.local):
-    """What the current thread is executing."""
-
-    work: tuple[ReadyQueue, ReadyItem] | None = None
-    is_pooled = False
-
-
 class Graph:
     """All nodes of a run. ``start_ns``: simulated time from there on; None: the system's time."""
 
@@ -92,12 +81,14 @@ class Graph:
         self.waiter = waiter
         self.on_failure: Callable[[NodeFailure], None] | None = None
         """Told of failing callbacks in lock-step; without it, ``run_due`` raises."""
-        self.directory = Directory(self)
-        """Who publishes, subscribes, serves and asks what."""
         self.message_listeners: tuple[MessageListener, ...] = ()
-        self.thread_state = _ThreadState()
+        self.thread_state = ThreadState()
         self.log = Log(lambda: self.now_ns, log_sink)
-        self.ready_queue = ReadyQueue(self)
+        self.directory = Directory(self.log, self.notify)
+        """All nodes, topics and services."""
+        self.shared_context: Any = None
+        """Set by ``execution.context.context_of``; untyped, since contexts are built on graphs."""
+        self.ready_queue = ReadyQueue(self, Task)
         """The lock-step nodes'."""
         self._simulated_ns = start_ns
         self._system_offset_ns = time.time_ns() - time.monotonic_ns()
@@ -175,7 +166,7 @@ class Graph:
             self.ready_queue.execute(work)
         except Exception as cause:
             handle = work.item.handle
-            failure = NodeFailure(handle.node if handle is not None else None, cause)
+            failure = NodeFailure(handle.full_name if handle is not None else None, cause)
             if self.on_failure is None:
                 raise failure from cause
             self.on_failure(failure)
@@ -270,24 +261,9 @@ class Graph:
     # Everybody in it
 
     @property
-    def nodes(self) -> tuple[Node, ...]:
+    def nodes(self) -> tuple[GraphNode, ...]:
         """In the order of their creation."""
         return tuple(handle.node for handle in self.directory.nodes)
-
-    @cached_property
-    def context(self) -> Context:
-        """A context of this graph, already initialised: ``Node("name", context=graph.context)``."""
-        from kit.ros.execution.context import Context
-
-        context = Context(self)
-        context.init(())
-        return context
-
-    def create_node(self, name: str, namespace: str | None = None) -> Node:
-        """A plain node in this graph."""
-        from kit.ros.node.node import Node
-
-        return Node(name, context=self.context, namespace=namespace)
 
     def subscription_count(self, topic: str) -> int:
         """How many subscriptions a topic has, by its absolute name."""
@@ -307,7 +283,7 @@ class Graph:
 
         return stop
 
-    def notify_message_listeners(self, node: Node, topic: str, message: Any) -> None:
+    def notify_message_listeners(self, node: GraphNode, topic: str, message: Any) -> None:
         """Shows the watchers what ``node`` says. With the lock held."""
         for listener in self.message_listeners:
             listener(self.now_ns, node, topic, message)

@@ -1,71 +1,88 @@
-"""What is to be done next for some nodes, in order: the queue that an executor, or lock-step, works through.
+"""Queues the callbacks of some nodes in the order in which they became ready; an executor or the lock-step runs them.
 
-Everything that became ready waits in one line, in the order in which it became ready: messages, requests and
-responses as they arrive; timers when their time comes, by due time and then by age. So the same inputs give
-the same order, always.
+There is one queue: messages, requests and responses enter it as they arrive; timers when they are due, by due time
+and then by age. So the same inputs always give the same order.
 """
 
 from __future__ import annotations
 
+import threading
 from collections import deque
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from heapq import heapify, heappop, heappush
 from types import CoroutineType
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.graph import Graph
-    from kit.ros.graph.node_handle import NodeHandle
-    from kit.ros.node.timer import Timer
-
-NO_WORK: Final = object()
-"""What ``take`` returns when the work is gone: cancelled, destroyed, or already done."""
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ItemOwner, ReadyItem, TakenWork
 
 
-class ReadyItem(Protocol):
-    """Something whose turn can come: a subscription, timer, service, client, guard condition or task."""
+class ThreadState(threading.local):
+    """What the current thread is executing."""
 
-    @property
-    def handle(self) -> NodeHandle | None:
-        """Whose it is: its node's."""
+    work: tuple[ReadyQueue, ReadyItem] | None = None
+    is_pooled = False
+    """Whether the thread belongs to a MultiThreadedExecutor."""
+
+
+class QueueGraph(Protocol):
+    """The part of a Graph that ready queues use."""
 
     @property
-    def callback_group(self) -> CallbackGroup | None:
-        """What it must not overlap with."""
+    def lock(self) -> AbstractContextManager[Any]: ...
 
-    def take(self) -> Any:
-        """The work itself, taken out of its queue; or NO_WORK. Called with the graph's lock held."""
+    @property
+    def thread_state(self) -> ThreadState: ...
 
-    def run(self, taken: Any) -> Any:
-        """Does the work. A coroutine that it returns is carried on by the ready_queue."""
+    @property
+    def now_ns(self) -> int: ...
+
+    def notify(self) -> None: ...
 
 
-class TakenWork(NamedTuple):
-    """One turn of an item."""
+class ReadyTimer(ReadyItem, Protocol):
+    """A timer: an item that becomes ready at ``due_ns``."""
 
-    item: ReadyItem
-    taken: Any
+    @property
+    def due_ns(self) -> int: ...
+
+    @property
+    def number(self) -> int: ...
+
+
+class Continuation(ReadyItem, Protocol):
+    """A coroutine as an item: a Task."""
+
+    def continue_for(self, source: ReadyItem, ready_queue: ReadyQueue) -> None:
+        """Ends the turn of ``source`` when the coroutine is done."""
+
+
+MakeContinuation = Callable[[Any], Continuation]
+"""Turns a coroutine into an item: ``Task``."""
 
 
 class ReadyQueue:
-    """The line of ready items and the timers of the nodes that belong to one executor."""
+    """The ready items and the timers of the nodes that belong to one executor, or to the lock-step."""
 
-    def __init__(self, graph: Graph, *, exclusive: bool = True) -> None:
+    def __init__(
+        self, graph: QueueGraph, make_continuation: MakeContinuation, *, is_exclusive: bool = True
+    ) -> None:
         self.graph = graph
-        self.exclusive = exclusive
-        """Whether one callback at a time is done here: what waits for another one would wait for ever."""
+        self._make_continuation = make_continuation
+        self.is_exclusive = is_exclusive
+        """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
         self.items: deque[ReadyItem] = deque()
-        self._timers: list[tuple[int, int, Timer]] = []
+        self._timers: list[tuple[int, int, ReadyTimer]] = []
 
     def put(self, item: ReadyItem) -> None:
-        """Puts an item at the end of the line. Any thread."""
+        """Appends an item, from any thread."""
         graph = self.graph
         with graph.lock:
             self.items.append(item)
             graph.notify()
 
-    def add_timer(self, timer: Timer) -> None:
-        """Has the timer's turn come at its ``due_ns``. An entry made for another due time is void."""
+    def add_timer(self, timer: ReadyTimer) -> None:
+        """Schedules the timer at its ``due_ns``; earlier entries of the timer become void."""
         graph = self.graph
         with graph.lock:
             heappush(self._timers, (timer.due_ns, timer.number, timer))
@@ -73,12 +90,12 @@ class ReadyQueue:
 
     @property
     def has_due_work(self) -> bool:
-        """Whether anything may be ready now."""
+        """True if anything may be ready now."""
         return bool(self.items) or bool(self._timers and self._timers[0][0] <= self.graph.now_ns)
 
     @property
     def next_due_ns(self) -> int | None:
-        """When the next timer is due; None without timers."""
+        """The time at which the next timer is due [ns]; None without timers."""
         timers = self._timers
         with self.graph.lock:
             while timers and timers[0][0] != timers[0][2].due_ns:
@@ -86,7 +103,7 @@ class ReadyQueue:
             return timers[0][0] if timers else None
 
     def enqueue_due_timers(self) -> int:
-        """Moves the timers that are due into the line, and says how long the line is now."""
+        """Appends the timers that are due; returns the number of items."""
         timers = self._timers
         if timers:
             now = self.graph.now_ns
@@ -97,7 +114,7 @@ class ReadyQueue:
         return len(self.items)
 
     def take_next(self) -> TakenWork | None:
-        """The first work in line that may begin now; it must then be performed. None if there is none."""
+        """Takes the first work that its callback group admits; it must then be executed. None if there is none."""
         with self.graph.lock:
             self.enqueue_due_timers()
             items = self.items
@@ -115,7 +132,7 @@ class ReadyQueue:
         return None
 
     def execute(self, work: TakenWork) -> None:
-        """Does the work in the calling thread. What its callback raises comes out of here."""
+        """Runs the callback in the calling thread. What the callback raises is raised here."""
         item, taken = work
         thread_state = self.graph.thread_state
         outer = thread_state.work
@@ -128,16 +145,14 @@ class ReadyQueue:
         finally:
             thread_state.work = outer
         if type(result) is CoroutineType:
-            from kit.ros.execution.task import Task
-
-            task: Task[Any] = Task(result)
+            task = self._make_continuation(result)
             task.continue_for(item, self)
             self.execute(TakenWork(task, None))
         else:
             self.finish(item)
 
     def finish(self, item: ReadyItem) -> None:
-        """The item's turn is over: whoever waited for its callback group is first in line now."""
+        """Ends the item's turn: the items that waited for its callback group go to the front."""
         group = item.callback_group
         if group is not None:
             with self.graph.lock:
@@ -152,8 +167,8 @@ class ReadyQueue:
                 home.items.appendleft(waiting)
             self.graph.notify()
 
-    def take_over_node(self, handle: NodeHandle, other: ReadyQueue) -> None:
-        """Takes over everything that is to be done for a node from another ready_queue, in its order."""
+    def take_over_node(self, handle: ItemOwner, other: ReadyQueue) -> None:
+        """Moves the items and timers of a node here from another queue, in their order."""
         if other is self:
             return
         with self.graph.lock:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from kit.msg.message import type_name
-from kit.ros.graph.directory import describe_mismatch
+from kit.ros.graph.directory import TopicEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
 
 if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
-    from kit.ros.node.publisher import Publisher
     from kit.ros.node.qos import QoSProfile
-    from kit.ros.node.subscription import Subscription
 
 INFRASTRUCTURE_TOPICS: Final = frozenset({"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"})
 INFRASTRUCTURE_SERVICES: Final = frozenset(
@@ -112,14 +110,14 @@ def snapshot(graph: Graph) -> GraphState:
         )
 
 
-def _ends(ends: Iterable[Publisher[Any] | Subscription[Any]]) -> tuple[EndpointState, ...]:
+def _ends(ends: Iterable[TopicEndpoint]) -> tuple[EndpointState, ...]:
     return tuple(
         EndpointState(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends
     )
 
 
 def _mismatches(
-    publishers: Iterable[Publisher[Any]], subscriptions: Iterable[Subscription[Any]]
+    publishers: Iterable[TopicPublisher], subscriptions: Iterable[TopicSubscription]
 ) -> Iterable[EndpointMismatch]:
     subscriptions = tuple(subscriptions)
     for publisher in publishers:

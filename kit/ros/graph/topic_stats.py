@@ -12,8 +12,8 @@ from kit.msg.message import type_name
 
 if TYPE_CHECKING:
     from kit.msg.message import Message
+    from kit.ros.graph.directory import GraphNode
     from kit.ros.graph.graph import Graph
-    from kit.ros.node.node import Node
 
 RATE_WINDOW: Final = 50
 """Messages over which a rate is taken."""
@@ -100,7 +100,7 @@ class TopicStats:
                 }
             )
 
-    def _count_message(self, time_ns: int, node: Node, name: str, message: Message) -> None:
+    def _count_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         """With the graph's lock held, for every message there is: quick."""
         flow = self._flow(node.handle.full_name, name, type_name(type(message)))
         counter = self._counters.get(flow)

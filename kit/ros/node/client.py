@@ -1,4 +1,4 @@
-"""Clients: the asking side of services."""
+"""Clients: they call services."""
 
 from __future__ import annotations
 
@@ -7,32 +7,30 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from kit.msg.message import Service as Definition
 from kit.ros.exceptions import ExternalShutdownException, WouldDeadlock
-from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
+from kit.ros.execution.callback_groups import NO_WORK, MutuallyExclusiveCallbackGroup
 from kit.ros.execution.task import Future
-from kit.ros.graph.ready_queue import NO_WORK
-from kit.ros.node.endpoint import Entity
+from kit.ros.node.endpoint import Entity, EntityOwner
 from kit.ros.node.service import Call
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.node_handle import NodeHandle
     from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
 Response = TypeVar("Response")
 
 
-_PATIENCE_NS = S_TO_NS
-"""How long a blocking call waits before it wonders aloud whether anybody spins its node."""
+_WARN_AFTER_NS = S_TO_NS
+"""How long a blocking call waits before it warns that no thread may be spinning its node."""
 
 
 class Client(Entity, Generic[Request, Response]):
-    """Asks a service. ``Node.create_client`` makes one."""
+    """Calls a service. ``Node.create_client`` makes one."""
 
     def __init__(
         self,
-        handle: NodeHandle,
+        handle: EntityOwner,
         srv_type: type[Definition],
         srv_name: str,
         callback_group: CallbackGroup,
@@ -46,7 +44,7 @@ class Client(Entity, Generic[Request, Response]):
         self.callback_group = callback_group
         self.qos_profile = qos_profile
         self.number = self._graph.next_number()
-        self._asked = 0
+        self._last_number = 0
         self._pending: dict[int, Future[Any]] = {}
         self._queue: deque[tuple[int, Any]] = deque()
         with self._graph.lock:
@@ -62,30 +60,30 @@ class Client(Entity, Generic[Request, Response]):
         return self.service_name
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
-        """Asks and waits for the response; another thread must spin the node meanwhile.
+        """Sends a request and waits for the response; another thread must spin the node meanwhile.
 
         Raises TypeError for a wrong request, TimeoutError, and WouldDeadlock in a callback that the response
         would have to wait for.
         """
         self._check(request)
-        self._refuse_in_callback()
+        self._raise_if_deadlock()
         future = self.call_async(request)
         future.call_when_done(self._graph.notify)
         context, now = self._handle.context, self._graph.now_ns
         until = None if timeout_sec is None or timeout_sec < 0 else now + int(timeout_sec * S_TO_NS)
 
-        def over() -> bool:
+        def is_over() -> bool:
             return future.done() or not context.ok()
 
         what = f"call() on '{self.service_name}'"
-        first = now + _PATIENCE_NS if until is None else min(until, now + _PATIENCE_NS)
-        if not self._graph.wait(over, first, what=what) and not self._handle.is_spun:
+        first = now + _WARN_AFTER_NS if until is None else min(until, now + _WARN_AFTER_NS)
+        if not self._graph.wait(is_over, first, what=what) and not self._handle.is_spun:
             warning = (
                 f"{what} waits until another thread spins this node; if none does, it waits for ever. "
                 "Without threads: call_async(), then rclpy.spin_until_future_complete()"
             )
             self._handle.logger.warning(warning)
-        self._graph.wait(over, until, what=what)
+        self._graph.wait(is_over, until, what=what)
         if not future.done():
             self.remove_pending_request(future)
             if not context.ok():
@@ -94,37 +92,37 @@ class Client(Entity, Generic[Request, Response]):
         return future.result()
 
     def call_async(self, request: Request) -> Future[Response]:
-        """Asks; the future's result is the response, once this node's callbacks run again."""
+        """Sends a request; the future gets the response when this node's callbacks run."""
         self._check_not_destroyed()
         self._check(request)
         future: Future[Response] = Future()
         future.set_owner(self._handle)
         graph = self._graph
         with graph.lock:
-            self._asked += 1
-            self._pending[self._asked] = future
+            self._last_number += 1
+            self._pending[self._last_number] = future
             if graph.message_listeners:
                 graph.notify_message_listeners(self._handle.node, self.service_name, request)
             server = graph.directory.find_server(self.service_name, self.srv_type)
             if server is not None:
-                server.enqueue(Call(self, self._asked, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
+                server.enqueue(Call(self, self._last_number, request.__deepcopy__(None)))  # type: ignore[attr-defined]  # a message
                 graph.notify()
         if server is None:
-            warning = f"nobody serves '{self.service_name}': this call will never be answered; wait_for_service() first"
+            warning = f"no node serves '{self.service_name}': this call will never be answered; wait_for_service() first"
             self._handle.logger.warning(warning)
         return future
 
     def remove_pending_request(self, future: Future[Response]) -> None:
-        """Gives up on a call; its response will be dropped."""
+        """Forgets a call; its response will be dropped."""
         with self._graph.lock:
             self._pending = {number: other for number, other in self._pending.items() if other is not future}
 
     def service_is_ready(self) -> bool:
-        """Whether somebody serves it."""
+        """True if a node serves it."""
         return self._graph.directory.find_server(self.service_name, self.srv_type) is not None
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Waits until somebody serves it, and says whether somebody does."""
+        """Waits until a node serves it; True if one does."""
         until = (
             None
             if timeout_sec is None or timeout_sec < 0
@@ -134,7 +132,7 @@ class Client(Entity, Generic[Request, Response]):
         self._graph.wait(
             lambda: self.service_is_ready() or not context.ok(),
             until,
-            what=f"wait_for_service() on '{self.service_name}', which nobody serves,",
+            what=f"wait_for_service() on '{self.service_name}', which no node serves,",
         )
         return self.service_is_ready()
 
@@ -168,15 +166,15 @@ class Client(Entity, Generic[Request, Response]):
                 f"Expected {self.srv_type.__name__}.Request, got {type(request)}, to call '{self.service_name}'{hint}"
             )
 
-    def _refuse_in_callback(self) -> None:
-        """The response is a callback too: it must not have to wait for the one that waits for it."""
+    def _raise_if_deadlock(self) -> None:
+        """Raises WouldDeadlock if the response, which is a callback too, would have to wait for the calling callback."""
         work = self._graph.thread_state.work
         if work is None or work[0] is not self._handle.ready_queue:
             return
         ready_queue, item = work
         group = self.callback_group
         blocked = isinstance(group, MutuallyExclusiveCallbackGroup) and group.active is item
-        if ready_queue.exclusive or blocked:
+        if ready_queue.is_exclusive or blocked:
             raise WouldDeadlock(
                 f"call() on '{self.service_name}' inside a callback would wait for ever: the response is handled by "
                 "the same executor, which waits for this callback to return. Use call_async() and either "

@@ -1,20 +1,17 @@
-"""Clocks. In a simulation, clocks of every type tell the simulation's time: nothing depends on the computer."""
+"""Clocks. In a simulation, clocks of every type show the simulated time, so that nothing depends on the computer."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
 from kit.ros.exceptions import NotInitializedException
+from kit.ros.execution.context import Context, get_default_context
+from kit.ros.graph.graph import Graph
 from kit.ros.node.time import ClockType, Duration, Time
-
-if TYPE_CHECKING:
-    from kit.ros.execution.context import Context
-    from kit.ros.graph.graph import Graph
 
 
 class Clock:
-    """Tells the time of the default context's graph."""
+    """Shows the time of the default context's graph."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
         if not isinstance(clock_type, ClockType):
@@ -31,9 +28,7 @@ class Clock:
 
     @property
     def graph(self) -> Graph:
-        """Whose time it tells."""
-        from kit.ros.execution.context import get_default_context
-
+        """The graph this clock reads its time from."""
         return self._graph or get_default_context().graph
 
     def now(self) -> Time:
@@ -44,7 +39,7 @@ class Clock:
         return Time(nanoseconds=graph.now_ns, clock_type=self._clock_type)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
-        """Waits until that time has come; false if the context was shut down before.
+        """Waits until a time; False if the context was shut down before.
 
         Raises ValueError for a time of another clock, NotInitializedException without a running context.
         """
@@ -53,9 +48,7 @@ class Clock:
         return self.sleep_for(until - self.now(), context)
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
-        """Waits that long; false if the context was shut down before."""
-        from kit.ros.execution.context import get_default_context
-
+        """Waits for a duration; False if the context was shut down before."""
         context = context or get_default_context()
         if not context.ok():
             raise NotInitializedException("context has not been initialised")
@@ -66,7 +59,7 @@ class Clock:
 
 
 class ROSClock(Clock):
-    """A node's clock."""
+    """The clock of a node."""
 
     def __init__(self, graph: Graph | None = None) -> None:
         super().__init__(clock_type=ClockType.ROS_TIME)
@@ -74,5 +67,5 @@ class ROSClock(Clock):
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether it tells simulated time."""
+        """True if the time is simulated."""
         return self.graph.is_simulated

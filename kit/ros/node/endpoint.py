@@ -1,36 +1,59 @@
-"""What publishers, subscriptions, services and clients share: a node, a name, an end."""
+"""Base classes of what a node makes (publishers, timers, ...), their QoS events, and guard conditions."""
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
+from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.execution.task import Task
-from kit.ros.node.event_handler import QoSIncompatibility
+from kit.ros.graph.directory import GraphNode, NodeEntry, TopicEndpoint
+from kit.ros.node.qos import QoSPolicyKind, QoSProfile
 
 if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.node_handle import NodeHandle
-    from kit.ros.node.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-    from kit.ros.node.node import Node
-    from kit.ros.node.qos import QoSPolicyKind
+    from kit.ros.execution.context import Context
+    from kit.ros.graph.graph import Graph
+    from kit.ros.graph.ready_queue import ReadyQueue
+
+
+class EntityOwner(NodeEntry, Protocol):
+    """The part of a NodeHandle that publishers, timers and the like use."""
+
+    @property
+    def graph(self) -> Graph: ...
+
+    @property
+    def context(self) -> Context: ...
+
+    @property
+    def ready_queue(self) -> ReadyQueue: ...
+
+    @property
+    def is_spun(self) -> bool: ...
+
+    def remove_entity(self, entity: Destroyable) -> None: ...
 
 
 class Destroyable(ABC):
-    """Something that a node made and that can be done away with; also as a context manager."""
+    """Something that a node made and that can be destroyed; also a context manager, which destroys it."""
 
-    _handle: NodeHandle
+    _handle: EntityOwner
     _destroyed = False
 
     @property
-    def handle(self) -> NodeHandle:
-        """What the library knows of its node."""
+    def handle(self) -> EntityOwner:
+        """The internal record of its node."""
         return self._handle
 
     @property
-    def node(self) -> Node:
-        """Whose it is."""
+    def node(self) -> GraphNode:
+        """The node that made it."""
         return self._handle.node
 
     def __enter__(self) -> Self:
@@ -40,7 +63,7 @@ class Destroyable(ABC):
         self.destroy()
 
     def destroy(self) -> None:
-        """Takes it out of the graph. Using it afterwards raises InvalidHandle."""
+        """Removes it from the graph. Using it afterwards raises InvalidHandle."""
         if not self._destroyed:
             self._destroyed = True
             with self._handle.graph.lock:
@@ -49,7 +72,7 @@ class Destroyable(ABC):
 
     @abstractmethod
     def _unregister(self) -> None:
-        """Undoes what making it did outside its node."""
+        """Removes what the constructor registered outside the node. With the graph's lock held."""
 
     def _check_not_destroyed(self) -> None:
         if self._destroyed:
@@ -57,7 +80,7 @@ class Destroyable(ABC):
 
 
 class Entity(Destroyable):
-    """Something with a callback."""
+    """Something with a callback: a ``ReadyItem``."""
 
     callback_group: CallbackGroup
 
@@ -74,21 +97,21 @@ class Entity(Destroyable):
         """See ``ReadyItem``."""
 
     def discard_queue(self) -> None:
-        """Forgets the work that waits in it. With the graph's lock held."""
+        """Drops the work that waits in its queue. With the graph's lock held."""
 
 
 class IncompatibilityReporter:
-    """What an end of a topic does about partners whose quality of service does not fit."""
+    """Reports endpoints with an incompatible QoS to a publisher or subscription: by its event callback or a warning."""
 
     def __init__(
-        self, handle: NodeHandle, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None
+        self, handle: EntityOwner, callbacks: PublisherEventCallbacks | SubscriptionEventCallbacks | None
     ) -> None:
         self._handle = handle
         self._callbacks = callbacks
         self._count = 0
 
     def report(self, policy: QoSPolicyKind, warning: str) -> None:
-        """Calls the event callback for it, or else warns."""
+        """Calls the event callback; without one, warns."""
         self._count += 1
         callbacks = self._callbacks
         if callbacks is not None and callbacks.incompatible_qos is not None:
@@ -97,3 +120,137 @@ class IncompatibilityReporter:
             self._handle.ready_queue.put(task)
         elif callbacks is None or callbacks.use_default_callbacks:
             self._handle.logger.warning(warning)
+
+
+def accepted_argument_count(callback: Any, allowed: Sequence[int], what: str) -> int:
+    """The number of arguments to call ``callback`` with: the first of ``allowed`` that it accepts.
+
+    Checked when the callback is registered, so that a mistake shows there. Raises TypeError.
+    """
+    if not callable(callback):
+        hint = " (give the function itself, without parentheses)" if callback is None else ""
+        raise TypeError(f"the callback of {what} must be a function, not {type(callback).__name__}{hint}")
+    try:
+        signature = inspect.signature(callback)
+    except ValueError:  # some built-in functions have no signature
+        return allowed[0]
+    for count in allowed:
+        try:
+            signature.bind(*range(count))
+        except TypeError:
+            continue
+        return count
+    name = getattr(callback, "__qualname__", repr(callback))
+    counts = " or ".join(str(count) for count in allowed)
+    raise TypeError(
+        f"the callback of {what} is called with {counts} argument(s), but {name}{signature} takes others"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class QoSIncompatibility:
+    """The argument of an ``incompatible_qos`` callback."""
+
+    last_policy_kind: QoSPolicyKind
+    total_count: int
+    """The number of incompatible endpoints so far."""
+    total_count_change: int = 1
+
+
+QoSRequestedIncompatibleQoSInfo = QoSIncompatibility
+QoSOfferedIncompatibleQoSInfo = QoSIncompatibility
+
+EventCallback = Callable[[Any], Any]
+
+
+@dataclass(kw_only=True)
+class PublisherEventCallbacks:
+    """Callbacks for a publisher's events. ``incompatible_qos`` is called; the others never happen here:
+    a simulation misses no deadline and loses no publisher."""
+
+    deadline: EventCallback | None = None
+    liveliness: EventCallback | None = None
+    incompatible_qos: EventCallback | None = None
+    incompatible_type: EventCallback | None = None
+    matched: EventCallback | None = None
+    use_default_callbacks: bool = True
+
+
+@dataclass(kw_only=True)
+class SubscriptionEventCallbacks:
+    """Callbacks for a subscription's events. ``incompatible_qos`` is called; the others never happen here."""
+
+    deadline: EventCallback | None = None
+    liveliness: EventCallback | None = None
+    message_lost: EventCallback | None = None
+    incompatible_qos: EventCallback | None = None
+    incompatible_type: EventCallback | None = None
+    matched: EventCallback | None = None
+    use_default_callbacks: bool = True
+
+
+class TopicEndpointTypeEnum(IntEnum):
+    INVALID = 0
+    PUBLISHER = 1
+    SUBSCRIPTION = 2
+
+
+@dataclass(frozen=True, slots=True)
+class TopicEndpointInfo:
+    node_name: str
+    node_namespace: str
+    topic_type: str
+    endpoint_type: TopicEndpointTypeEnum
+    endpoint_gid: list[int]
+    """16 bytes that are unique in the graph."""
+    qos_profile: QoSProfile
+
+    @classmethod
+    def of(cls, endpoint: TopicEndpoint, kind: TopicEndpointTypeEnum) -> TopicEndpointInfo:
+        return cls(
+            endpoint.handle.name,
+            endpoint.handle.namespace,
+            type_name(endpoint.msg_type),
+            kind,
+            list(endpoint.number.to_bytes(16, "big")),
+            endpoint.qos_profile,
+        )
+
+
+class GuardCondition(Entity):
+    """Calls its callback once after ``trigger()``. ``Node.create_guard_condition`` makes one."""
+
+    def __init__(
+        self, handle: EntityOwner, callback: Callable[[], Any], callback_group: CallbackGroup
+    ) -> None:
+        accepted_argument_count(callback, (0,), "a guard condition")
+        self._handle = handle
+        self.callback = callback
+        self.callback_group = callback_group
+        self._triggered = False
+
+    def __repr__(self) -> str:
+        return f"guard condition of {self._handle.full_name}"
+
+    __str__ = __repr__
+
+    def trigger(self) -> None:
+        """From any thread. Triggered again before the callback has run, it runs once."""
+        self._check_not_destroyed()
+        with self._handle.graph.lock:
+            if not self._triggered:
+                self._triggered = True
+                self._handle.ready_queue.put(self)
+
+    def take(self) -> Any:
+        triggered, self._triggered = self._triggered, False
+        return None if triggered else NO_WORK
+
+    def run(self, taken: None) -> Any:
+        return self.callback()
+
+    def discard_queue(self) -> None:
+        self._triggered = False
+
+    def _unregister(self) -> None:
+        self._triggered = False

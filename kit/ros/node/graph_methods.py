@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 from kit.msg.message import type_name
 from kit.ros.exceptions import NodeNameNonExistentError
 from kit.ros.graph.naming import expand_topic_name, validate_topic_name
-from kit.ros.node.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 
 if TYPE_CHECKING:
-    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.graph.directory import NodeEntry
+    from kit.ros.node.node_handle import NodeHandle
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
@@ -105,7 +106,7 @@ class NodeGraphMethods:
         return handle.arguments.service(service, handle.name, handle.namespace)
 
 
-def _existing(asking: NodeHandle, name: str, namespace: str) -> NodeHandle:
+def _existing(asking: NodeHandle, name: str, namespace: str) -> NodeEntry:
     found = asking.graph.directory.find_node(name, namespace)
     if found is None:
         raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")

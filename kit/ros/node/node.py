@@ -13,15 +13,15 @@ from kit.msg.rcl_interfaces import ParameterEvent
 from kit.ros.exceptions import InvalidHandle, NotInitializedException
 from kit.ros.execution.arguments import RosArguments, parse_ros_arguments
 from kit.ros.execution.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
-from kit.ros.execution.context import Context, get_default_context
+from kit.ros.execution.context import Context, context_of, get_default_context
+from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import absolute_namespace, validate_namespace, validate_node_name
-from kit.ros.graph.node_handle import NodeHandle
 from kit.ros.log import LogRecord, RcutilsLogger
 from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
-from kit.ros.node.endpoint import Destroyable, Entity
+from kit.ros.node.endpoint import Destroyable, Entity, GuardCondition
 from kit.ros.node.graph_methods import NodeGraphMethods
-from kit.ros.node.guard_condition import GuardCondition
+from kit.ros.node.node_handle import NodeHandle
 from kit.ros.node.parameter_methods import NodeParameterMethods
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.qos import (
@@ -41,7 +41,7 @@ from kit.ros.parameters.parameter_store import ParameterStore
 
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
-    from kit.ros.node.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+    from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
 
 M = TypeVar("M", bound=Message)
 E = TypeVar("E", bound=Entity)
@@ -90,7 +90,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         handle.parameters.publish_event = lambda event: _publish_event(handle, events, event)
         self.declare_parameter("use_sim_time", handle.graph.is_simulated)
         if start_parameter_services:
-            ParameterServices(self)
+            ParameterServices(self, self.create_service)
         if enable_logger_service:
             handle.logger.warning("services for log levels are not offered here; use --ros-args --log-level")
         if automatically_declare_parameters_from_overrides:
@@ -338,6 +338,11 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         if self.__handle.destroyed:
             raise InvalidHandle(f"cannot use node {self.__handle.full_name}: it has been destroyed")
         return self.__handle
+
+
+def create_graph_node(graph: Graph, name: str, namespace: str | None = None) -> Node:
+    """Makes a plain node in a graph, in the context that the graph's nodes share."""
+    return Node(name, context=context_of(graph), namespace=namespace)
 
 
 def _handle_for(

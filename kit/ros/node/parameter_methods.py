@@ -22,7 +22,7 @@ from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from kit.ros.parameters.parameter_store import NOT_SET, OnSet, ParameterStore, PostSet, PreSet
 
 if TYPE_CHECKING:
-    from kit.ros.graph.node_handle import NodeHandle
+    from kit.ros.node.node_handle import NodeHandle
 
 
 class NodeParameterMethods:

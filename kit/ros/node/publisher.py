@@ -1,4 +1,4 @@
-"""Publishers."""
+"""Publishers: they deliver copies of each message to the matching subscriptions."""
 
 from __future__ import annotations
 
@@ -6,18 +6,16 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
 
 from kit.msg.message import Message, check_message
-from kit.ros.node.endpoint import Destroyable, IncompatibilityReporter
-from kit.ros.node.event_handler import PublisherEventCallbacks
+from kit.ros.graph.directory import TopicSubscription
+from kit.ros.node.endpoint import Destroyable, EntityOwner, IncompatibilityReporter, PublisherEventCallbacks
 from kit.ros.node.time import Duration
 
 if TYPE_CHECKING:
-    from kit.ros.graph.node_handle import NodeHandle
     from kit.ros.node.qos import QoSProfile
-    from kit.ros.node.subscription import Subscription
 
 M = TypeVar("M", bound=Message)
 
-_FOR_EVER = Duration(seconds=-1)
+_NO_TIMEOUT = Duration(seconds=-1)
 
 
 class Publisher(Destroyable, Generic[M]):
@@ -25,7 +23,7 @@ class Publisher(Destroyable, Generic[M]):
 
     def __init__(
         self,
-        handle: NodeHandle,
+        handle: EntityOwner,
         msg_type: type[M],
         topic: str,
         qos_profile: QoSProfile,
@@ -37,11 +35,11 @@ class Publisher(Destroyable, Generic[M]):
         self.topic_name = topic
         """Absolute, after remapping."""
         self.qos_profile = qos_profile
-        self.routes: tuple[Subscription[M], ...] = ()
-        """The subscriptions that what is published reaches."""
+        self.routes: tuple[TopicSubscription, ...] = ()
+        """The subscriptions that receive the messages."""
         self.number = self._graph.next_number()
         self.incompatibility_reporter = IncompatibilityReporter(handle, event_callbacks)
-        # What a transient-local publisher keeps for subscriptions that come later.
+        # A transient-local publisher keeps messages for subscriptions that are made later.
         self._history: deque[M] | None = None
         if qos_profile.is_transient_local:
             self._history = deque(maxlen=qos_profile.queue_length)
@@ -62,7 +60,7 @@ class Publisher(Destroyable, Generic[M]):
             self._send(msg, first=0)
 
     def publish_without_copy(self, msg: M) -> None:
-        """Sends a message that the caller will not touch again: saves copying it."""
+        """Sends a message that the caller will not change again: saves one copy."""
         self._check(msg)
         if self.routes or self._graph.message_listeners or self._history is not None:
             self._send(msg, first=1)
@@ -79,28 +77,28 @@ class Publisher(Destroyable, Generic[M]):
                 for subscription in self.routes[first:]:
                     subscription.enqueue(msg.__deepcopy__(None))
             except AttributeError:
-                self._explain(msg)
-            # Last: from here on the message is somebody else's.
+                self._raise_field_error(msg)
+            # Last: from here on the message belongs to that subscription.
             if first and self.routes:
                 self.routes[0].enqueue(msg)
             graph.notify()
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions it reaches."""
+        """The number of subscriptions that receive its messages."""
         self._check_not_destroyed()
         return len(self.routes)
 
-    def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
-        """True: whatever was published has arrived in the subscriptions' queues by now."""
+    def wait_for_all_acked(self, timeout: Duration = _NO_TIMEOUT) -> bool:
+        """Returns True: delivery to the subscriptions' queues is immediate."""
         self._check_not_destroyed()
         return True
 
     def assert_liveliness(self) -> None:
-        """Says that the publisher is alive; nobody doubts it here."""
+        """No-op: liveliness is not modelled."""
         self._check_not_destroyed()
 
-    def send_history_to(self, subscription: Subscription[M]) -> None:
-        """Sends what was kept to a transient-local subscription that was not there yet."""
+    def send_history_to(self, subscription: TopicSubscription) -> None:
+        """Sends the kept messages to a new transient-local subscription."""
         if self._history is not None and subscription.qos_profile.is_transient_local:
             for msg in self._history:
                 subscription.enqueue(msg.__deepcopy__(None))
@@ -114,8 +112,8 @@ class Publisher(Destroyable, Generic[M]):
                 f"Expected {self.msg_type}, got {type(msg)}, to publish on '{self.topic_name}'{hint}"
             )
 
-    def _explain(self, msg: Any) -> NoReturn:
-        """A message that cannot be copied holds something that is no message: says where."""
+    def _raise_field_error(self, msg: Any) -> NoReturn:
+        """Raises FieldError with the path of the field that made copying the message fail."""
         check_message(msg)
         raise
 

@@ -1,4 +1,4 @@
-"""Services: the answering side."""
+"""Services: they answer requests by their callback."""
 
 from __future__ import annotations
 
@@ -8,14 +8,12 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from kit.msg.message import Service as Definition
-from kit.ros.graph.ready_queue import NO_WORK
-from kit.ros.node.callback_check import accepted_argument_count
-from kit.ros.node.endpoint import Entity
+from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.graph.directory import ServiceClient
+from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.node_handle import NodeHandle
-    from kit.ros.node.client import Client
     from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
@@ -23,9 +21,9 @@ Response = TypeVar("Response")
 
 
 class Call(NamedTuple):
-    """A request on its way: whose it is, and which of that client's."""
+    """A request that a client sent, with the number by which the client finds its future."""
 
-    client: Client[Any, Any]
+    client: ServiceClient
     number: int
     request: Any
 
@@ -38,7 +36,7 @@ class Service(Entity, Generic[Request, Response]):
 
     def __init__(
         self,
-        handle: NodeHandle,
+        handle: EntityOwner,
         srv_type: type[Definition],
         srv_name: str,
         callback: Callable[[Any, Any], Any],

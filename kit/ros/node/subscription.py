@@ -1,4 +1,4 @@
-"""Subscriptions."""
+"""Subscriptions: they queue messages and pass them to their callback."""
 
 from __future__ import annotations
 
@@ -8,21 +8,24 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from kit.msg.message import Message
-from kit.ros.graph.ready_queue import NO_WORK
-from kit.ros.node.callback_check import accepted_argument_count
-from kit.ros.node.endpoint import Entity, IncompatibilityReporter
-from kit.ros.node.event_handler import SubscriptionEventCallbacks
+from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.node.endpoint import (
+    Entity,
+    EntityOwner,
+    IncompatibilityReporter,
+    SubscriptionEventCallbacks,
+    accepted_argument_count,
+)
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.node_handle import NodeHandle
     from kit.ros.node.qos import QoSProfile
 
 M = TypeVar("M", bound=Message)
 
 
 class MessageInfo(TypedDict):
-    """What a callback with a second parameter is told about its message."""
+    """The second argument of a callback that takes two."""
 
     source_timestamp: int
     received_timestamp: int
@@ -33,7 +36,7 @@ class MessageInfo(TypedDict):
 class Subscription(Entity, Generic[M]):
     """Receives messages of one type from a topic. ``Node.create_subscription`` makes one.
 
-    Its queue holds as many messages as its quality of service says; when it is full, the oldest one goes.
+    Its queue holds as many messages as its quality of service says; when it is full, the oldest one is dropped.
     """
 
     class CallbackType(Enum):
@@ -42,7 +45,7 @@ class Subscription(Entity, Generic[M]):
 
     def __init__(
         self,
-        handle: NodeHandle,
+        handle: EntityOwner,
         msg_type: type[M],
         topic: str,
         callback: Callable[..., Any],
@@ -77,27 +80,27 @@ class Subscription(Entity, Generic[M]):
         return self.topic_name
 
     def get_publisher_count(self) -> int:
-        """How many publishers reach it."""
+        """The number of publishers whose messages it receives."""
         self._check_not_destroyed()
         return sum(
             self in publisher.routes for publisher in self._graph.directory.publishers(self.topic_name)
         )
 
     def enqueue(self, msg: M) -> None:
-        """Queues a message that is now this subscription's own. With the graph's lock held."""
+        """Queues a message, which the subscription owns from now on. With the graph's lock held."""
         queue = self._queue
         if len(queue) != queue.maxlen:
-            # One place in the line per queued message: a message that pushes out another takes over its place.
+            # One entry in the ready queue per queued message: a message that replaces another uses its entry.
             self._handle.ready_queue.items.append(self)
         queue.append(msg)
 
     @property
-    def has_waiting(self) -> bool:
-        """Whether messages wait in its queue."""
+    def has_messages(self) -> bool:
+        """True if messages wait in its queue."""
         return bool(self._queue)
 
-    def take_waiting(self) -> list[M]:
-        """All messages that wait, instead of their callbacks."""
+    def take_messages(self) -> list[M]:
+        """Removes and returns all queued messages; the callback is not called for them."""
         with self._graph.lock:
             waiting = list(self._queue)
             self._queue.clear()

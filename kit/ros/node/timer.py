@@ -1,4 +1,4 @@
-"""Timers, rates, and the rule by which both come due."""
+"""Timers and rates, and the schedule by which both are due."""
 
 from __future__ import annotations
 
@@ -7,21 +7,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
-from kit.ros.graph.ready_queue import NO_WORK
-from kit.ros.node.callback_check import accepted_argument_count
-from kit.ros.node.endpoint import Destroyable, Entity
+from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.node.endpoint import Destroyable, Entity, EntityOwner, accepted_argument_count
 from kit.ros.node.time import Time
 
 if TYPE_CHECKING:
     from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.graph.node_handle import NodeHandle
     from kit.ros.node.clock import Clock
 
 
 class Schedule:
-    """When something periodic is due: one period after its start, then every period.
+    """The due times of something periodic: one period after its start, then every period.
 
-    Who comes late does not catch up: the periods that were missed are left out, and the rhythm is kept.
+    Missed periods are skipped, not made up for; the phase is kept.
     """
 
     def __init__(self, period_ns: int, now_ns: int) -> None:
@@ -35,7 +33,7 @@ class Schedule:
         self.due_ns = now_ns + self.period_ns
 
     def call(self, now_ns: int) -> None:
-        """Notes a turn taken now and sets the next one."""
+        """Records a call at ``now_ns`` and sets the next due time."""
         self.last_ns = now_ns
         self.due_ns += self.period_ns
         if self.period_ns == 0:
@@ -46,7 +44,7 @@ class Schedule:
             self.due_ns += missed * self.period_ns
 
     def rewind(self, now_ns: int) -> bool:
-        """Time has jumped back: before the last turn, a new period begins. Says whether one did."""
+        """Starts a new period if time has jumped back before the last call; True if it did."""
         if now_ns < self.last_ns:
             self.start(now_ns)
             return True
@@ -55,7 +53,7 @@ class Schedule:
 
 @dataclass(frozen=True, slots=True)
 class TimerInfo:
-    """What a callback with a parameter is told about its timer's turn."""
+    """The argument of a timer callback that takes one."""
 
     expected_call_time: Time
     actual_call_time: Time
@@ -66,7 +64,7 @@ class Timer(Entity):
 
     def __init__(
         self,
-        handle: NodeHandle,
+        handle: EntityOwner,
         callback: Callable[..., Any] | None,
         callback_group: CallbackGroup,
         timer_period_ns: int,
@@ -93,7 +91,7 @@ class Timer(Entity):
 
     @property
     def due_ns(self) -> int:
-        """When its next turn comes; -1 if never."""
+        """The time of the next call [ns]; -1 if it is cancelled or destroyed."""
         return -1 if self._cancelled or self._destroyed else self._schedule.due_ns
 
     @property
@@ -107,11 +105,11 @@ class Timer(Entity):
 
     @timer_period_ns.setter
     def timer_period_ns(self, value: int) -> None:
-        """Takes effect after the turn that is already set."""
+        """Takes effect after the call that is already scheduled."""
         self._schedule.period_ns = int(value)
 
     def is_ready(self) -> bool:
-        """Whether its turn has come."""
+        """True if it is due."""
         self._check_not_destroyed()
         return not self._cancelled and self._schedule.due_ns <= self._graph.now_ns
 
@@ -120,12 +118,12 @@ class Timer(Entity):
         return self._cancelled
 
     def cancel(self) -> None:
-        """No more turns, until ``reset``."""
+        """Stops the calls until ``reset``."""
         self._check_not_destroyed()
         self._cancelled = True
 
     def reset(self) -> None:
-        """Begins a new period now, also if it was cancelled."""
+        """Starts a new period now, also if it was cancelled."""
         self._check_not_destroyed()
         with self._graph.lock:
             self._cancelled = False
@@ -133,17 +131,17 @@ class Timer(Entity):
             self._handle.ready_queue.add_timer(self)
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds."""
+        """Nanoseconds since the last call."""
         self._check_not_destroyed()
         return self._graph.now_ns - self._schedule.last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds, negative if it is late; None if it is cancelled."""
+        """Nanoseconds until the next call, negative if it is late; None if it is cancelled."""
         self._check_not_destroyed()
         return None if self._cancelled else self._schedule.due_ns - self._graph.now_ns
 
     def rewind(self) -> None:
-        """Time has jumped back. With the graph's lock held."""
+        """Adapts to a jump back in time. With the graph's lock held."""
         if self._schedule.rewind(self._graph.now_ns) and not self._cancelled:
             self._handle.ready_queue.add_timer(self)
 
@@ -161,7 +159,7 @@ class Timer(Entity):
             return None
         if not self._with_info:
             return self.callback()
-        due, now = (Time(nanoseconds=moment, clock_type=self._clock.clock_type) for moment in taken)
+        due, now = (Time(nanoseconds=time_ns, clock_type=self._clock.clock_type) for time_ns in taken)
         return self.callback(TimerInfo(due, now))
 
     def _unregister(self) -> None:
@@ -169,7 +167,7 @@ class Timer(Entity):
 
 
 _SLEEPS_BEFORE_WARNING = 3
-"""A thread that is to spin may take a moment to start."""
+"""A thread that will spin the node may need some time to start."""
 
 
 class Rate(Destroyable):
@@ -178,11 +176,11 @@ class Rate(Destroyable):
     On a robot another thread must spin the node meanwhile; here it works without, with a warning.
     """
 
-    def __init__(self, handle: NodeHandle, period_ns: int) -> None:
+    def __init__(self, handle: EntityOwner, period_ns: int) -> None:
         self._handle = handle
         self._graph = handle.graph
         self._schedule = Schedule(period_ns, self._graph.now_ns)
-        self._alone = 0
+        self._sleeps_without_spin = 0
 
     def __repr__(self) -> str:
         return f"rate of {1e9 / self._schedule.period_ns:g} Hz"
@@ -196,29 +194,29 @@ class Rate(Destroyable):
         if self._destroyed:
             raise InvalidHandle("Rate cannot sleep because it has been destroyed")
         graph, schedule, context = self._graph, self._schedule, self._handle.context
-        self._refuse_in_callback()
-        self._alone += not self._handle.is_spun
-        if self._alone == _SLEEPS_BEFORE_WARNING:
+        self._raise_if_deadlock()
+        self._sleeps_without_spin += not self._handle.is_spun
+        if self._sleeps_without_spin == _SLEEPS_BEFORE_WARNING:
             self._handle.logger.warning(
                 "rate.sleep() works here, but hangs on a robot unless another thread spins this node"
             )
 
-        def over() -> bool:
+        def is_over() -> bool:
             return graph.now_ns >= schedule.due_ns or self._destroyed or not context.ok()
 
-        while not graph.wait(over, schedule.due_ns, what="rate.sleep()"):
+        while not graph.wait(is_over, schedule.due_ns, what="rate.sleep()"):
             pass
         if not context.ok():
             raise ROSInterruptException
         schedule.call(graph.now_ns)
 
     def rewind(self) -> None:
-        """Time has jumped back. With the graph's lock held."""
+        """Adapts to a jump back in time. With the graph's lock held."""
         self._schedule.rewind(self._graph.now_ns)
 
-    def _refuse_in_callback(self) -> None:
+    def _raise_if_deadlock(self) -> None:
         work = self._graph.thread_state.work
-        if work is not None and work[0] is self._handle.ready_queue and work[0].exclusive:
+        if work is not None and work[0] is self._handle.ready_queue and work[0].is_exclusive:
             raise WouldDeadlock(
                 "rate.sleep() inside a callback would wait for ever: the executor that has to end the sleep waits "
                 "for this callback to return. Do a little in each turn of a timer instead."

@@ -1,7 +1,8 @@
-"""The services through which other programs read and set a node's parameters."""
+"""Services by which other programs read and set the parameters of a node."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from kit.msg.rcl_interfaces import (
@@ -20,13 +21,13 @@ from kit.ros.node.qos import qos_profile_parameters
 from kit.ros.parameters.parameter import Parameter
 
 if TYPE_CHECKING:
-    from kit.ros.node.node import Node
+    from kit.ros.node.parameter_methods import NodeParameterMethods
 
 
 class ParameterServices:
     """Six services under the node's name, as every ROS 2 node has them."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: NodeParameterMethods, create_service: Callable[..., object]) -> None:
         self._node = node
         for definition, name, callback in (
             (DescribeParameters, "describe_parameters", self._describe),
@@ -36,7 +37,7 @@ class ParameterServices:
             (SetParameters, "set_parameters", self._set),
             (SetParametersAtomically, "set_parameters_atomically", self._set_atomically),
         ):
-            node.create_service(definition, f"~/{name}", callback, qos_profile=qos_profile_parameters)
+            create_service(definition, f"~/{name}", callback, qos_profile=qos_profile_parameters)
 
     def _describe(self, request: Any, response: Any) -> Any:
         node = self._node

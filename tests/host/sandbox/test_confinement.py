@@ -30,6 +30,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from tests.host.conftest import LINUX, QUICK, Student
 
 
@@ -232,7 +233,7 @@ def test_a_controller_runs_on_every_level(student: Student, level: Level) -> Non
     avoid = find("avoid").file
     graph = Graph()
     commands: list[Twist] = []
-    node = graph.create_node("world")
+    node = create_graph_node(graph, "world")
     node.create_subscription(Twist, "cmd_vel", commands.append, 10)
     scans = node.create_publisher(LaserScan, "static_laser", 10)
     with Guest.start(graph, avoid, limits=QUICK, level=level) as guest:

@@ -14,7 +14,7 @@ from kit.ros.execution.arguments import parse_ros_arguments, split_ros_arguments
 from kit.ros.execution.context import Context
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 
 
 def node_with(graph: Graph, *arguments: str, **settings: Any) -> Node:
@@ -85,7 +85,7 @@ class TestLogLevels:
     def test_for_all_and_for_one(self, graph: Graph) -> None:
         node = node_with(graph, "--log-level", "warn", "--log-level", "node:=debug")
         assert node.get_logger().get_effective_level() is LoggingSeverity.DEBUG
-        assert graph.create_node("other").get_logger().get_effective_level() is LoggingSeverity.WARN
+        assert create_graph_node(graph, "other").get_logger().get_effective_level() is LoggingSeverity.WARN
 
 
 class TestMistakes:

@@ -14,12 +14,14 @@ from kit.msg.std_msgs import Int32
 from kit.ros.exceptions import ExternalShutdownException, WouldDeadlock
 from kit.ros.execution import client_library as rclpy
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from kit.ros.execution.client_library import wait_for_message
+from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from kit.ros.execution.task import Future, Task
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import Duration
-from kit.ros.node.wait_for_message import wait_for_message
 
 MS = 1_000_000
 
@@ -58,7 +60,7 @@ def until(condition: Callable[[], bool]) -> None:
 
 class TestSpinning:
     def test_once_means_at_most_one_callback(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         heard: list[int] = []
         node.create_subscription(Int32, "x", lambda message: heard.append(message.data), 10)
         publisher = node.create_publisher(Int32, "x", 10)
@@ -69,7 +71,7 @@ class TestSpinning:
             assert heard == expected
 
     def test_zero_does_not_wait_and_a_moment_waits_that_long(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         began = time.monotonic()
         rclpy.spin_once(node, timeout_sec=0)
         assert time.monotonic() - began < 0.02
@@ -77,14 +79,14 @@ class TestSpinning:
         assert 0.05 <= time.monotonic() - began < 2
 
     def test_a_timer_is_waited_for(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         called: list[str] = []
         node.create_timer(0.02, lambda: called.append("timer"))
         rclpy.spin_once(node)
         assert called == ["timer"]
 
     def test_until_a_future_is_done(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         future: Future[int] = Future()
         count: list[int] = []
 
@@ -99,30 +101,30 @@ class TestSpinning:
         assert len(count) == 3
 
     def test_until_the_time_is_over(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, lambda: None)
         rclpy.spin_until_future_complete(node, Future(), timeout_sec=0.03)
 
     def test_a_future_set_by_another_thread_ends_it(self, alone: Graph) -> None:
-        node, future = alone.create_node("node"), Future[int]()
+        node, future = create_graph_node(alone, "node"), Future[int]()
         threading.Timer(0.02, lambda: future.set_result(1)).start()
         rclpy.spin_until_future_complete(node, future, timeout_sec=5)
         assert future.done()
 
     def test_what_a_callback_raises_comes_out(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, lambda: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             rclpy.spin(node)
 
     def test_a_callback_may_shut_down(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, node.context.shutdown)
         rclpy.spin(node)
         assert not node.context.ok()
 
     def test_a_shutdown_from_outside_raises(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         threading.Timer(0.02, node.context.shutdown_from_outside).start()
         with pytest.raises(ExternalShutdownException):
             rclpy.spin(node)
@@ -131,14 +133,14 @@ class TestSpinning:
             node.context.shutdown()
 
     def test_a_shutdown_from_outside_during_a_callback_raises_too(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, node.context.shutdown_from_outside)
         with pytest.raises(ExternalShutdownException):
             rclpy.spin(node)
 
     def test_a_wait_with_a_deadline_ends_when_time_jumps_back(self, graph: Graph) -> None:
         graph.advance(1_000_000 * MS)
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         thread = threading.Thread(target=rclpy.spin_once, args=(node,), kwargs={"timeout_sec": 1.0})
         thread.start()
         until(lambda: bool(graph.waiting_threads))
@@ -147,20 +149,20 @@ class TestSpinning:
         assert not thread.is_alive()
 
     def test_a_shutdown_by_the_program_in_another_thread_just_ends_it(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         threading.Timer(0.02, node.context.shutdown).start()
         rclpy.spin(node)
 
     def test_spinning_in_its_own_callback_is_explained(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, lambda: rclpy.spin_once(node, executor=executor))
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(node)
         with pytest.raises(WouldDeadlock, match="Executor is already spinning"):
             executor.spin()
 
     def test_two_threads_cannot_spin_one_executor(self, alone: Graph) -> None:
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         with spinning(executor):
             until(lambda: executor.is_spinning)
             with pytest.raises(RuntimeError, match="already spinning"):
@@ -169,7 +171,7 @@ class TestSpinning:
 
 class TestWhoseNode:
     def test_a_spun_node_is_not_run_in_lock_step_too(self, graph: Graph) -> None:
-        node, executor = graph.create_node("node"), SingleThreadedExecutor(context=graph.context)
+        node, executor = create_graph_node(graph, "node"), SingleThreadedExecutor(context=context_of(graph))
         called: list[int] = []
         node.create_timer(0.1, lambda: called.append(1))
         executor.add_node(node)
@@ -181,10 +183,10 @@ class TestWhoseNode:
         assert executor.get_nodes() == [node]
 
     def test_what_waits_moves_with_its_node_in_order(self, graph: Graph) -> None:
-        node, other = graph.create_node("node"), graph.create_node("other")
+        node, other = create_graph_node(graph, "node"), create_graph_node(graph, "other")
         first, second = (
-            SingleThreadedExecutor(context=graph.context),
-            SingleThreadedExecutor(context=graph.context),
+            SingleThreadedExecutor(context=context_of(graph)),
+            SingleThreadedExecutor(context=context_of(graph)),
         )
         heard: list[int] = []
         for reader in (node, other):
@@ -206,13 +208,13 @@ class TestWhoseNode:
         assert heard == [0, 1, 2, 0, 1, 2, 9, 9]
 
     def test_a_node_of_another_graph_is_refused(self, graph: Graph) -> None:
-        executor = SingleThreadedExecutor(context=Graph().context)
+        executor = SingleThreadedExecutor(context=context_of(Graph()))
         with pytest.raises(RuntimeError, match="another graph"):
-            executor.add_node(graph.create_node("node"))
+            executor.add_node(create_graph_node(graph, "node"))
 
     def test_an_executor_lets_go_of_its_nodes_at_the_end(self, graph: Graph) -> None:
-        node = graph.create_node("node")
-        with SingleThreadedExecutor(context=graph.context) as executor:
+        node = create_graph_node(graph, "node")
+        with SingleThreadedExecutor(context=context_of(graph)) as executor:
             executor.add_node(node)
         assert node.executor is None
 
@@ -220,7 +222,7 @@ class TestWhoseNode:
 class TestGroups:
     def both_at_once(self, alone: Graph, *groups: Any) -> bool:
         """Whether two callbacks of these groups overlap in a pool of threads."""
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         meeting = threading.Barrier(2)
         met: list[bool] = []
         done: Future[None] = Future()
@@ -235,7 +237,7 @@ class TestGroups:
                 done.set_result(None)
 
         conditions = [node.create_guard_condition(callback, callback_group=group) for group in groups]
-        with MultiThreadedExecutor(2, context=alone.context) as executor:
+        with MultiThreadedExecutor(2, context=context_of(alone)) as executor:
             executor.add_node(node)
             for condition in conditions:
                 condition.trigger()
@@ -257,7 +259,7 @@ class TestGroups:
         assert self.both_at_once(alone, group, group)
 
     def test_a_waiting_coroutine_keeps_its_exclusive_group(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         order: list[str] = []
         go: Future[None] = Future()
 
@@ -280,15 +282,15 @@ class TestGroups:
         assert order == ["slow begins", "other", "slow ends", "quick"]
 
     def test_what_a_pooled_callback_raises_comes_out_of_spin(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         node.create_timer(0.001, lambda: 1 / 0)
-        with MultiThreadedExecutor(2, context=alone.context) as executor:
+        with MultiThreadedExecutor(2, context=context_of(alone)) as executor:
             executor.add_node(node)
             with pytest.raises(ZeroDivisionError):
                 executor.spin()
 
     def test_a_group_knows_its_entities(self, graph: Graph) -> None:
-        node, group = graph.create_node("node"), MutuallyExclusiveCallbackGroup()
+        node, group = create_graph_node(graph, "node"), MutuallyExclusiveCallbackGroup()
         timer = node.create_timer(1.0, lambda: None, group)
         assert group.has_entity(timer)
         assert group.can_execute(timer)
@@ -299,7 +301,7 @@ class TestGroups:
 class TestThreads:
     def test_one_thread_trains_while_another_spins(self, alone: Graph) -> None:
         """As the reinforcement-learning packages do it: ``step()`` publishes and blocks until the next scan."""
-        world, agent = alone.create_node("world"), alone.create_node("agent")
+        world, agent = create_graph_node(alone, "world"), create_graph_node(alone, "agent")
         scans = world.create_publisher(Int32, "scan", 10)
         commands = agent.create_publisher(Int32, "cmd", 10)
         arrived = threading.Event()
@@ -322,7 +324,7 @@ class TestThreads:
                 assert arrived.wait(5)
                 observations.append(seen[-1])
 
-        executors = [SingleThreadedExecutor(context=alone.context) for _ in range(2)]
+        executors = [SingleThreadedExecutor(context=context_of(alone)) for _ in range(2)]
         executors[0].add_node(world)
         executors[1].add_node(agent)
         with spinning(*executors) as problems:
@@ -333,11 +335,11 @@ class TestThreads:
         assert observations == list(range(1, 201))
 
     def test_many_threads_publish_at_once_and_nothing_is_lost(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         heard: list[int] = []
         node.create_subscription(Int32, "x", lambda message: heard.append(message.data), 10_000)
         publishers = [node.create_publisher(Int32, "x", 10_000) for _ in range(4)]
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(node)
 
         def send(number: int) -> None:
@@ -357,7 +359,7 @@ class TestThreads:
             assert mine == sorted(mine)
 
     def test_a_spinning_thread_follows_simulated_time(self, graph: Graph) -> None:
-        node, executor = graph.create_node("node"), SingleThreadedExecutor(context=graph.context)
+        node, executor = create_graph_node(graph, "node"), SingleThreadedExecutor(context=context_of(graph))
         times: list[int] = []
         node.create_timer(0.1, lambda: times.append(graph.now_ns // MS))
         executor.add_node(node)
@@ -369,7 +371,7 @@ class TestThreads:
         assert times == [100, 200, 300]
 
     def test_entities_may_come_and_go_while_it_spins(self, alone: Graph) -> None:
-        node, executor = alone.create_node("node"), SingleThreadedExecutor(context=alone.context)
+        node, executor = create_graph_node(alone, "node"), SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(node)
         called: list[int] = []
         with spinning(executor) as problems:
@@ -403,7 +405,7 @@ class TestWaiter:
     def test_time_and_messages_come_while_it_waits(self) -> None:
         waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
         graph = Graph(waiter=waiter)
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         times: list[int] = []
         done: Future[None] = Future()
 
@@ -423,7 +425,7 @@ class TestWaiter:
     def test_a_program_may_wait_inside_a_callback(self) -> None:
         waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 50)))
         graph = Graph(waiter=waiter)
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         times: list[int] = []
 
         def patient() -> None:
@@ -437,7 +439,7 @@ class TestWaiter:
     def test_only_one_of_many_threads_calls_the_waiter(self) -> None:
         waiter = StagedWaiter(*(lambda graph, t=t: graph.advance(t * 10 * MS) for t in range(1, 500)))
         graph = Graph(waiter=waiter)
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         slept: list[int] = []
 
         def sleep(frequency: float) -> None:
@@ -456,14 +458,14 @@ class TestWaiter:
 
 class TestTasks:
     def test_a_task_is_a_future(self, graph: Graph) -> None:
-        executor = SingleThreadedExecutor(context=graph.context)
+        executor = SingleThreadedExecutor(context=context_of(graph))
         task = executor.create_task(lambda a, b: a + b, 2, b=3)
         assert not task.done()
         executor.spin_once(timeout_sec=0)
         assert task.result() == 5
 
     def test_a_coroutine_goes_on_when_what_it_awaits_is_there(self, graph: Graph) -> None:
-        executor = SingleThreadedExecutor(context=graph.context)
+        executor = SingleThreadedExecutor(context=context_of(graph))
         future = executor.create_future()
         calls: list[str] = []
         future.add_done_callback(lambda done: calls.append(done.result()))
@@ -482,7 +484,7 @@ class TestTasks:
         assert calls == ["it"]
 
     def test_what_it_raises_is_its_exception_and_comes_out(self, graph: Graph) -> None:
-        executor = SingleThreadedExecutor(context=graph.context)
+        executor = SingleThreadedExecutor(context=context_of(graph))
         task = executor.create_task(lambda: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             executor.spin_once(timeout_sec=0)
@@ -491,7 +493,7 @@ class TestTasks:
             task.result()
 
     def test_a_cancelled_task_does_not_run(self, graph: Graph) -> None:
-        executor = SingleThreadedExecutor(context=graph.context)
+        executor = SingleThreadedExecutor(context=context_of(graph))
         task = executor.create_task(lambda: pytest.fail("cancelled"))
         task.cancel()
         executor.spin_once(timeout_sec=0)
@@ -499,7 +501,7 @@ class TestTasks:
         assert task.done()
 
     def test_a_cancelled_coroutine_is_closed_and_frees_its_group(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         closed: list[str] = []
         tasks: list[Task[Any]] = []
 
@@ -541,7 +543,7 @@ class TestTasks:
 
 class TestWaitForMessage:
     def test_the_next_message(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         publisher = node.create_publisher(Int32, "x", 10)
         threading.Timer(0.02, lambda: publisher.publish(Int32(data=4))).start()
         arrived, message = wait_for_message(Int32, node, "x", time_to_wait=5)
@@ -550,11 +552,14 @@ class TestWaitForMessage:
         assert list(node.subscriptions) == []
 
     def test_none_in_time(self, alone: Graph) -> None:
-        assert wait_for_message(Int32, alone.create_node("node"), "x", time_to_wait=0.01) == (False, None)
+        assert wait_for_message(Int32, create_graph_node(alone, "node"), "x", time_to_wait=0.01) == (
+            False,
+            None,
+        )
 
 
 def test_a_guard_condition_triggered_twice_calls_once(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     called: list[int] = []
     condition = node.create_guard_condition(lambda: called.append(1))
     condition.trigger()
@@ -566,7 +571,7 @@ def test_a_guard_condition_triggered_twice_calls_once(graph: Graph) -> None:
 def test_a_warning_for_a_call_that_nobody_will_answer(alone: Graph, lines: list[LogRecord]) -> None:
     from kit.msg.std_srvs import Trigger
 
-    node = alone.create_node("node")
+    node = create_graph_node(alone, "node")
     node.create_service(Trigger, "s", lambda request, response: response)
     with pytest.raises(TimeoutError):
         node.create_client(Trigger, "s").call(Trigger.Request(), timeout_sec=0.02)

@@ -15,8 +15,8 @@ from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import InvalidHandle, InvalidTopicNameException
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.ros.node.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from kit.ros.node.node import Node
+from kit.ros.node.endpoint import PublisherEventCallbacks, SubscriptionEventCallbacks
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -34,7 +34,7 @@ from kit.ros.node.time import Duration
 
 @pytest.fixture
 def node(graph: Graph) -> Node:
-    return graph.create_node("node")
+    return create_graph_node(graph, "node")
 
 
 class TestCopies:
@@ -152,7 +152,7 @@ class TestQualityOfService:
         policy: str,
         publisher_first: bool,
     ) -> None:
-        talker, listener = graph.create_node("talker"), graph.create_node("listener")
+        talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
         heard: list[Int32] = []
         make = [
             lambda: talker.create_publisher(Int32, "x", offered),
@@ -230,7 +230,7 @@ class TestQualityOfService:
 
 class TestMistakes:
     def test_two_types_on_one_topic_are_reported_to_both(self, graph: Graph, lines: list[LogRecord]) -> None:
-        talker, listener = graph.create_node("talker"), graph.create_node("listener")
+        talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener")
         heard: list[Any] = []
         listener.create_subscription(String, "x", heard.append, 10)
         talker.create_publisher(Int32, "x", 10).publish(Int32())
@@ -306,7 +306,7 @@ class TestMistakes:
 
 
 def test_publishers_subscriptions_and_nodes_find_each_other(graph: Graph) -> None:
-    node = graph.create_node("node", "/robot")
+    node = create_graph_node(graph, "node", "/robot")
     publisher = node.create_publisher(String, "chat", 10)
     subscription = node.create_subscription(String, "chat", print, 10)
     assert (publisher.topic_name, publisher.get_subscription_count()) == ("/robot/chat", 1)
@@ -318,7 +318,7 @@ def test_publishers_subscriptions_and_nodes_find_each_other(graph: Graph) -> Non
 
 
 def test_looking_around(graph: Graph) -> None:
-    talker, listener = graph.create_node("talker"), graph.create_node("listener", "/far")
+    talker, listener = create_graph_node(graph, "talker"), create_graph_node(graph, "listener", "/far")
     talker.create_publisher(String, "chat", 7)
     listener.create_subscription(String, "/chat", print, 10)
     listener.create_service(Trigger, "ask", lambda request, response: response)

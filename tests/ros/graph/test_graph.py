@@ -10,10 +10,10 @@ from kit.msg.geometry_msgs import Twist
 from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.exceptions import NodeFailure, NotInitializedException, WouldDeadlock
-from kit.ros.execution.context import Context, default_context, get_default_context
+from kit.ros.execution.context import Context, context_of, default_context, get_default_context
 from kit.ros.graph.graph import MAX_CALLBACKS, Graph
 from kit.ros.log import LogRecord
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import HistoryPolicy, QoSProfile
 from kit.ros.node.time import Duration
 
@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 
 
 def test_a_key_turns_the_wheels_within_one_tick(graph: Graph) -> None:
-    keyboard, teleop, robot = (graph.create_node(name) for name in ("keyboard", "teleop", "robot"))
+    keyboard, teleop, robot = (create_graph_node(graph, name) for name in ("keyboard", "teleop", "robot"))
     driven: list[float] = []
     commands = teleop.create_publisher(Twist, "cmd_vel", 10)
 
@@ -38,7 +38,7 @@ def test_a_key_turns_the_wheels_within_one_tick(graph: Graph) -> None:
 
 
 def test_callbacks_come_in_the_order_in_which_their_causes_came(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     order: list[str] = []
     publishers = {name: node.create_publisher(Int32, name, 10) for name in "ab"}
     for name in "ab":
@@ -68,7 +68,7 @@ def test_callbacks_come_in_the_order_in_which_their_causes_came(graph: Graph) ->
 def chatter(graph: Graph) -> list[tuple[int, str]]:
     """A busy little system with all kinds of callbacks; what it says, with the time."""
     said: list[tuple[int, str]] = []
-    a, b = graph.create_node("a"), graph.create_node("b", "/ns")
+    a, b = create_graph_node(graph, "a"), create_graph_node(graph, "b", "/ns")
     numbers = a.create_publisher(Int32, "/numbers", 5)
     client = b.create_client(Trigger, "/ask")
 
@@ -101,7 +101,7 @@ def test_the_same_inputs_give_the_same_run() -> None:
 
 
 def test_nothing_due_costs_nothing_and_does_nothing(graph: Graph) -> None:
-    graph.create_node("node").create_timer(1.0, lambda: None)
+    create_graph_node(graph, "node").create_timer(1.0, lambda: None)
     assert graph.run_due() == 0
     graph.advance(SECOND)
     assert graph.run_due() == 1
@@ -110,7 +110,7 @@ def test_nothing_due_costs_nothing_and_does_nothing(graph: Graph) -> None:
 
 class TestEndlessTalk:
     def test_it_ends_the_tick_and_is_named_once(self, graph: Graph, lines: list[LogRecord]) -> None:
-        node = graph.create_node("parrot")
+        node = create_graph_node(graph, "parrot")
         publisher = node.create_publisher(Int32, "echo", 10)
         heard: list[int] = []
 
@@ -129,7 +129,7 @@ class TestEndlessTalk:
         ]
 
     def test_an_explosion_of_messages_is_cut_off_too(self, graph: Graph) -> None:
-        node = graph.create_node("rabbits")
+        node = create_graph_node(graph, "rabbits")
         everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
         publisher = node.create_publisher(Int32, "echo", everything)
 
@@ -144,28 +144,28 @@ class TestEndlessTalk:
 
 class TestFailures:
     def test_a_failing_callback_says_whose_it_is(self, graph: Graph) -> None:
-        node = graph.create_node("clumsy", "/ns")
+        node = create_graph_node(graph, "clumsy", "/ns")
         node.create_timer(0.1, lambda: 1 / 0)
         graph.advance(SECOND)
         with pytest.raises(NodeFailure, match="/ns/clumsy failed: ZeroDivisionError") as failure:
             graph.run_due()
-        assert failure.value.node is node
+        assert failure.value.node_name == node.get_fully_qualified_name()
         assert isinstance(failure.value.cause, ZeroDivisionError)
 
     def test_a_handler_hears_of_it_and_the_others_go_on(self, graph: Graph) -> None:
         failures: list[NodeFailure] = []
         graph.on_failure = failures.append
         done: list[str] = []
-        graph.create_node("clumsy").create_timer(0.1, lambda: [][0])
-        graph.create_node("steady").create_timer(0.1, lambda: done.append("done"))
+        create_graph_node(graph, "clumsy").create_timer(0.1, lambda: [][0])
+        create_graph_node(graph, "steady").create_timer(0.1, lambda: done.append("done"))
         graph.advance(SECOND // 10)
         graph.run_due()
-        assert [failure.node.get_name() for failure in failures if failure.node] == ["clumsy"]
+        assert [failure.node_name for failure in failures] == ["/clumsy"]
         assert done == ["done"]
 
     def test_without_a_handler_the_rest_waits_for_the_next_call(self, graph: Graph) -> None:
         done: list[str] = []
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         node.create_timer(0.1, lambda: [][0])
         node.create_timer(0.1, lambda: done.append("done"))
         graph.advance(SECOND // 10)
@@ -189,7 +189,7 @@ class TestWaitingInLockStep:
         ],
     )
     def test_a_callback_must_not_wait(self, graph: Graph, wait: Any) -> None:
-        node = graph.create_node("impatient")
+        node = create_graph_node(graph, "impatient")
         client = node.create_client(Trigger, "nobody")
         node.create_timer(0.1, lambda: wait(node, client))
         graph.advance(SECOND)
@@ -200,20 +200,20 @@ class TestWaitingInLockStep:
     def test_spinning_in_a_callback_is_explained(self, graph: Graph) -> None:
         from kit.ros.execution.client_library import spin_once
 
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         node.create_timer(0.1, lambda: spin_once(node))
         graph.advance(SECOND)
         with pytest.raises(NodeFailure, match="lock-step"):
             graph.run_due()
 
     def test_the_thread_that_advances_time_must_not_wait_for_it(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         graph.run_due()
         with pytest.raises(WouldDeadlock, match="this very thread"):
             node.create_client(Trigger, "nobody").wait_for_service(timeout_sec=1.0)
 
     def test_what_is_there_already_is_not_waited_for(self, graph: Graph) -> None:
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         node.create_service(Trigger, "here", lambda request, response: response)
         ready: list[bool] = []
         node.create_timer(0.1, lambda: ready.append(node.create_client(Trigger, "here").wait_for_service()))
@@ -234,15 +234,15 @@ class TestTime:
         from kit.ros.node.time import ClockType
 
         graph.advance(3 * SECOND + 5)
-        node = graph.create_node("node")
+        node = create_graph_node(graph, "node")
         assert node.get_clock().now().seconds_nanoseconds() == (3, 5)
-        with default_context(graph.context):
+        with default_context(context_of(graph)):
             for clock_type in ClockType:
                 assert Clock(clock_type=clock_type).now().nanoseconds == 3 * SECOND + 5
 
 
 def test_discard_forgets_what_is_on_its_way(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     heard: list[Any] = []
     publisher = node.create_publisher(Int32, "x", 10)
     node.create_subscription(Int32, "x", heard.append, 10)
@@ -266,10 +266,10 @@ class TestWatching:
                 (time_ns, node.get_name(), topic, repr(message)[:20])
             )
         )
-        node = graph.create_node("talker")
+        node = create_graph_node(graph, "talker")
         node.create_publisher(String, "unheard", 10).publish(String(data="x"))
         node.create_service(Trigger, "ask", lambda request, response: response)
-        graph.create_node("asker").create_client(Trigger, "ask").call_async(Trigger.Request())
+        create_graph_node(graph, "asker").create_client(Trigger, "ask").call_async(Trigger.Request())
         graph.advance(5)
         graph.run_due()
         topics = [entry[:3] for entry in seen if "param" not in entry[2] and entry[2] != "/rosout"]
@@ -285,17 +285,17 @@ class TestNodesWithoutContext:
             def __init__(self) -> None:
                 super().__init__("controller")
 
-        with default_context(graph.context):
+        with default_context(context_of(graph)):
             node = Controller()
-            assert get_default_context() is graph.context
+            assert get_default_context() is context_of(graph)
         assert graph.nodes == (node,)
-        assert get_default_context() is not graph.context
+        assert get_default_context() is not context_of(graph)
 
     def test_the_command_line_of_the_program_means_nothing_to_a_graphs_own_context(
         self, graph: Graph, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr("sys.argv", ["kit", "--ros-args", "-r", "__node:=hijacked"])
-        assert graph.create_node("mine").get_name() == "mine"
+        assert create_graph_node(graph, "mine").get_name() == "mine"
 
     def test_a_context_must_be_initialised(self, graph: Graph) -> None:
         with pytest.raises(NotInitializedException):
@@ -303,7 +303,7 @@ class TestNodesWithoutContext:
 
 
 def test_a_destroyed_node_is_gone_with_all_it_made(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     node.create_publisher(Int32, "x", 10)
     node.create_subscription(Int32, "x", lambda message: None, 10)
     node.create_client(Trigger, "s")
@@ -320,6 +320,6 @@ def test_a_destroyed_node_is_gone_with_all_it_made(graph: Graph) -> None:
 
 
 def test_two_nodes_of_one_name_are_warned_about(graph: Graph, lines: list[LogRecord]) -> None:
-    graph.create_node("twin")
-    graph.create_node("twin")
+    create_graph_node(graph, "twin")
+    create_graph_node(graph, "twin")
     assert any("/twin" in line.text for line in lines)

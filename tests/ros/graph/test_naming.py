@@ -14,6 +14,7 @@ from kit.ros.graph.naming import (
     validate_node_name,
     validate_topic_name,
 )
+from kit.ros.node.node import create_graph_node
 
 
 @pytest.mark.parametrize("name", ["a", "A_1", "_x", "x" * 255])
@@ -81,11 +82,11 @@ def test_hidden_names() -> None:
     ("namespace", "full"), [(None, "/n"), ("", "/n"), ("ns", "/ns/n"), ("/ns", "/ns/n"), ("/", "/n")]
 )
 def test_a_nodes_namespace_needs_no_slash(graph: Graph, namespace: str | None, full: str) -> None:
-    assert graph.create_node("n", namespace).get_fully_qualified_name() == full
+    assert create_graph_node(graph, "n", namespace).get_fully_qualified_name() == full
 
 
 @pytest.mark.parametrize(("name", "namespace"), [("bad name", None), ("n", "/bad space"), ("n", "ends/")])
 def test_a_node_with_a_bad_name_is_not_made(graph: Graph, name: str, namespace: str | None) -> None:
     with pytest.raises(NameValidationException):
-        graph.create_node(name, namespace)
+        create_graph_node(graph, name, namespace)
     assert graph.nodes == ()

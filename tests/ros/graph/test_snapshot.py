@@ -7,11 +7,15 @@ from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import EndpointState, snapshot
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 
 
 def test_nodes_topics_and_services_with_their_ends(graph: Graph) -> None:
-    talker, listener = graph.create_node("talker"), graph.create_node("listener", namespace="/house")
+    talker, listener = (
+        create_graph_node(graph, "talker"),
+        create_graph_node(graph, "listener", namespace="/house"),
+    )
     talker.create_publisher(String, "words", 10)
     listener.create_subscription(String, "/words", print, 5)
     listener.create_service(Trigger, "/ring", lambda request, response: response)
@@ -31,7 +35,7 @@ def test_nodes_topics_and_services_with_their_ends(graph: Graph) -> None:
 
 
 def test_what_ros_needs_for_itself_is_known_as_such(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     node.create_publisher(String, "words", 10)
     node.create_service(Trigger, "/other/get_parameters", lambda request, response: response)
     state = snapshot(graph)
@@ -42,7 +46,7 @@ def test_what_ros_needs_for_itself_is_known_as_such(graph: Graph) -> None:
 
 
 def test_ends_that_do_not_go_together_are_named_with_the_policy(graph: Graph) -> None:
-    robot, student = graph.create_node("robot"), graph.create_node("student")
+    robot, student = create_graph_node(graph, "robot"), create_graph_node(graph, "student")
     robot.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
     student.create_subscription(LaserScan, "scan", print, 10)
     student.create_subscription(String, "scan", print, 10)
@@ -56,7 +60,7 @@ def test_ends_that_do_not_go_together_are_named_with_the_policy(graph: Graph) ->
 
 def test_nodes_of_one_name_count_once(graph: Graph) -> None:
     for _ in range(2):
-        graph.create_node("twin").create_publisher(String, "words", 10)
+        create_graph_node(graph, "twin").create_publisher(String, "words", 10)
     state = snapshot(graph)
     assert state.nodes == ("/twin",)
     words = next(topic for topic in state.topics if topic.name == "/words")
@@ -64,7 +68,7 @@ def test_nodes_of_one_name_count_once(graph: Graph) -> None:
 
 
 def test_the_version_changes_with_whatever_comes_or_goes(graph: Graph) -> None:
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     versions = [snapshot(graph).version]
     assert snapshot(graph).version == versions[0]
     publisher = node.create_publisher(String, "words", 10)

@@ -8,6 +8,7 @@ from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.topic_stats import MessageFlow, TopicStats
+from kit.ros.node.node import create_graph_node
 
 MS = 1_000_000
 WORDS = MessageFlow("/talker", "/words")
@@ -16,7 +17,7 @@ WORDS = MessageFlow("/talker", "/words")
 def speak(graph: Graph, times: int, period_ms: int) -> None:
     """So many words by ``/talker``, at this period."""
     if not any(node.get_name() == "talker" for node in graph.nodes):
-        graph.create_node("talker").create_publisher(String, "words", 10)
+        create_graph_node(graph, "talker").create_publisher(String, "words", 10)
     publisher = next(end for node in graph.nodes for end in node.publishers if end.topic_name == "/words")
     for number in range(times):
         graph.advance(graph.now_ns + period_ms * MS)
@@ -64,9 +65,9 @@ def test_a_reset_of_the_time_starts_the_rates_anew(graph: Graph) -> None:
 
 
 def test_questions_and_answers_name_who_asked(graph: Graph) -> None:
-    server = graph.create_node("server")
+    server = create_graph_node(graph, "server")
     server.create_service(Trigger, "/ring", lambda request, response: response)
-    clients = [graph.create_node(name).create_client(Trigger, "/ring") for name in ("anna", "bert")]
+    clients = [create_graph_node(graph, name).create_client(Trigger, "/ring") for name in ("anna", "bert")]
     stats = TopicStats(graph)
     for client in (clients[1], clients[0], clients[1]):
         client.call_async(Trigger.Request())
@@ -81,7 +82,7 @@ def test_questions_and_answers_name_who_asked(graph: Graph) -> None:
 
 
 def test_the_newest_message_of_the_chosen_topic_is_a_copy(graph: Graph) -> None:
-    publisher = graph.create_node("talker").create_publisher(String, "words", 10)
+    publisher = create_graph_node(graph, "talker").create_publisher(String, "words", 10)
     stats = TopicStats(graph)
     publisher.publish(String(data="before"))
     stats.select("/words")

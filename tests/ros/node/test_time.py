@@ -12,9 +12,10 @@ import pytest
 from kit.msg.builtin_interfaces import Duration as DurationMessage
 from kit.msg.builtin_interfaces import Time as TimeMessage
 from kit.ros.exceptions import NotInitializedException
-from kit.ros.execution.context import default_context
+from kit.ros.execution.context import context_of, default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.node.clock import Clock, ROSClock
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import ClockType, Duration, Time
 
 
@@ -90,26 +91,26 @@ def test_clocks_of_a_program_that_stands_alone(alone: Graph) -> None:
 
 
 def test_sleeping(alone: Graph) -> None:
-    clock = alone.create_node("n").get_clock()
+    clock = create_graph_node(alone, "n").get_clock()
     began = time.monotonic()
-    assert clock.sleep_for(Duration(seconds=0.02), alone.context)
-    assert clock.sleep_until(clock.now() + Duration(seconds=0.02), alone.context)
+    assert clock.sleep_for(Duration(seconds=0.02), context_of(alone))
+    assert clock.sleep_until(clock.now() + Duration(seconds=0.02), context_of(alone))
     assert 0.04 <= time.monotonic() - began < 2
-    assert clock.sleep_until(Time(clock_type=ClockType.ROS_TIME), alone.context), "long past"
+    assert clock.sleep_until(Time(clock_type=ClockType.ROS_TIME), context_of(alone)), "long past"
     with pytest.raises(ValueError, match="clock type"):
-        clock.sleep_until(Time(), alone.context)
-    threading.Timer(0.02, alone.context.try_shutdown).start()
-    assert not clock.sleep_for(Duration(seconds=60), alone.context)
+        clock.sleep_until(Time(), context_of(alone))
+    threading.Timer(0.02, context_of(alone).try_shutdown).start()
+    assert not clock.sleep_for(Duration(seconds=60), context_of(alone))
     with pytest.raises(NotInitializedException):
-        clock.sleep_for(Duration(), alone.context)
+        clock.sleep_for(Duration(), context_of(alone))
 
 
 def test_sleeping_in_simulated_time(graph: Graph) -> None:
     slept: list[int] = []
 
     def sleep() -> None:
-        with default_context(graph.context):
-            graph.create_node("n").get_clock().sleep_for(Duration(seconds=1))
+        with default_context(context_of(graph)):
+            create_graph_node(graph, "n").get_clock().sleep_for(Duration(seconds=1))
         slept.append(graph.now_ns)
 
     thread = threading.Thread(target=sleep)

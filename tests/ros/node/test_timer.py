@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
+from kit.ros.execution.context import context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.timer import Schedule
 
 MS = 1_000_000
@@ -20,7 +21,7 @@ SECOND = 1000 * MS
 
 @pytest.fixture
 def node(graph: Graph) -> Node:
-    return graph.create_node("node")
+    return create_graph_node(graph, "node")
 
 
 def run(graph: Graph, until_ns: int, step_ns: int = 10 * MS) -> None:
@@ -200,7 +201,7 @@ class TestRates:
             node.create_rate(frequency)
 
     def test_it_keeps_time_and_asks_for_a_spinning_thread(self, alone: Graph, lines: list[Any]) -> None:
-        rate = alone.create_node("node").create_rate(100.0)
+        rate = create_graph_node(alone, "node").create_rate(100.0)
         began = time.monotonic()
         for _ in range(5):
             rate.sleep()
@@ -208,7 +209,7 @@ class TestRates:
         assert sum("another thread spins" in line.text for line in lines) == 1
 
     def test_it_follows_simulated_time_and_its_jumps(self, graph: Graph) -> None:
-        rate = graph.create_node("node").create_rate(10.0)
+        rate = create_graph_node(graph, "node").create_rate(10.0)
         slept: list[int] = []
         ready = threading.Barrier(2)
 
@@ -233,16 +234,16 @@ class TestRates:
         assert slept == [100, 200, 150]
 
     def test_a_shutdown_wakes_it(self, graph: Graph) -> None:
-        rate = graph.create_node("node").create_rate(10.0)
-        threading.Timer(0.02, graph.context.try_shutdown).start()
+        rate = create_graph_node(graph, "node").create_rate(10.0)
+        threading.Timer(0.02, context_of(graph).try_shutdown).start()
         with pytest.raises(ROSInterruptException):
             rate.sleep()
 
     def test_in_a_callback_of_its_own_executor_it_is_explained(self, alone: Graph) -> None:
-        node = alone.create_node("node")
+        node = create_graph_node(alone, "node")
         rate = node.create_rate(100.0)
         node.create_timer(0.001, rate.sleep)
-        executor = SingleThreadedExecutor(context=alone.context)
+        executor = SingleThreadedExecutor(context=context_of(alone))
         executor.add_node(node)
         with pytest.raises(WouldDeadlock, match="inside a callback"):
             executor.spin_once(timeout_sec=5)

@@ -15,6 +15,7 @@ from textual.pilot import Pilot
 from kit.msg.rcl_interfaces import GetParameters
 from kit.render.roles import Role
 from kit.ros.node.client import Client
+from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.tui.screens.fields import FieldsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
@@ -91,7 +92,7 @@ class Asked:
 
     def __call__(self, session: Session) -> None:
         if self.client is None:
-            node = session.graph.create_node("asker")
+            node = create_graph_node(session.graph, "asker")
             self.client = node.create_client(GetParameters, "/left/fields/get_parameters")
         if self.client.service_is_ready():
             future = self.client.call_async(GetParameters.Request(names=["intensity.target"]))

@@ -15,6 +15,7 @@ from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 from kit.tui.screens.graph import CALM, FRAME, GraphScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
@@ -30,7 +31,7 @@ class FakeHost:
         self.graph = Graph(log_sink=lambda record: None)
         self.paused = False
         self.listener: Callable[[Any], object] | None = None
-        robot, driver = self.graph.create_node("robot"), self.graph.create_node("driver")
+        robot, driver = create_graph_node(self.graph, "robot"), create_graph_node(self.graph, "driver")
         self.scan = robot.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         robot.create_subscription(Twist, "cmd_vel", lambda command: None, 10)
         robot.create_service(Trigger, "ring", lambda request, response: response)
@@ -175,7 +176,7 @@ def test_messages_travel_while_there_are_any_and_leave_nothing_behind() -> None:
 def test_a_mismatch_is_chosen_first_and_explained() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         await pilot.press("escape")
-        demanding = host.graph.create_node("demanding")
+        demanding = create_graph_node(host.graph, "demanding")
         demanding.create_subscription(LaserScan, "scan", lambda scan: None, 10)
         screen = GraphScreen(screen.theme, host, "test")  # type: ignore[arg-type]  # all it uses
         await pilot.app.push_screen(screen)
@@ -194,7 +195,7 @@ def test_a_mismatch_is_chosen_first_and_explained() -> None:
 def test_joining_and_leaving_move_nothing_that_was_there() -> None:
     async def scene(screen: GraphScreen, host: FakeHost, pilot: Pilot[None]) -> None:
         before = rows(screen)[1:4]
-        joined = host.graph.create_node("joined")
+        joined = create_graph_node(host.graph, "joined")
         joined.create_publisher(Twist, "more", 10)
         host.show()
         await asyncio.sleep(CALM)

@@ -1,4 +1,4 @@
-from kit.ros.node.event_handler import (
+from kit.ros.node.endpoint import (
     PublisherEventCallbacks,
     QoSOfferedIncompatibleQoSInfo,
     QoSRequestedIncompatibleQoSInfo,

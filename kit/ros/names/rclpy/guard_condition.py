@@ -1,3 +1,3 @@
-from kit.ros.node.guard_condition import GuardCondition
+from kit.ros.node.endpoint import GuardCondition
 
 __all__ = ["GuardCondition"]

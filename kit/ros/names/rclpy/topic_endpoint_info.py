@@ -1,3 +1,3 @@
-from kit.ros.node.endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 
 __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]

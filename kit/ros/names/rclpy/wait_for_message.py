@@ -1,3 +1,3 @@
-from kit.ros.node.wait_for_message import wait_for_message
+from kit.ros.execution.client_library import wait_for_message
 
 __all__ = ["wait_for_message"]

@@ -11,11 +11,11 @@ from typing import Any, NoReturn
 from gym import spaces
 from gym.core import ActionWrapper, Env, ObservationWrapper, RewardWrapper, Wrapper
 from gym.learners import adapt_checker
-from kit.ros.shims_log import say
+from kit.ros.execution.context import log_as_kit
 
 __version__ = "0.21.0"
 
-say(
+log_as_kit(
     "gym is not installed: gymnasium's spaces and an Env of gym 0.21 stand in for it; reset() returns the "
     "observation alone, step() four values, and stable-baselines3 gets the environment wrapped"
 )

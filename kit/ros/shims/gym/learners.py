@@ -11,7 +11,7 @@ from typing import Any
 import shimmy
 
 from gym.core import Env
-from kit.ros.shims_log import say
+from kit.ros.execution.context import log_as_kit
 
 CHECKER = "stable_baselines3.common.env_checker"
 
@@ -56,6 +56,6 @@ def _checking(check: Callable[..., None]) -> Callable[..., None]:
         try:
             check(shimmy.GymV21CompatibilityV0(env=env), *arguments, **options)
         except AssertionError as problem:
-            say(f"today's check_env objects, the one of that time did not: {problem}", warning=True)
+            log_as_kit(f"today's check_env objects, the one of that time did not: {problem}", is_warning=True)
 
     return check_env

@@ -5,8 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import Any
 
-from kit.ros.execution.context import get_default_context
-from kit.ros.shims_log import say
+from kit.ros.execution.context import get_default_context, log_as_kit
 
 Key = Enum(
     "Key",
@@ -40,10 +39,10 @@ class Listener:
 
     def start(self) -> None:
         self.running = True
-        say(
+        log_as_kit(
             "pynput is not installed, and there is no desktop whose keys it could read: this listener hears nothing. "
             "What is pressed in the kit is published on /teleopkeys by the kit itself",
-            warning=True,
+            is_warning=True,
         )
 
     def stop(self) -> None:

@@ -14,7 +14,7 @@ from kit.ros.exceptions import (
     ParameterNotDeclaredException,
     WouldDeadlock,
 )
-from kit.ros.execution.context import Context
+from kit.ros.execution.context import Context, context_of
 from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
 from kit.ros.launch.actions import DeclareLaunchArgument, LogInfo
@@ -23,7 +23,7 @@ from kit.ros.launch.processes import ExecuteProcess
 from kit.ros.launch.service import LaunchService
 from kit.ros.launch.substitutions import LaunchConfiguration
 from kit.ros.log import LogRecord
-from kit.ros.node.node import Node
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile, ReliabilityPolicy
 from kit.ros.parameters.parameter import Parameter
 from kit.run.scenario import place_on_map
@@ -38,7 +38,7 @@ def _graph(lines: list[LogRecord] | None = None) -> Graph:
 
 
 def _node(graph: Graph, *arguments: str, **options: Any) -> Node:
-    return Node("node", context=graph.context, cli_args=["--ros-args", *arguments], **options)
+    return Node("node", context=context_of(graph), cli_args=["--ros-args", *arguments], **options)
 
 
 # Topics
@@ -66,10 +66,10 @@ def drive_listens(item: Item, folder: Path) -> Finding:
 
 def three_publishers(item: Item, folder: Path) -> Finding:
     graph, heard = _graph(), []
-    graph.create_node("drive").create_subscription(
+    create_graph_node(graph, "drive").create_subscription(
         Int32, "/cmd_vel", lambda message: heard.append(message.data), 10
     )
-    publishers = [graph.create_node(f"n{i}").create_publisher(Int32, "/cmd_vel", 10) for i in range(3)]
+    publishers = [create_graph_node(graph, f"n{i}").create_publisher(Int32, "/cmd_vel", 10) for i in range(3)]
     for _ in range(2):
         for number, publisher in enumerate(publishers):
             publisher.publish(Int32(data=number))
@@ -87,8 +87,8 @@ def three_publishers(item: Item, folder: Path) -> Finding:
 def nobody_spins(item: Item, folder: Path) -> Finding:
     """On the system's time, as a program that stands alone."""
     graph, heard = Graph(None, log_sink=[].append), []
-    graph.create_node("deaf").create_subscription(Int32, "x", heard.append, 100)
-    publisher = graph.create_node("talker").create_publisher(Int32, "x", 100)
+    create_graph_node(graph, "deaf").create_subscription(Int32, "x", heard.append, 100)
+    publisher = create_graph_node(graph, "talker").create_publisher(Int32, "x", 100)
     for number in range(60):
         publisher.publish(Int32(data=number))
     return Finding(
@@ -103,8 +103,10 @@ def nobody_spins(item: Item, folder: Path) -> Finding:
 
 def queue_depth(item: Item, folder: Path) -> Finding:
     graph, heard = _graph(), []
-    graph.create_node("busy").create_subscription(Int32, "x", lambda message: heard.append(message.data), 5)
-    publisher = graph.create_node("talker").create_publisher(Int32, "x", 10)
+    create_graph_node(graph, "busy").create_subscription(
+        Int32, "x", lambda message: heard.append(message.data), 5
+    )
+    publisher = create_graph_node(graph, "talker").create_publisher(Int32, "x", 10)
     for number in range(1, 9):
         publisher.publish(Int32(data=number))
     graph.run_due()
@@ -116,9 +118,9 @@ def qos_mismatch(item: Item, folder: Path) -> Finding:
     lines: list[LogRecord] = []
     graph, heard = _graph(lines), []
     offered = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-    publisher = graph.create_node("talker").create_publisher(Int32, "x", offered)
+    publisher = create_graph_node(graph, "talker").create_publisher(Int32, "x", offered)
     asked = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
-    graph.create_node("listener").create_subscription(Int32, "x", heard.append, asked)
+    create_graph_node(graph, "listener").create_subscription(Int32, "x", heard.append, asked)
     for _ in range(5):
         publisher.publish(Int32())
     graph.run_due()
@@ -152,10 +154,12 @@ def int_for_float(item: Item, folder: Path) -> Finding:
 
 def latecomer(item: Item, folder: Path) -> Finding:
     graph, heard = _graph(), []
-    graph.create_node("talker").create_publisher(Int32, "x", 10).publish(Int32(data=7))
+    create_graph_node(graph, "talker").create_publisher(Int32, "x", 10).publish(Int32(data=7))
     graph.run_due()
     graph.advance(1_000_000_000)
-    graph.create_node("late").create_subscription(Int32, "x", lambda message: heard.append(message.data), 10)
+    create_graph_node(graph, "late").create_subscription(
+        Int32, "x", lambda message: heard.append(message.data), 10
+    )
     graph.run_due()
     return Finding(
         tuple(heard),
@@ -175,7 +179,7 @@ def move_answers(item: Item, folder: Path) -> Finding:
     from kit.msg.flatland_msgs import MoveModel
 
     with Session(place_on_map(find_map("simple"))) as session:
-        node = session.graph.create_node("asker")
+        node = create_graph_node(session.graph, "asker")
         client = node.create_client(MoveModel, "/move_model")
         futures = [
             client.call_async(MoveModel.Request(name=name)) for name in (session.place.robot, "nobody")
@@ -196,12 +200,12 @@ def move_answers(item: Item, folder: Path) -> Finding:
 
 def call_deadlock(item: Item, folder: Path) -> Finding:
     graph = Graph(None, log_sink=[].append)
-    node = graph.create_node("node")
+    node = create_graph_node(graph, "node")
     node.create_service(Trigger, "s", lambda request, response: Trigger.Response(message="done"))
     client = node.create_client(Trigger, "s")
     answers: list[Any] = []
     node.create_timer(0.001, lambda: answers.append(client.call(Trigger.Request())))
-    executor = SingleThreadedExecutor(context=graph.context)
+    executor = SingleThreadedExecutor(context=context_of(graph))
     executor.add_node(node)
     try:
         executor.spin_once(timeout_sec=5)
@@ -221,7 +225,9 @@ def call_deadlock(item: Item, folder: Path) -> Finding:
 def nobody_serves(item: Item, folder: Path) -> Finding:
     graph = _graph()
     try:
-        future = graph.create_node("node").create_client(Trigger, "/reset").call_async(Trigger.Request())
+        future = (
+            create_graph_node(graph, "node").create_client(Trigger, "/reset").call_async(Trigger.Request())
+        )
         graph.advance(1_000_000_000)
         graph.run_due()
         found = "done" if future.done() else "not done"
@@ -239,7 +245,7 @@ def nobody_serves(item: Item, folder: Path) -> Finding:
 
 def undeclared_parameter(item: Item, folder: Path) -> Finding:
     try:
-        found: object = _graph().create_node("node").get_parameter("speed").value
+        found: object = create_graph_node(_graph(), "node").get_parameter("speed").value
     except ParameterNotDeclaredException:
         found = "exception"
     return Finding(
@@ -253,7 +259,7 @@ def undeclared_parameter(item: Item, folder: Path) -> Finding:
 
 
 def parameter_type(item: Item, folder: Path) -> Finding:
-    node = _graph().create_node("node")
+    node = create_graph_node(_graph(), "node")
     node.declare_parameter("speed", 0.5)
     try:
         (result,) = node.set_parameters([Parameter("speed", value="fast")])

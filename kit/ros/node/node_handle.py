@@ -1,6 +1,6 @@
-"""What the library knows of a node, kept apart from the node itself.
+"""The internal record of a node, kept apart from the node itself.
 
-A student's node class may call its attributes what it likes; only rclpy's own names are taken.
+So a student's node class may use any attribute names except rclpy's own.
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ if TYPE_CHECKING:
     from kit.ros.execution.arguments import RosArguments
     from kit.ros.execution.context import Context
     from kit.ros.execution.executors import Executor
+    from kit.ros.graph.directory import GraphNode
     from kit.ros.graph.graph import Graph
     from kit.ros.log import RcutilsLogger
     from kit.ros.node.client import Client
-    from kit.ros.node.endpoint import Destroyable, Entity
-    from kit.ros.node.guard_condition import GuardCondition
-    from kit.ros.node.node import Node
+    from kit.ros.node.endpoint import Destroyable, Entity, GuardCondition
     from kit.ros.node.publisher import Publisher
     from kit.ros.node.service import Service
     from kit.ros.node.subscription import Subscription
@@ -29,13 +28,13 @@ if TYPE_CHECKING:
 
 
 class NodeHandle:
-    """A node's place in its graph: its names, what it has made, and whose ready_queue it is on."""
+    """A node's names, what it has made, and the ready queue its callbacks wait in."""
 
     parameters: ParameterStore
     logger: RcutilsLogger
 
     def __init__(
-        self, node: Node, context: Context, arguments: RosArguments, name: str, namespace: str
+        self, node: GraphNode, context: Context, arguments: RosArguments, name: str, namespace: str
     ) -> None:
         self.node = node
         self.context = context
@@ -44,7 +43,7 @@ class NodeHandle:
         self.name = name
         self.namespace = namespace
         self.ready_queue: ReadyQueue = self.graph.ready_queue
-        """Where its callbacks wait: its executor's, or lock-step's."""
+        """The queue of its executor, or the graph's own for lock-step."""
         self.destroyed = False
         self.publishers: list[Publisher[Any]] = []
         self.subscriptions: list[Subscription[Any]] = []
@@ -68,7 +67,7 @@ class NodeHandle:
         return self._executor() if self._executor is not None else None
 
     def set_executor(self, executor: Executor | None) -> None:
-        """Moves the node, with everything that waits for it, to another executor's ready_queue, or to lock-step's."""
+        """Moves the node and its waiting callbacks to the queue of another executor; None: of the lock-step."""
         ready_queue = self.graph.ready_queue if executor is None else executor.ready_queue
         with self.graph.lock:
             before, self.ready_queue = self.ready_queue, ready_queue
@@ -77,12 +76,12 @@ class NodeHandle:
 
     @property
     def is_spun(self) -> bool:
-        """Whether some thread is spinning it."""
+        """True if a thread is spinning it."""
         executor = self.executor
         return executor is not None and executor.is_spinning
 
     def all_entities(self) -> list[Destroyable]:
-        """All that the node has made, in no particular order."""
+        """Everything that the node has made, in no particular order."""
         return [
             *self.publishers,
             *self.subscriptions,
@@ -93,8 +92,8 @@ class NodeHandle:
             *self.rates,
         ]
 
-    def remove_entity(self, made: Destroyable) -> None:
-        """Takes something out of the node's lists."""
+    def remove_entity(self, entity: Destroyable) -> None:
+        """Removes something destroyed from the node's lists."""
         lists: tuple[list[Any], ...] = (
             self.publishers,
             self.subscriptions,
@@ -104,19 +103,19 @@ class NodeHandle:
             self.guards,
             self.rates,
         )
-        for kept in lists:
-            if made in kept:
-                kept.remove(made)
+        for entities in lists:
+            if entity in entities:
+                entities.remove(entity)
 
     def rewind(self) -> None:
-        """Time has jumped back. With the graph's lock held."""
+        """Restarts timers and rates after a jump back in time. With the graph's lock held."""
         for timer in self.timers:
             timer.rewind()
         for rate in self.rates:
             rate.rewind()
 
     def discard_queues(self) -> None:
-        """Forgets all messages, requests and responses that wait for it. With the graph's lock held."""
+        """Drops all queued messages, requests and responses. With the graph's lock held."""
         entities: list[Entity] = [*self.subscriptions, *self.clients, *self.services]
         for entity in entities:
             entity.discard_queue()
