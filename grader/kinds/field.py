@@ -38,7 +38,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.ros.graph.graph import Graph
-from kit.run.episode import run_until, when_all_reached
+from kit.run.episode import run_until, when_reached
 from kit.run.headless import Fingerprint
 from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.recording import Recorder, Recording
@@ -306,7 +306,7 @@ class _FieldRun:
         run_until(
             self._runner,
             limit_s=trial.time_s,
-            ends=(when_all_reached(self.metrics),),
+            ends=(when_reached(self.metrics),),
             before_tick=lambda number: self._decide() if number % DECISION_INTERVAL == 0 else None,
         )
 

@@ -82,12 +82,7 @@ def when_failed(program: _CanFail) -> EndCondition:
 
 
 def when_reached(metrics: MetricsRecorder) -> EndCondition:
-    """Ends the episode when the first robot has reached the target."""
-    return EndCondition(EndReason.REACHED, lambda: metrics.reached_s is not None)
-
-
-def when_all_reached(metrics: MetricsRecorder) -> EndCondition:
-    """Ends the episode when all robots are in the target together."""
+    """Ends the episode when all robots that are measured are in the target together."""
     return EndCondition(EndReason.REACHED, lambda: metrics.all_reached_s is not None)
 
 

@@ -96,11 +96,6 @@ class MetricsRecorder(Observer):
         return self.metrics_of(self._robots[0].name) if self._robots else DriveMetrics(self._time_s)
 
     @property
-    def reached_s(self) -> float | None:
-        """When the first robot reached the target."""
-        return self._robots[0].reached if self._robots else None
-
-    @property
     def total_bumps(self) -> int:
         """Of all robots together."""
         return sum(robot.bumps for robot in self._robots)

@@ -1,0 +1,305 @@
+"""The episode: the same arguments, metrics and end at the student's own run, in a race and in a grade; one loop."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from grader.assignment import Assignment, Shift, Trial
+from grader.evidence.environment import EnvironmentTask, examine_environment
+from grader.evidence.episodes import EpisodeSpec, run_episode
+from grader.evidence.world.facts import WorldRunSpec
+from grader.evidence.world.world_run import run_world
+from kit.controllers import ControllerFile, find
+from kit.geometry import Pose
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.node_process import Guest
+from kit.host.sandbox.confinement import DESK_LEVEL
+from kit.host.sandbox.limits import DESK, Limits
+from kit.ros.execution.arguments import parse_ros_arguments
+from kit.run.episode import (
+    EndCondition,
+    EndReason,
+    controller_arguments,
+    run_until,
+    when,
+    when_failed,
+    when_reached,
+)
+from kit.run.metrics import DriveMetrics, MetricsRecorder
+from kit.run.scenario import find_place, place_in_file
+from kit.run.session import Session
+from kit.school.game.levels import Level
+from kit.school.game.race import race
+from kit.world.catalogue import all_maps
+
+ROOT = Path(__file__).parent.parent.parent
+CASES = [(card.name, case.name) for card in all_maps() for case in card.cases]
+
+DRIVER = """
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        models = self.declare_parameter("models", [""]).value
+        partners = ["cmd_vel"] if len(models) == 1 else [f"/{name}/cmd_vel" for name in models]
+        self.wheels = [self.create_publisher(Twist, topic, 10) for topic in partners]
+        self.create_timer(0.05, self.drive)
+
+    def drive(self):
+        command = Twist()
+        command.linear.x = 0.6
+        for wheels in self.wheels:
+            wheels.publish(command)
+"""
+
+
+@pytest.fixture
+def given(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[list[str]]]:
+    """The arguments of every program that is started; none of them really starts."""
+    seen: list[list[str]] = []
+
+    def refuse(self: Guest, graph: object, file: Path, *, args: list[str], **_: object) -> None:
+        seen.append([str(word) for word in args])
+        raise GuestError(Failure(FailureKind.EXIT, "only the arguments are wanted here"))
+
+    monkeypatch.setattr(Guest, "__init__", refuse)
+    yield seen
+
+
+def level_on(map_name: str, case: str, par: float = 1.0) -> Level:
+    return Level("test", "Test", map_name, case, par, "", (), 0)
+
+
+def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
+    return Trial(
+        "test", find_place(map_name, case), seconds, (1,), (), Shift(), None, True, frozenset({"move_model"})
+    )
+
+
+@dataclass(frozen=True)
+class OnlyLimits:
+    """The part of an assignment that an environment's evidence needs."""
+
+    limits: Limits = DESK
+
+
+@pytest.mark.parametrize(("map_name", "case"), CASES)
+def test_a_controller_gets_the_same_arguments_everywhere(
+    map_name: str, case: str, given: list[list[str]], tmp_path: Path
+) -> None:
+    place = find_place(map_name, case)
+    file = tmp_path / "driver.py"
+    file.write_text(DRIVER)
+    with Session(place) as session:
+        session.drive_with(find(str(file)))
+    race(level_on(map_name, case), find("random_walk"))
+    run_episode(EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False), file, limits=DESK, level=DESK_LEVEL)
+    task = EnvironmentTask("Env", place, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
+    with pytest.raises(GuestError):
+        examine_environment(task, cast(Assignment, OnlyLimits()), file, DESK_LEVEL, 1)
+    own, raced, graded, environment = given
+    assert own == raced == graded
+    assert environment == [file.stem, "Env", *own]
+    assert own == controller_arguments(place)
+
+
+@pytest.mark.parametrize(("map_name", "case"), CASES)
+def test_a_graded_world_tells_its_driver_the_same(
+    map_name: str, case: str, given: list[list[str]], tmp_path: Path
+) -> None:
+    place = find_place(map_name, case)
+    assert place.case is not None
+    alone = replace(place, case=replace(place.case, partner_start=None))
+    target, radius = place.case.target, place.case.target_radius
+    run_world(place.world, WorldRunSpec("", 1, 1.0, str(tmp_path / "x.py"), "", target, radius, True))
+    assert given == [controller_arguments(alone)]
+
+
+@pytest.mark.parametrize(("map_name", "case"), CASES)
+def test_the_arguments_say_what_the_scenario_is(map_name: str, case: str) -> None:
+    place = find_place(map_name, case)
+    assert place.case is not None
+    assert place.driven is not None
+    parsed = parse_ros_arguments(controller_arguments(place))
+    values = {each.name: each.value for given in parsed.parameters for each in given.parameters}
+    assert values == {
+        "home": list(place.case.start),
+        "model": place.robot,
+        "models": list(place.partners),
+        "world": str(place.world.file.absolute()),
+        "target": list(place.case.target),
+        "target_radius": place.case.target_radius,
+    }
+    namespaces = [each.replacement for each in parsed.remappings]
+    assert namespaces == ([f"/{place.driven.namespace}"] if place.driven.namespace else [])
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one episode."""
+
+    metrics: DriveMetrics
+    end: EndReason
+
+
+def at_the_desk(map_name: str, case: str | None, controller: ControllerFile, seconds: float) -> Outcome:
+    with Session(find_place(map_name, case), seed=1) as session:
+        session.drive_with(controller)
+        session.wait_until_driven()
+        ends = (when_failed(session), when_reached(session.metrics))
+        end = run_until(session.runner, limit_s=seconds, ends=ends)
+        return Outcome(session.metrics.metrics, end)
+
+
+@pytest.mark.parametrize(
+    ("map_name", "seconds", "end"),
+    [
+        ("hall_straight", 8.0, EndReason.REACHED),
+        ("simple", 3.0, EndReason.LIMIT),
+        ("turn", 6.0, EndReason.LIMIT),  # into a wall
+        ("pair_straight", 12.0, EndReason.REACHED),
+    ],
+)
+def test_the_same_metrics_and_end_everywhere(
+    map_name: str, seconds: float, end: EndReason, tmp_path: Path
+) -> None:
+    file = tmp_path / "driver.py"
+    file.write_text(DRIVER)
+    own = at_the_desk(map_name, None, find(str(file)), seconds)
+    assert own.end is end
+
+    trial = trial_on(map_name, None, seconds)
+    graded = run_episode(EpisodeSpec(trial, 1, "", False), file, limits=DESK, level=DESK_LEVEL)
+    assert graded.score == own.metrics
+    assert len(graded.bump_ticks) == own.metrics.bumps
+    assert graded.failure is None
+
+    case = trial.place.case
+    assert case is not None
+    finish, recording = race(level_on(map_name, case.name, seconds / 6), find(str(file)))
+    assert finish.failure is None
+    assert finish.reached == (end is EndReason.REACHED)
+    assert finish.seconds == own.metrics.time_s
+    assert recording.ticks == graded.recording.ticks
+    if len(trial.place.partners) == 1:
+        assert finish.bumps == own.metrics.bumps
+
+
+def test_arrival_is_at_most_the_radius() -> None:
+    place = find_place("simple")
+    assert place.case is not None
+    assert place.robot is not None
+    with Session(place) as session:
+        simulation = session.runner.simulation
+        exact = simulation.hull_distance(place.robot, place.case.target)
+        assert place.driven is not None
+        inside = MetricsRecorder([place.driven], place.case.target, exact)
+        outside = MetricsRecorder([place.driven], place.case.target, exact - 1e-9)
+        session.runner.observers += [inside, outside]
+        session.runner.tick()
+        assert simulation.hull_distance(place.robot, place.case.target) == exact
+        assert inside.all_reached_s == pytest.approx(0.01)
+        assert outside.all_reached_s is None
+
+
+def test_both_of_a_pair_must_arrive() -> None:
+    place = find_place("pair_straight")
+    assert place.case is not None
+    left, right = place.partners
+    with Session(place) as session:
+        x, y = place.case.target
+        session.runner.call_service("move_model", left, (x, y, 0.0))
+        session.runner.tick()
+        assert session.metrics.metrics_of(left).reached_s is not None
+        assert session.metrics.metrics_of(right).reached_s is None
+        assert session.metrics.all_reached_s is None
+
+
+class Counting:
+    """Something to tick."""
+
+    step_size = 0.1
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def tick(self) -> None:
+        self.count += 1
+
+
+def test_a_limit_is_so_many_seconds_or_ticks() -> None:
+    run = Counting()
+    assert run_until(run, limit_s=1.0) is EndReason.LIMIT
+    assert run.count == 10
+    assert run_until(run, ticks=3) is EndReason.LIMIT
+    assert run.count == 13
+    assert run_until(run, ticks=0) is EndReason.LIMIT
+    assert run.count == 13
+
+
+def test_the_first_end_that_is_met_counts() -> None:
+    run = Counting()
+    failed = EndCondition(EndReason.FAILED, lambda: run.count >= 4)
+    numbers: list[int] = []
+    end = run_until(run, limit_s=1.0, ends=(when(lambda: run.count >= 5), failed), before_tick=numbers.append)
+    assert end is EndReason.FAILED
+    assert numbers == [0, 1, 2, 3]
+    assert run_until(run, limit_s=1.0, ends=(failed,)) is EndReason.FAILED
+    assert run.count == 4  # it was over before it began
+
+
+def test_an_end_that_is_met_by_the_last_tick_counts() -> None:
+    run = Counting()
+    assert run_until(run, ticks=5, ends=(when(lambda: run.count == 5),)) is EndReason.STOPPED
+
+
+def test_a_world_without_a_robot_has_no_arguments(tmp_path: Path) -> None:
+    (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
+    assert controller_arguments(place_in_file(tmp_path / "world.yaml")) == []
+
+
+def test_home_may_be_elsewhere() -> None:
+    words = controller_arguments(find_place("simple"), Pose(0.5, -0.25, 1.0))
+    assert "home:=[0.5, -0.25, 1.0]" in words
+
+
+LOOPS = {
+    "kit/run/episode.py",  # the loop
+    "kit/run/runner.py",  # what one turn of it is
+    "kit/run/world_thread.py",  # a face's thread: between any two ticks it may be paused, stepped or given a job
+}
+
+
+def ticking_loops(source: Path) -> Iterator[int]:
+    """Lines of loops that tick a run or step a simulation by themselves."""
+    for loop in ast.walk(ast.parse(source.read_text())):
+        if not isinstance(loop, ast.For | ast.While):
+            continue
+        for call in ast.walk(loop):
+            if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute)):
+                continue
+            owner = ast.unparse(call.func.value)
+            if (call.func.attr == "tick" and "parser" not in owner) or (
+                call.func.attr in ("step", "advance") and "simulation" in owner
+            ):
+                yield call.lineno
+
+
+def test_nobody_else_has_a_loop_of_ticks() -> None:
+    sources = [*(ROOT / "kit").rglob("*.py"), *(ROOT / "grader").rglob("*.py")]
+    found = {
+        f"{name}:{line}"
+        for source in sources
+        if (name := source.relative_to(ROOT).as_posix()) not in LOOPS and not name.startswith("kit/sim/")
+        for line in ticking_loops(source)
+    }
+    assert found == set()
