@@ -63,7 +63,7 @@ class Driver(Node):
 
 
 @pytest.fixture
-def given(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[list[str]]]:
+def given(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """The arguments of every program that is started; none of them really starts."""
     seen: list[list[str]] = []
 
@@ -72,7 +72,7 @@ def given(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[list[str]]]:
         raise GuestError(Failure(FailureKind.EXIT, "only the arguments are wanted here"))
 
     monkeypatch.setattr(Guest, "__init__", refuse)
-    yield seen
+    return seen
 
 
 def level_on(map_name: str, case: str, par: float = 1.0) -> Level:
