@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from grader.scoring import Anchors
 
-Evidence = TypeVar("Evidence")
+Faults = Callable[[Any, Any], Iterator[str]]
+"""(the evidence's content, params) -> each thing that is wrong, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,8 @@ class Check:
     """``{actual}``, ``{full}``, ``{where}``, ``{passed}``, ``{count}`` are filled in."""
     words: tuple[str, str] | None
     """For a yes or no: what 0 and 1 mean."""
+    faults: Faults | None = None
+    """None where the feedback says all."""
 
     def format(self, measure: float) -> str:
         """A measure in words, or with its unit."""
@@ -55,13 +58,21 @@ def check(
     unit: str = "",
     params: type[Any] = NoParams,
     words: tuple[str, str] | None = None,
+    faults: Faults | None = None,
 ) -> Callable[[Callable[[Any, Any], float]], Check]:
     """Makes a check of a function; its docstring is the feedback."""
 
     def make(function: Callable[[Any, Any], float]) -> Check:
         text = inspect.getdoc(function) or ""
         return Check(
-            function.__name__, function, Anchors(none, full), unit, params, " ".join(text.split()), words
+            name=function.__name__,
+            measure=function,
+            anchors=Anchors(none, full),
+            unit=unit,
+            params=params,
+            feedback=" ".join(text.split()),
+            words=words,
+            faults=faults,
         )
 
     return make

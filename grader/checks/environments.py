@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceRecord
@@ -25,13 +25,35 @@ BAND: Final = 0.06
 NUMBERS: Final = ("float", "int", "float64", "float32", "int64", "int32")
 
 
-def _share(facts: list[str]) -> float:
-    """The share of what is fine: an empty complaint."""
-    return sum(not fact for fact in facts) / len(facts) if facts else 0.0
+Complaints = Callable[[EnvironmentRecord], Iterator[str]]
+"""Yields a string for everything that is looked at: a complaint, or empty where all is well."""
 
 
-def spaces_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Both spaces, each fine or not."""
+def complaint_check(
+    *, none: float, full: float, unit: str = "", words: tuple[str, str] | None = None
+) -> Callable[[Complaints], Check]:
+    """Makes a check of a function that yields complaints; its docstring is the feedback.
+
+    The check measures the share of what is fine.
+    """
+
+    def make(complaints: Complaints) -> Check:
+        def share(evidence: EvidenceRecord, params: NoParams) -> float:
+            found = list(complaints(evidence.content))
+            return sum(not each for each in found) / len(found) if found else 0.0
+
+        def faults(record: EnvironmentRecord, params: Any) -> Iterator[str]:
+            return filter(None, complaints(record))
+
+        share.__name__, share.__doc__ = complaints.__name__, complaints.__doc__
+        return check(none=none, full=full, unit=unit, words=words, faults=faults)(share)
+
+    return make
+
+
+@complaint_check(none=0, full=1, unit="%")
+def spaces(record: EnvironmentRecord) -> Iterator[str]:
+    """The spaces say what an agent may do and what it sees; {actual} of that is right."""
     action, observation = (record.description.get(each, {}) for each in ("action_space", "observation_space"))
     wanted = len(record.task.moves)
     yield (
@@ -62,8 +84,9 @@ def _space(told: Mapping[str, object]) -> str:
     return "missing" if kind in (None, "NoneType") else f"a {kind}"
 
 
-def resets_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """For every reset: what it returned, where the robot is, whether it was the newest scan that was seen."""
+@complaint_check(none=0, full=1, unit="%")
+def resets(record: EnvironmentRecord) -> Iterator[str]:
+    """reset() begins an episode; it did so rightly in {actual} of the cases."""
     home = record.task.place.start or Pose()
     for episode in record.episodes.values():
         returned = episode.returned
@@ -85,8 +108,9 @@ def resets_facts(record: EnvironmentRecord) -> Iterator[str]:
             yield ""
 
 
-def steps_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """For every step: five values of the right kinds."""
+@complaint_check(none=0, full=1, unit="%")
+def steps(record: EnvironmentRecord) -> Iterator[str]:
+    """What step() returned has the right form in {actual} of the steps."""
     for step in record.step_records:
         returned = step.returned
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
@@ -105,8 +129,9 @@ def steps_facts(record: EnvironmentRecord) -> Iterator[str]:
             yield ""
 
 
-def sees_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """For every step: nine sectors of the newest scan."""
+@complaint_check(none=0.5, full=1, unit="%")
+def sees(record: EnvironmentRecord) -> Iterator[str]:
+    """The observation is the nine sectors of the newest scan in {actual} of the steps."""
     for step in record.step_records:
         told = step.part(0)
         if _seen_right(told, step.ranges, record):
@@ -143,8 +168,9 @@ def _difference(told: Mapping[str, object], ranges: tuple[float, ...], record: E
     return f"sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
 
 
-def acts_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """For every step in which nothing was in the way: whether the robot did what the action says."""
+@complaint_check(none=0.5, full=0.98, unit="%")
+def acts(record: EnvironmentRecord) -> Iterator[str]:
+    """The robot did what the action says in {actual} of the steps."""
     for step in record.step_records:
         if step.touched:
             continue
@@ -162,15 +188,17 @@ def acts_facts(record: EnvironmentRecord) -> Iterator[str]:
             yield ""
 
 
-def crash_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether a collision terminates."""
+@complaint_check(none=0, full=1, words=("something else", "terminated"))
+def crash(record: EnvironmentRecord) -> Iterator[str]:
+    """A collision ends the episode."""
     episode = record.episodes["into the wall"]
     hit = next((k for k, step in enumerate(episode.step_records) if step.touched), None)
     yield _ended(episode, hit, "the robot touched a wall", "terminated")
 
 
-def arrival_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether reaching the target terminates, and not too soon."""
+@complaint_check(none=0, full=1, words=("something else", "terminated"))
+def arrival(record: EnvironmentRecord) -> Iterator[str]:
+    """Reaching the target ends the episode."""
     case = record.task.place.case
     assert case is not None  # drives to a target are only asked for where there is one
     episode, radius = record.episodes["to the target"], case.target_radius
@@ -182,8 +210,9 @@ def arrival_facts(record: EnvironmentRecord) -> Iterator[str]:
     yield _ended(episode, late, f"the robot came within {radius:g} m of the target", "terminated")
 
 
-def timeout_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether running out of time truncates."""
+@complaint_check(none=0, full=1, words=("something else", "truncated"))
+def timeout(record: EnvironmentRecord) -> Iterator[str]:
+    """When its time is up an episode is cut off."""
     last = record.task.max_steps - 1
     episode = record.episodes["turning on the spot"]
     yield _ended(episode, last, "the time was up", "truncated")
@@ -211,8 +240,9 @@ def _ended(episode: EnvironmentEpisode, due: int | None, why: str, how: str) -> 
     return ""
 
 
-def repeats_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether a seed decides all that chance decides."""
+@complaint_check(none=0, full=1, unit="%")
+def repeats(record: EnvironmentRecord) -> Iterator[str]:
+    """The seed must decide whatever chance decides, and nothing else may."""
     one, again, other = (
         record.episodes[name] for name in ("one seed", "the same seed again", "another seed")
     )
@@ -245,8 +275,9 @@ def _start(episode: EnvironmentEpisode) -> tuple[float, ...]:
     return tuple(round(each, 4) for each in episode.pose)
 
 
-def pays_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether arriving pays, and a collision costs."""
+@complaint_check(none=0, full=1, unit="%")
+def pays(record: EnvironmentRecord) -> Iterator[str]:
+    """The reward of an episode's last step tells good ends from bad ones."""
     for name, sign, what in (
         ("to the target", 1, "reaching the target"),
         ("into the wall", -1, "a collision"),
@@ -262,109 +293,22 @@ def pays_facts(record: EnvironmentRecord) -> Iterator[str]:
         )
 
 
-def checker_facts(record: EnvironmentRecord) -> Iterator[str]:
-    """Whether Gymnasium's own checker is content."""
-    yield f"It says: {record.checker_complaint}" if record.checker_complaint else ""
-
-
-Facts = Callable[[EnvironmentRecord], Iterator[str]]
-"""Each fact is a complaint, or empty where all is well."""
-
-
-def _measure(facts: Facts, evidence: EvidenceRecord) -> float:
-    return _share(list(facts(evidence.content)))
-
-
-@check(none=0, full=1, unit="%")
-def spaces(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The spaces say what an agent may do and what it sees; {actual} of that is right."""
-    return _measure(spaces_facts, evidence)
-
-
-@check(none=0, full=1, unit="%")
-def resets(evidence: EvidenceRecord, params: NoParams) -> float:
-    """reset() begins an episode; it did so rightly in {actual} of the cases."""
-    return _measure(resets_facts, evidence)
-
-
-@check(none=0, full=1, unit="%")
-def steps(evidence: EvidenceRecord, params: NoParams) -> float:
-    """What step() returned has the right form in {actual} of the steps."""
-    return _measure(steps_facts, evidence)
-
-
-@check(none=0.5, full=1, unit="%")
-def sees(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The observation is the nine sectors of the newest scan in {actual} of the steps."""
-    return _measure(sees_facts, evidence)
-
-
-@check(none=0.5, full=0.98, unit="%")
-def acts(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The robot did what the action says in {actual} of the steps."""
-    return _measure(acts_facts, evidence)
-
-
-@check(none=0, full=1, words=("something else", "terminated"))
-def crash(evidence: EvidenceRecord, params: NoParams) -> float:
-    """A collision ends the episode."""
-    return _measure(crash_facts, evidence)
-
-
-@check(none=0, full=1, words=("something else", "terminated"))
-def arrival(evidence: EvidenceRecord, params: NoParams) -> float:
-    """Reaching the target ends the episode."""
-    return _measure(arrival_facts, evidence)
-
-
-@check(none=0, full=1, words=("something else", "truncated"))
-def timeout(evidence: EvidenceRecord, params: NoParams) -> float:
-    """When its time is up an episode is cut off."""
-    return _measure(timeout_facts, evidence)
-
-
-@check(none=0, full=1, unit="%")
-def repeats(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The seed must decide whatever chance decides, and nothing else may."""
-    return _measure(repeats_facts, evidence)
-
-
-@check(none=0, full=1, unit="%")
-def pays(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The reward of an episode's last step tells good ends from bad ones."""
-    return _measure(pays_facts, evidence)
-
-
-@check(none=0, full=1, words=("complains", "content"))
-def checker(evidence: EvidenceRecord, params: NoParams) -> float:
+@complaint_check(none=0, full=1, words=("complains", "content"))
+def checker(record: EnvironmentRecord) -> Iterator[str]:
     """Gymnasium's own checker is not content."""
-    return _measure(checker_facts, evidence)
+    yield f"It says: {record.checker_complaint}" if record.checker_complaint else ""
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
-        for each in (*(spaces, resets, steps, sees, acts, crash, arrival, timeout, repeats, pays, checker),)
+        for each in (spaces, resets, steps, sees, acts, crash, arrival, timeout, repeats, pays, checker)
     }
 )
-FACTS: Final[Mapping[str, Facts]] = MappingProxyType(
-    {
-        "spaces": spaces_facts,
-        "resets": resets_facts,
-        "steps": steps_facts,
-        "sees": sees_facts,
-        "acts": acts_facts,
-        "crash": crash_facts,
-        "arrival": arrival_facts,
-        "timeout": timeout_facts,
-        "repeats": repeats_facts,
-        "pays": pays_facts,
-        "checker": checker_facts,
-    }
-)
-"""By the check's name."""
+"""Every check of an environment, by name."""
 
 
-def complaint(record: EnvironmentRecord, name: str) -> str:
-    """The first complaint that a check has."""
-    return next(filter(None, FACTS[name](record)), "")
+def first_complaint(record: EnvironmentRecord, name: str) -> str:
+    """The first complaint of a check; empty if there is none."""
+    faults = CHECKS[name].faults
+    return "" if faults is None else next(faults(record, None), "")

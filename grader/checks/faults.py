@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
+from grader.checks.contract import Check, Faults, NoParams, check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts
 from kit.world.problems import quoted, suggestion
@@ -48,23 +49,51 @@ class WorldRun:
 
 
 NO_WORDS: Final = ("", "")
-"""Of a check that counts faults, the faults themselves say more than their number."""
+"""Of a check that counts faults: the faults themselves say more than their number."""
 
-Faults = Callable[[WorldFacts, Any], Iterator[str]]
+WorldFaults = Callable[[WorldFacts, Any], Iterator[str]]
 RunFaults = Callable[[WorldRun, Any], Iterator[str]]
 
 
-def count_faults(evidence: EvidenceRecord, faults: Faults, params: Any) -> float:
-    """How many things are wrong; nan for a world that cannot be read."""
-    world: WorldFacts = evidence.content.world
-    return math.nan if world.problems else float(sum(1 for _ in faults(world, params)))
+def world_check(params: type[Any] = NoParams) -> Callable[[WorldFaults], Check]:
+    """Makes a check of a function that yields what is wrong with a world; its docstring is the feedback.
+
+    The check measures how many faults there are; NaN for a world that cannot be read.
+    """
+
+    def make(find: WorldFaults) -> Check:
+        def count(evidence: EvidenceRecord, given: Any) -> float:
+            world: WorldFacts = evidence.content.world
+            return math.nan if world.problems else float(sum(1 for _ in find(world, given)))
+
+        return _fault_check(find, count, params, lambda contents, given: find(contents.world, given))
+
+    return make
 
 
-def count_run_faults(evidence: EvidenceRecord, faults: RunFaults, params: Any) -> float:
-    """The same of a run; nan where there was none."""
-    if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
-        return math.nan
-    return float(sum(1 for _ in faults(evidence.content, params)))
+def run_check(params: type[Any] = NoParams) -> Callable[[RunFaults], Check]:
+    """The same for what is wrong with a world's run; the measure is NaN where there was none."""
+
+    def make(find: RunFaults) -> Check:
+        def count(evidence: EvidenceRecord, given: Any) -> float:
+            run = evidence.content
+            if not isinstance(run, WorldRun) or run.run.problem:
+                return math.nan
+            return float(sum(1 for _ in find(run, given)))
+
+        return _fault_check(find, count, params, find)
+
+    return make
+
+
+def _fault_check(
+    find: Callable[[Any, Any], Iterator[str]],
+    count: Callable[[EvidenceRecord, Any], float],
+    params: type[Any],
+    faults: Faults,
+) -> Check:
+    count.__name__, count.__doc__ = find.__name__, find.__doc__
+    return check(none=1, full=0, words=NO_WORDS, params=params, faults=faults)(count)
 
 
 def metres(value: float) -> str:

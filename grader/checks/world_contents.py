@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
+from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import Box, WorldFacts
 from kit.world.problems import quoted
@@ -30,7 +31,9 @@ class ContentParams:
     """Each a model and a type, such as ``robot Laser``."""
 
 
-def missing(world: WorldFacts, params: ContentParams) -> Iterator[str]:
+@world_check(ContentParams)
+def has(world: WorldFacts, params: ContentParams) -> Iterator[str]:
+    """Something that the task asks for is not there:"""
     models = [model.name for model in world.models]
     for what, wanted, there in (
         ("layer", params.layers, world.layers),
@@ -49,12 +52,6 @@ def missing(world: WorldFacts, params: ContentParams) -> Iterator[str]:
             yield f"{name} has no {kind} ({', '.join(types) or 'no plugins at all'})"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=ContentParams)
-def has(evidence: EvidenceRecord, params: ContentParams) -> float:
-    """Something that the task asks for is not there:"""
-    return count_faults(evidence, missing, params)
-
-
 @dataclass(frozen=True, slots=True)
 class WallParams:
     map: str = ""
@@ -69,7 +66,9 @@ class WallParams:
     within: float = 0.02
 
 
-def wrong_walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
+@world_check(WallParams)
+def walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
+    """The walls are not where they should be:"""
     some = [walls for walls in world.walls if params.map in ("", walls.map)]
     boxes = [walls.box for walls in some if walls.box is not None]
     if not boxes:
@@ -97,12 +96,6 @@ def around(boxes: list[Box]) -> Box:
     return min(left), min(bottom), max(right), max(top)
 
 
-@check(none=1, full=0, words=NO_WORDS, params=WallParams)
-def walls(evidence: EvidenceRecord, params: WallParams) -> float:
-    """The walls are not where they should be:"""
-    return count_faults(evidence, wrong_walls, params)
-
-
 @dataclass(frozen=True, slots=True)
 class ModelPoseParams:
     model: str = "robot"
@@ -113,7 +106,9 @@ class ModelPoseParams:
     """m, and ten times as much in rad"""
 
 
-def wrong_stand(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
+@world_check(ModelPoseParams)
+def stands(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
+    """A model does not stand where it should:"""
     model = world.model(params.model)
     if model is None:
         yield missing_model(world, params.model)
@@ -125,7 +120,4 @@ def wrong_stand(world: WorldFacts, params: ModelPoseParams) -> Iterator[str]:
         yield f"{params.model} looks towards {theta:g} rad, not {params.theta:g}"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=ModelPoseParams)
-def stands(evidence: EvidenceRecord, params: ModelPoseParams) -> float:
-    """A model does not stand where it should:"""
-    return count_faults(evidence, wrong_stand, params)
+CHECKS: Final = (loads, has, walls, stands)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import NO_WORDS, count_faults
+from grader.checks.faults import WorldContents, world_check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import WorldFacts
 from kit.world.problems import quoted, suggestion
@@ -32,7 +33,9 @@ def _pair(a: str, b: str) -> tuple[str, str]:
     return (a, b) if a <= b else (b, a)
 
 
-def wrong_contacts(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
+@world_check(CollisionParams)
+def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
+    """Who collides with whom is not as the task asks:"""
     wanted, free = ({_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free))
     why: dict[tuple[str, str], tuple[bool, str]] = {}
     for meeting in world.collisions:
@@ -53,12 +56,6 @@ def wrong_contacts(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
             yield f"{a} and {b} do not collide ({reason}), and should"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=CollisionParams)
-def collisions(evidence: EvidenceRecord, params: CollisionParams) -> float:
-    """Who collides with whom is not as the task asks:"""
-    return count_faults(evidence, wrong_contacts, params)
-
-
 @dataclass(frozen=True, slots=True)
 class SightParams:
     sees: tuple[str, ...] = ()
@@ -66,7 +63,9 @@ class SightParams:
     split: tuple[str, ...] = ()
 
 
-def wrong_sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
+@world_check(SightParams)
+def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
+    """Which laser sees whom is not as the task asks:"""
     for each in params.sees:
         name, _, join_faults = each.partition(":")
         wanted = {part.strip() for part in join_faults.split(",") if part.strip()}
@@ -90,18 +89,15 @@ def wrong_sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
                 )
 
 
-@check(none=1, full=0, words=NO_WORDS, params=SightParams)
-def sights(evidence: EvidenceRecord, params: SightParams) -> float:
-    """Which laser sees whom is not as the task asks:"""
-    return count_faults(evidence, wrong_sights, params)
+def _layer_names(contents: WorldContents, params: NoParams) -> Iterator[str]:
+    yield f"Every name in a layer's list counts: {', '.join(contents.world.layers)}"
 
 
-@check(none=17, full=16, unit="layers")
+@check(none=17, full=16, unit="layers", faults=_layer_names)
 def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
     """The world has {actual}; {full} would do."""
     world: WorldFacts = evidence.content.world
     return math.nan if world.problems else float(len(world.layers))
 
 
-def names(world: WorldFacts, params: NoParams) -> Iterator[str]:
-    yield f"Every name in a layer's list counts: {', '.join(world.layers)}"
+CHECKS: Final = (collisions, sights, few_layers)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
-from grader.checks.contract import check
-from grader.checks.faults import NO_WORDS, UNSPECIFIED, count_faults, metres, missing_model
-from grader.evidence.contract import EvidenceRecord
+from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
 from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
 from kit.world.problems import quoted, suggestion
 
@@ -46,7 +45,9 @@ def _find_body(world: WorldFacts, model_name: str, body: str) -> BodyFacts | str
     return f"{model_name} has no body {quoted(body)}: {suggestion(body, names)}"
 
 
-def wrong_body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
+@world_check(BodyParams)
+def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
+    """A body is not as the task asks:"""
     part = _find_body(world, params.model, params.body)
     if isinstance(part, str):
         yield part
@@ -79,12 +80,6 @@ def wrong_body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
             yield f"{name} has {what}: {str(asked != 'yes').lower()}"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=BodyParams)
-def body(evidence: EvidenceRecord, params: BodyParams) -> float:
-    """A body is not as the task asks:"""
-    return count_faults(evidence, wrong_body, params)
-
-
 @dataclass(frozen=True, slots=True)
 class JointParams:
     model: str = "robot"
@@ -98,7 +93,9 @@ class JointParams:
     within: float = 0.005
 
 
-def wrong_joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
+@world_check(JointParams)
+def joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
+    """A joint is not as the task asks:"""
     model = world.model(params.model)
     if model is None:
         yield missing_model(world, params.model)
@@ -121,12 +118,6 @@ def _between(model: ModelFacts, params: JointParams) -> JointFacts | None:
     return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
 
 
-@check(none=1, full=0, words=NO_WORDS, params=JointParams)
-def joint(evidence: EvidenceRecord, params: JointParams) -> float:
-    """A joint is not as the task asks:"""
-    return count_faults(evidence, wrong_joint, params)
-
-
 @dataclass(frozen=True, slots=True)
 class TopicsParams:
     model: str = ""
@@ -135,38 +126,35 @@ class TopicsParams:
     """Each a name, perhaps with the type of its messages after a space."""
 
 
-def wrong_topics(publishes: bool) -> Callable[[WorldFacts, TopicsParams], Iterator[str]]:
-    def missing(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
-        there = {
-            end.topic: end.type
-            for end in world.endpoints
-            if end.publishes is publishes and params.model in ("", end.model)
-        }
-        others = {end.topic for end in world.endpoints if end.publishes is not publishes}
-        does, other = ("publishes", "subscribed") if publishes else ("subscribes", "published")
-        for each in params.topics:
-            topic, _, kind = each.partition(" ")
-            if topic in there:
-                if kind and there[topic] != kind:
-                    yield f"{topic} carries {there[topic]}, not {kind}"
-            elif topic in others:
-                yield f"{topic} is only {other} by a plugin: nothing {does} it"
-            else:
-                yield f"no plugin {does} {topic}: {suggestion(topic, tuple(there))}"
-
-    return missing
+def _wrong_topics(world: WorldFacts, params: TopicsParams, *, publishes: bool) -> Iterator[str]:
+    there = {
+        end.topic: end.type
+        for end in world.endpoints
+        if end.publishes is publishes and params.model in ("", end.model)
+    }
+    others = {end.topic for end in world.endpoints if end.publishes is not publishes}
+    does, other = ("publishes", "subscribed") if publishes else ("subscribes", "published")
+    for each in params.topics:
+        topic, _, kind = each.partition(" ")
+        if topic in there:
+            if kind and there[topic] != kind:
+                yield f"{topic} carries {there[topic]}, not {kind}"
+        elif topic in others:
+            yield f"{topic} is only {other} by a plugin: nothing {does} it"
+        else:
+            yield f"no plugin {does} {topic}: {suggestion(topic, tuple(there))}"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=TopicsParams)
-def publishes(evidence: EvidenceRecord, params: TopicsParams) -> float:
+@world_check(TopicsParams)
+def publishes(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
     """The world's plugins do not say what the task asks:"""
-    return count_faults(evidence, wrong_topics(True), params)
+    return _wrong_topics(world, params, publishes=True)
 
 
-@check(none=1, full=0, words=NO_WORDS, params=TopicsParams)
-def subscribes(evidence: EvidenceRecord, params: TopicsParams) -> float:
+@world_check(TopicsParams)
+def subscribes(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
     """The world's plugins do not listen where the task asks:"""
-    return count_faults(evidence, wrong_topics(False), params)
+    return _wrong_topics(world, params, publishes=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +170,9 @@ class LaserParams:
     within: float = 0.01
 
 
-def wrong_laser(world: WorldFacts, params: LaserParams) -> Iterator[str]:
+@world_check(LaserParams)
+def laser(world: WorldFacts, params: LaserParams) -> Iterator[str]:
+    """The laser is not as the task asks:"""
     device = _find_laser(world, params.laser)
     if isinstance(device, str):
         yield device
@@ -214,7 +204,4 @@ def _find_laser(world: WorldFacts, name: str) -> PluginFacts | str:
     return found if found.rays else f"{name} is a {found.type}, not a Laser"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=LaserParams)
-def laser(evidence: EvidenceRecord, params: LaserParams) -> float:
-    """The laser is not as the task asks:"""
-    return count_faults(evidence, wrong_laser, params)
+CHECKS: Final = (body, joint, publishes, subscribes, laser)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import NO_WORDS, WorldRun, count_run_faults
+from grader.checks.faults import WorldRun, run_check
 from grader.evidence.contract import EvidenceRecord
 
 
@@ -20,19 +21,15 @@ class TopicRateParams:
     """A share."""
 
 
-def wrong_rate(run: WorldRun, params: TopicRateParams) -> Iterator[str]:
+@run_check(TopicRateParams)
+def rate(run: WorldRun, params: TopicRateParams) -> Iterator[str]:
+    """A plugin speaks too often or too rarely:"""
     count_faults = {heard.topic: heard.count for heard in run.run.topics}.get(params.topic, 0)
     is_ = count_faults / run.run.seconds if run.run.seconds else 0.0
     if not count_faults:
         yield f"nothing came on {params.topic}"
     elif abs(is_ - params.rate) > params.within * params.rate:
         yield f"{params.topic} came {is_:.3g} times a second, not {params.rate:g}"
-
-
-@check(none=1, full=0, words=NO_WORDS, params=TopicRateParams)
-def rate(evidence: EvidenceRecord, params: TopicRateParams) -> float:
-    """A plugin speaks too often or too rarely:"""
-    return count_run_faults(evidence, wrong_rate, params)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +41,9 @@ class NoiseParams:
     """A share."""
 
 
-def wrong_noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
+@run_check(NoiseParams)
+def noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
+    """The noise, measured while the world stood still, is not what was asked ({where}):"""
     spread = {heard.topic: heard.spread for heard in run.run.topics}.get(params.topic)
     if spread is None:
         yield f"nothing came on {params.topic}"
@@ -52,13 +51,9 @@ def wrong_noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
         yield f"on {params.topic} what stands still spreads by {spread:.4g} m, not {params.deviation:g} m"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=NoiseParams)
-def noise(evidence: EvidenceRecord, params: NoiseParams) -> float:
-    """The noise, measured while the world stood still, is not what was asked ({where}):"""
-    return count_run_faults(evidence, wrong_noise, params)
-
-
-def not_there(run: WorldRun, params: NoParams) -> Iterator[str]:
+@run_check()
+def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """Our driver does not reach its target in your world ({where}):"""
     if run.run.reached_s is None:
         away = "" if run.run.target_distance is None else f"it ended {run.run.target_distance:.1f} m away"
         yield ", ".join(
@@ -72,13 +67,7 @@ def not_there(run: WorldRun, params: NoParams) -> Iterator[str]:
         )
 
 
-@check(none=1, full=0, words=NO_WORDS, params=NoParams)
-def drives(evidence: EvidenceRecord, params: NoParams) -> float:
-    """Our driver does not reach its target in your world ({where}):"""
-    return count_run_faults(evidence, not_there, params)
-
-
-@check(none=1, full=0, unit="bumps", params=NoParams)
+@check(none=1, full=0, unit="bumps")
 def bumps(evidence: EvidenceRecord, params: NoParams) -> float:
     """While our driver drove, the robot touched something: {actual} ({where})."""
     if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
@@ -94,36 +83,31 @@ def stopped(evidence: EvidenceRecord, params: NoParams) -> float:
     return float(evidence.content.run.bumps > 0)
 
 
-def no_way(run: WorldRun, params: NoParams) -> Iterator[str]:
+@run_check()
+def reachable(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """There is no way that is wide enough for the robot from its start to the target ({where})."""
     if not run.run.is_reachable:
         yield "Look for a wall too many, a gap too narrow, or a start inside a wall"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=NoParams)
-def reachable(evidence: EvidenceRecord, params: NoParams) -> float:
-    """There is no way that is wide enough for the robot from its start to the target ({where})."""
-    return count_run_faults(evidence, no_way, params)
-
-
-def leaks(run: WorldRun, params: NoParams) -> Iterator[str]:
+@run_check()
+def closed(run: WorldRun, params: NoParams) -> Iterator[str]:
+    """The walls do not hold the robot in: somewhere it can leave."""
     if not run.run.is_enclosed:
         yield "Look for two walls that should meet and do not"
 
 
-@check(none=1, full=0, words=NO_WORDS, params=NoParams)
-def closed(evidence: EvidenceRecord, params: NoParams) -> float:
-    """The walls do not hold the robot in: somewhere it can leave."""
-    return count_run_faults(evidence, leaks, params)
-
-
-def apart(run: WorldRun, params: NoParams) -> Iterator[str]:
+def _gap(run: WorldRun, params: NoParams) -> Iterator[str]:
     if run.run.joint_gap > 0.0:
         yield f"The joint {run.run.widest_joint} was {run.run.joint_gap * 1000:.0f} mm apart"
 
 
-@check(none=0.05, full=0.01, unit="m", params=NoParams)
+@check(none=0.05, full=0.01, unit="m", faults=_gap)
 def together(evidence: EvidenceRecord, params: NoParams) -> float:
     """While it drove the model came apart by {actual} ({where}); at most {full} is allowed."""
     if not isinstance(evidence.content, WorldRun) or evidence.content.run.problem:
         return math.nan
     return float(evidence.content.run.joint_gap)
+
+
+CHECKS: Final = (rate, noise, drives, bumps, stopped, reachable, closed, together)

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.assignment import Assignment
-from grader.checks.environments import CHECKS, complaint
+from grader.checks.environments import CHECKS, first_complaint
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
@@ -100,7 +100,7 @@ def _examine(assignment: Assignment, file: Path, level: Level, options: Evidence
         label="the environment",
         steps=record.steps,
         printed=record.printed,
-        explain_with=lambda check, params: complaint(record, check),
+        explain_with=lambda check, params: first_complaint(record, check),
     )
 
 

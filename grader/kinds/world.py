@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final, Self
 
 from grader.assignment import Assignment, Criterion, SeedSet, Shift, Trial
 from grader.checks.faults import WorldContents, WorldRun
-from grader.checks.worlds import CHECKS, RUNS, explain
+from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
@@ -135,7 +135,7 @@ class WorldCollector:
     def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
         first = self._read_contents()
         contents: WorldContents | None = first.content
-        if criterion.check not in RUNS or contents is None or contents.world.problems:
+        if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
             return [first]
         return [
             self._run(self._assignment.trial(name), seed, secret, number)
