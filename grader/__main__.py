@@ -1,26 +1,46 @@
-"""``python -m grader``. Each verb is one module of ``grader.cli``, imported only when it is used."""
+"""``python -m grader``: the verbs, whose modules in ``grader.cli`` are imported only when a verb is used."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from difflib import get_close_matches
 from importlib import import_module
-from typing import Final
+from types import MappingProxyType
+from typing import Final, NamedTuple
 
 import click
 
-VERBS: Final[dict[str, tuple[str, str]]] = {
-    "check": ("grader.cli.check", "Judge one submission: a verdict per criterion, and what to do next."),
-    "new": ("grader.cli.new", "Make an assignment's folder, to start from."),
-    "checks": ("grader.cli.checks", "List what can be checked, by what is handed in."),
-    "self-test": ("grader.cli.self_test", "Try an assignment out on its own solution and wrong solutions."),
-    "report": ("grader.cli.report", "Write a result in another format."),
-    "ci": ("grader.cli.ci", "Print a workflow file for GitHub or GitLab."),
-    "cohort": ("grader.cli.cohort", "Grade a folder of submissions; go on where it was interrupted."),
-    "work": ("grader.cli.work", "Work off a share of a cohort's queue, on another machine."),
-    "worker": ("grader.cli.worker", ""),
-    "gradebook": ("grader.cli.gradebook", "Print a cohort's gradebook: late rules, and what has changed."),
-}
-"""Every verb: the module that holds its ``command``, and its line in ``grader --help``; none if it is not for people."""
+
+class Verb(NamedTuple):
+    """Where a verb's command is, and its line in ``grader --help``."""
+
+    module: str
+    command: str
+    help: str = ""
+    """Empty for a verb that is not for people."""
+
+
+VERBS: Final[Mapping[str, Verb]] = MappingProxyType(
+    {
+        "check": Verb(
+            "check", "check", "Grade one submission: a verdict per criterion, and what to do next."
+        ),
+        "new": Verb("assignments", "new", "Make an assignment's folder, to start from."),
+        "checks": Verb("assignments", "checks", "List what can be checked, by what is handed in."),
+        "self-test": Verb(
+            "assignments", "self_test", "Try an assignment out on its own solution and wrong solutions."
+        ),
+        "report": Verb("check", "report", "Write a result in another format."),
+        "ci": Verb("assignments", "ci", "Print a workflow file for GitHub or GitLab."),
+        "cohort": Verb("cohort", "cohort", "Grade a folder of submissions; go on where it was interrupted."),
+        "work": Verb("cohort", "work", "Grade a share of a cohort's queue, on another machine."),
+        "worker": Verb("cohort", "worker"),
+        "gradebook": Verb(
+            "cohort", "gradebook", "Print a cohort's gradebook: late rules, and what has changed."
+        ),
+    }
+)
+"""Every verb, in the order of ``grader --help``."""
 
 
 class LazyGroup(click.Group):
@@ -32,7 +52,8 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in VERBS:
             return None
-        command: click.Command = import_module(VERBS[cmd_name][0]).command
+        verb = VERBS[cmd_name]
+        command: click.Command = getattr(import_module(f"grader.cli.{verb.module}"), verb.command)
         return command
 
     def resolve_command(
@@ -48,7 +69,7 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Verbs"):
-            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items() if text])
+            formatter.write_dl([(name, verb.help) for name, verb in VERBS.items() if verb.help])
 
 
 @click.group(
@@ -57,7 +78,7 @@ class LazyGroup(click.Group):
     epilog="`grader VERB --help` explains a verb.",
 )
 def main() -> None:
-    """Checks controllers and reward functions: one at a desk, a class in CI, a cohort on a cluster."""
+    """Grades what students program: one submission here, each push in CI, or a whole class on a cluster."""
 
 
 if __name__ == "__main__":

@@ -271,10 +271,12 @@ class Grading:
 
 
 @contextmanager
-def open_grading(assignment: Assignment, submission: Submission, terms: GradingOptions) -> Iterator[Grading]:
+def open_grading(
+    assignment: Assignment, submission: Submission, options: GradingOptions
+) -> Iterator[Grading]:
     """A grading, ready to judge. Raises LevelTooLow."""
-    level = assignment.level if terms.level is None else terms.level
-    if terms.secret and level < assignment.level:
+    level = assignment.level if options.level is None else options.level
+    if options.secret and level < assignment.level:
         raise LevelTooLow(
             f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
             f"not at {int(level)}. `kit doctor` says what this machine can do."
@@ -282,14 +284,14 @@ def open_grading(assignment: Assignment, submission: Submission, terms: GradingO
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
-        options = EvidenceOptions(level, terms.secret, terms.may_fall and terms.level is None)
-        with find_kind(assignment.kind).collect(assignment, file, options) as collector:
-            yield Grading(assignment, submission, collector, secret=terms.secret)
+        evidence_options = EvidenceOptions(level, options.secret, options.may_fall and options.level is None)
+        with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
+            yield Grading(assignment, submission, collector, secret=options.secret)
 
 
-def grade(assignment: Assignment, submission: Submission, terms: GradingOptions) -> GradingResult:
+def grade(assignment: Assignment, submission: Submission, options: GradingOptions) -> GradingResult:
     """The result of one submission. Raises LevelTooLow."""
-    with open_grading(assignment, submission, terms) as grading:
+    with open_grading(assignment, submission, options) as grading:
         return grading.result()
 
 

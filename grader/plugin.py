@@ -117,14 +117,14 @@ class GradingSession:
         key = str(assignment.folder)
         if key not in self._open:
             level = self._config.getoption("--grading-level")
-            terms = GradingOptions(
+            options = GradingOptions(
                 None if level is None else Level(level), secret=bool(self._config.getoption("--secret-seeds"))
             )
             try:
                 submission = read_submission(
                     Path(str(self._config.getoption("--submission"))), assignment.submit
                 )
-                self._open[key] = self._stack.enter_context(open_grading(assignment, submission, terms))
+                self._open[key] = self._stack.enter_context(open_grading(assignment, submission, options))
             except (SubmissionRefused, LevelTooLow) as error:
                 raise CriterionFailed(str(error)) from None
         return self._open[key]

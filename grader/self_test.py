@@ -50,13 +50,13 @@ class UnfairFailOdds:
 
 
 def try_works(
-    assignment: Assignment, terms: GradingOptions, solutions: Path | None = None
+    assignment: Assignment, options: GradingOptions, solutions: Path | None = None
 ) -> Iterator[WorkReport]:
     """Tries the folder's works one after the other; ``solutions``: where the right and the wrong ones lie, if not in
     the assignment's folder. Raises LevelTooLow."""
     solutions = assignment.folder if solutions is None else solutions
-    yield _starter(assignment, _work(assignment.folder, STARTER, assignment), terms)
-    yield _solution(assignment, _work(solutions, SOLUTION, assignment), terms)
+    yield _starter(assignment, _work(assignment.folder, STARTER, assignment), options)
+    yield _solution(assignment, _work(solutions, SOLUTION, assignment), options)
     ending = Path(assignment.submit).suffix
     wrong = sorted(
         each
@@ -66,7 +66,7 @@ def try_works(
     if not wrong:
         yield WorkReport(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
     for file in wrong:
-        yield _wrong(assignment, file, terms)
+        yield _wrong(assignment, file, options)
 
 
 def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:
@@ -93,8 +93,8 @@ def _work(folder: Path, stem: str, assignment: Assignment) -> Path:
     return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
 
 
-def _starter(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
-    result = _grade(assignment, file, terms)
+def _starter(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
+    result = _grade(assignment, file, options)
     if isinstance(result, str):
         return WorkReport(file.name, (result,), "")
     problems = _grader_errors(result)
@@ -112,8 +112,8 @@ def _starter(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkR
     return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _solution(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
-    result = _grade(assignment, file, terms)
+def _solution(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
+    result = _grade(assignment, file, options)
     if isinstance(result, str):
         return WorkReport(file.name, (result,), "")
     problems = _grader_errors(result)
@@ -127,7 +127,7 @@ def _solution(assignment: Assignment, file: Path, terms: GradingOptions) -> Work
         for test in result.tests
         if test.status is CriterionStatus.SKIPPED
     ]
-    again = _grade(assignment, file, terms)
+    again = _grade(assignment, file, options)
     if isinstance(again, GradingResult) and again.tests != result.tests:
         problems.append(
             "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
@@ -135,13 +135,13 @@ def _solution(assignment: Assignment, file: Path, terms: GradingOptions) -> Work
     return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _wrong(assignment: Assignment, file: Path, terms: GradingOptions) -> WorkReport:
+def _wrong(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
     name = f"{WRONG}/{file.name}"
     named = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
     known = {each.id for each in assignment.tests}
     if not named <= known:
         return WorkReport(name, (f"its name must start with criteria: {', '.join(sorted(known))}",), "")
-    result = _grade(assignment, file, terms)
+    result = _grade(assignment, file, options)
     if isinstance(result, str):
         return WorkReport(name, (result,), "")
     lost = {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
@@ -164,11 +164,11 @@ def _depends(assignment: Assignment, identity: str, named: set[str]) -> bool:
     return False
 
 
-def _grade(assignment: Assignment, file: Path, terms: GradingOptions) -> GradingResult | str:
+def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> GradingResult | str:
     if not file.exists():
         return "it is missing"
     try:
-        return grade(assignment, read_submission(file, assignment.submit), terms)
+        return grade(assignment, read_submission(file, assignment.submit), options)
     except SubmissionRefused as error:
         return str(error)
 

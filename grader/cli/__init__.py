@@ -1,1 +1,1 @@
-"""The verbs of ``grader``, one module each, and how a user's mistake ends: one clear line and exit code 2."""
+"""The verbs of ``grader``. A user's mistake ends a verb with one clear line and exit code 2."""

@@ -1,7 +1,8 @@
-"""``grader check``: one submission, judged at once."""
+"""``grader check`` and ``report``: grades one submission, and writes its result in another format."""
 
 from __future__ import annotations
 
+import json
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -49,7 +50,7 @@ EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
     help="Keep the worst episode there, for `kit replay`.",
 )
 @click.option("--for-student", is_flag=True, help="Leave out what is hidden from students for now.")
-def command(
+def check(
     file: Path,
     folder: Path,
     level: int | None,
@@ -101,12 +102,11 @@ def command(
 
 
 def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:
-    from grader.reports import find_writer, terminal
+    from grader.reports import FORMATS
+    from grader.reports.terminal import write_text
 
     return (
-        terminal.write(result, hints=hints) + picture
-        if format_name == "text"
-        else find_writer(format_name)(result)
+        write_text(result, hints=hints) + picture if format_name == "text" else FORMATS[format_name](result)
     )
 
 
@@ -155,3 +155,35 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     except OSError as error:
         options.fail(f"{replay} cannot be written: {error.strerror or error}.")
     return f"Watch it move: kit replay {shlex.quote(str(replay))}{root}"
+
+
+@click.command()
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--format",
+    "format_name",
+    default="text",
+    show_default=True,
+    metavar="NAME",
+    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
+)
+@click.option(
+    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report there instead."
+)
+def report(file: Path, format_name: str, output: Path | None) -> None:
+    """Write a result (made by `grader check --json`) in another format."""
+    from grader.reports import FORMATS
+    from kit.school.result import GradingResult
+    from kit.workspace import write_atomically
+
+    if format_name not in FORMATS:
+        options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
+    try:
+        result = GradingResult.from_dict(json.loads(file.read_bytes()))
+    except (KeyError, TypeError, ValueError, RecursionError):
+        options.fail(f"{file}: not a result of the grader.")
+    text = FORMATS[format_name](result)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        write_atomically(output.absolute(), text.encode())

@@ -1,8 +1,9 @@
-"""``grader cohort``: a folder of submissions becomes a gradebook."""
+"""``grader cohort``, ``work``, ``worker`` and ``gradebook``: grades a folder of submissions into a gradebook."""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     help="Who does the work; none: only prepare the queue, for shards.",
 )
 @click.option("--cluster", default="", metavar="ADDRESS", help="Of the Dask scheduler.")
-def command(
+def cohort(
     submissions: Path,
     folder: Path,
     level: int | None,
@@ -67,8 +68,8 @@ def command(
 
     assignment = options.read_assignment(folder)
     queue = Queue(queue_folder.absolute())
-    terms = GradingOptions(options.as_level(level), secret, may_fall=False)
-    wanted = assignment.level if terms.level is None else terms.level
+    grading_options = GradingOptions(options.as_level(level), secret, may_fall=False)
+    wanted = assignment.level if grading_options.level is None else grading_options.level
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
@@ -76,7 +77,7 @@ def command(
     if executor == "local" and highest() < wanted:
         options.fail(f"This machine does not reach confinement level {int(wanted)}; `kit doctor` says why.")
     try:
-        entries = prepare_queue(queue, submissions, assignment, terms)
+        entries = prepare_queue(queue, submissions, assignment, grading_options)
         waiting = queue.waiting()
         click.echo(f"{len(entries)} submissions, {len(waiting)} to grade", err=True)
         with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
@@ -101,3 +102,103 @@ def publish(queue: Queue) -> int:
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
     click.echo(f"{summary(table)}: {queue.folder / 'gradebook.csv'}")
     return options.BROKEN if any(row.verdict == "broken" for row in table) else 0
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "--shard",
+    default="0/1",
+    show_default=True,
+    metavar="I/N",
+    help="Only share I of N, from 0; for a CI matrix or an array job.",
+)
+@click.option(
+    "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default=True, help="Processes."
+)
+def work(folder: Path, shard: str, jobs: int) -> None:
+    """Work off the jobs in the queue FOLDER that have no result yet."""
+    from grader.cohort.executors import run_locally
+    from grader.cohort.queue import Queue, QueueError
+
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", shard)
+    if found is None or not int(found[1]) < int(found[2]):
+        options.fail(f"{shard}: say which share of how many, from 0, such as 0/4.")
+    queue = Queue(folder.absolute())
+    try:
+        keys = queue.waiting((int(found[1]), int(found[2])))
+        run_locally(queue, keys, jobs, lambda key: None)
+    except (QueueError, OSError) as error:
+        options.fail(str(error))
+    click.echo(f"{len(keys)} graded")
+
+
+@click.command(hidden=True)
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+def worker(folder: Path) -> None:
+    """Grade the jobs whose keys come on standard input."""
+    from grader.cohort.queue import Queue
+    from grader.cohort.work import serve_jobs
+
+    # What anything below prints must not stand between the answers.
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    serve_jobs(Queue(folder), sys.stdin, answers)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "--late",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A YAML file: due, grace_minutes, per_day, least, latest_days.",
+)
+@click.option(
+    "--times",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A CSV file: name, submitted; and student, where some hand in more than once.",
+)
+@click.option(
+    "--choose",
+    type=click.Choice(["latest", "in-time", "best"]),
+    default="latest",
+    show_default=True,
+    help="Which of a student's submissions counts.",
+)
+@click.option(
+    "--against",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Another gradebook.json: print only what has changed since.",
+)
+@click.option("--json", "as_json_text", is_flag=True, help="JSON instead of CSV.")
+def gradebook(
+    folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
+) -> None:
+    """Print the gradebook of the queue FOLDER: late rules, and which of several submissions counts, are applied now
+    and kept nowhere."""
+    from grader.cohort.choice import choose_submissions
+    from grader.cohort.gradebook import as_csv, as_json, changes, gradebook_rows, read_json
+    from grader.cohort.late import read_policy, read_submission_times
+    from grader.cohort.queue import Queue, QueueError
+    from grader.reports.cleaning import one_line
+    from kit.world.problems import WorldError
+
+    try:
+        policy = None if late is None else read_policy(late)
+        submission_times = {} if times is None else read_submission_times(times)
+        table = gradebook_rows(Queue(folder.absolute()), policy, submission_times)
+        timeless = (
+            [row.name for row in table if row.name not in submission_times] if policy is not None else []
+        )
+        table = choose_submissions(table, submission_times, choose)
+        before = None if against is None else read_json(against.read_text(encoding="utf-8"))
+    except (WorldError, QueueError, ValueError, OSError) as error:
+        options.fail(str(error))
+    if timeless:
+        named = ", ".join(map(one_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
+        click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)
+    if before is not None:
+        lines = list(changes(before, table))
+        click.echo("\n".join(lines) if lines else "nothing has changed")
+    else:
+        click.echo(as_json(table) if as_json_text else as_csv(table), nl=False)

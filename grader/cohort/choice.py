@@ -13,17 +13,17 @@ from grader.cohort.late import SubmissionTime
 SortKey = tuple[float, float, str]
 
 
-def _latest(row: GradebookRow, time: SubmissionTime) -> SortKey:
-    return time.at.timestamp(), 0.0, row.name
+def _latest(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+    return submitted.at.timestamp(), 0.0, row.name
 
 
-def _latest_in_time(row: GradebookRow, time: SubmissionTime) -> SortKey:
-    return row.kept, time.at.timestamp(), row.name
+def _latest_in_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+    return row.kept, submitted.at.timestamp(), row.name
 
 
-def _best(row: GradebookRow, time: SubmissionTime) -> SortKey:
+def _best(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
     # Without a grade nothing is known: somebody has to look before another one counts.
-    return float("inf") if row.final is None else row.final, time.at.timestamp(), row.name
+    return float("inf") if row.final is None else row.final, submitted.at.timestamp(), row.name
 
 
 RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], SortKey]]]] = MappingProxyType(
@@ -37,35 +37,35 @@ RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], So
 
 
 def choose_submissions(
-    table: Sequence[GradebookRow], arrivals: Mapping[str, SubmissionTime], rule: str
+    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
 ) -> tuple[GradebookRow, ...]:
     """One row for each student, under the student's name. What has no arrival is its own student's.
 
     KeyError if there is no such rule; ValueError where an arrival belongs to no submission.
     """
-    unknown = sorted(arrivals.keys() - {row.name for row in table})
+    unknown = sorted(submission_times.keys() - {row.name for row in table})
     if unknown:
         raise ValueError(f"no submission is named {unknown[0]}; there are {len(table)} in the queue")
-    return tuple(sorted(_chosen(table, arrivals, rule), key=lambda row: row.name))
+    return tuple(sorted(_chosen(table, submission_times, rule), key=lambda row: row.name))
 
 
 def _chosen(
-    table: Sequence[GradebookRow], arrivals: Mapping[str, SubmissionTime], rule: str
+    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
 ) -> Iterator[GradebookRow]:
     rule_text, rank = RULES[rule]
     by_student: dict[str, list[GradebookRow]] = {}
     for row in table:
-        time = arrivals.get(row.name)
-        by_student.setdefault(row.name if time is None else time.student, []).append(row)
+        submitted = submission_times.get(row.name)
+        by_student.setdefault(row.name if submitted is None else submitted.student, []).append(row)
     for student, submissions in by_student.items():
         if len(submissions) == 1:
             yield replace(submissions[0], name=student)
             continue
-        unknown = [row.name for row in submissions if row.name not in arrivals]
+        unknown = [row.name for row in submissions if row.name not in submission_times]
         if unknown:
             raise ValueError(
                 f"{student} is a student and the name of a submission without a time: {unknown[0]}"
             )
-        chosen = max(submissions, key=lambda row: rank(row, arrivals[row.name]))
+        chosen = max(submissions, key=lambda row: rank(row, submission_times[row.name]))
         note = f"{chosen.name}, {rule_text} of {len(submissions)}"
         yield replace(chosen, name=student, note=f"{note}. {chosen.note}" if chosen.note else note)

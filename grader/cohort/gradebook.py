@@ -38,19 +38,21 @@ class GradebookRow:
 
 
 def gradebook_rows(
-    queue: Queue, policy: LatePolicy | None = None, arrivals: Mapping[str, SubmissionTime] | None = None
+    queue: Queue,
+    policy: LatePolicy | None = None,
+    submission_times: Mapping[str, SubmissionTime] | None = None,
 ) -> tuple[GradebookRow, ...]:
     """One for each submission, in the order of names."""
-    return tuple(sorted(_rows(queue, policy, arrivals or {}), key=lambda row: row.name))
+    return tuple(sorted(_rows(queue, policy, submission_times or {}), key=lambda row: row.name))
 
 
 def _rows(
-    queue: Queue, policy: LatePolicy | None, arrivals: Mapping[str, SubmissionTime]
+    queue: Queue, policy: LatePolicy | None, submission_times: Mapping[str, SubmissionTime]
 ) -> Iterator[GradebookRow]:
     most = round(queue.assignment().max_points, 6)
     for entry in queue.entries():
-        time = arrivals.get(entry.name)
-        kept = policy.kept(time.at) if policy is not None and time is not None else 1.0
+        submitted = submission_times.get(entry.name)
+        kept = policy.kept(submitted.at) if policy is not None and submitted is not None else 1.0
         if entry.key is None:
             yield GradebookRow(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
             continue

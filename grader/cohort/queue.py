@@ -97,15 +97,15 @@ class Queue:
         )
 
 
-def job_key(submission: Submission, assignment: Assignment, terms: GradingOptions) -> str:
+def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """What decides a result, as one name."""
-    level = assignment.level if terms.level is None else terms.level
-    parts = (submission.digest, assignment.version, grader_version(), SCHEMA, terms.secret, int(level))
+    level = assignment.level if options.level is None else options.level
+    parts = (submission.digest, assignment.version, grader_version(), SCHEMA, options.secret, int(level))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
 def prepare_queue(
-    queue: Queue, cohort: Path, assignment: Assignment, terms: GradingOptions
+    queue: Queue, cohort: Path, assignment: Assignment, options: GradingOptions
 ) -> tuple[QueueEntry, ...]:
     """Makes or renews the queue for all submissions in the folder ``cohort``. Results that fit are kept.
 
@@ -114,13 +114,13 @@ def prepare_queue(
     for part in ("jobs", "results"):
         (queue.folder / part).mkdir(parents=True, exist_ok=True)
     _copy_assignment(queue, assignment)
-    entries = tuple(_entries(queue, cohort, assignment, terms))
-    level = assignment.level if terms.level is None else terms.level
+    entries = tuple(_entries(queue, cohort, assignment, options))
+    level = assignment.level if options.level is None else options.level
     content = {
         "assignment": assignment.id,
         "assignment_version": assignment.version,
         "grader_version": grader_version(),
-        "secret": terms.secret,
+        "secret": options.secret,
         "level": int(level),
         "entries": [{"name": each.name, "key": each.key, "refused": each.refused} for each in entries],
     }
@@ -129,7 +129,7 @@ def prepare_queue(
 
 
 def _entries(
-    queue: Queue, cohort: Path, assignment: Assignment, terms: GradingOptions
+    queue: Queue, cohort: Path, assignment: Assignment, options: GradingOptions
 ) -> Iterator[QueueEntry]:
     names: set[str] = set()
     for path in sorted(cohort.iterdir()):
@@ -148,7 +148,7 @@ def _entries(
         except SubmissionRefused as refused:
             yield QueueEntry(name, None, str(refused))
             continue
-        key = job_key(submission, assignment, terms)
+        key = job_key(submission, assignment, options)
         if not queue.job(key).exists():
             files = {each: base64.b64encode(data).decode() for each, data in sorted(submission.files.items())}
             job = {"name": name, "main": submission.main, "files": files}

@@ -33,12 +33,12 @@ def grade_job(queue: Queue, key: str) -> GradingResult:
     """Grades one job and keeps its result."""
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
-    submission, terms = queue.submission(key), queue.grading_options()
-    result = grade(assignment, submission, terms)
+    submission, options = queue.submission(key), queue.grading_options()
+    result = grade(assignment, submission, options)
     for _ in range(TRIES - 1):
         if result.verdict is not GradingVerdict.BROKEN:
             break
-        result = grade(assignment, submission, terms)
+        result = grade(assignment, submission, options)
     queue.save_result(key, result)
     return result
 
@@ -134,7 +134,7 @@ def record_incident(queue: Queue, key: str) -> None:
 
 def _incident_result(queue: Queue, key: str) -> GradingResult:
     """The grader died, more than once: no grade, and somebody has to look."""
-    assignment, submission, terms = queue.assignment(), queue.submission(key), queue.grading_options()
+    assignment, submission, options = queue.assignment(), queue.submission(key), queue.grading_options()
     tests = tuple(
         replace(
             CriterionResult(
@@ -149,8 +149,8 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
         assignment.version,
         submission.digest,
         grader_version(),
-        "public+secret" if terms.secret else "public",
-        int(terms.level or 0),
+        "public+secret" if options.secret else "public",
+        int(options.level or 0),
         sys.platform,
         tests,
     )

@@ -1,40 +1,35 @@
-"""Reports: one writer for each place a result is read, each with the cleaning that its format needs."""
+"""Report formats: each writes a grading result for one reader, with the cleaning that its format needs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from importlib import import_module
 from types import MappingProxyType
 from typing import Final
 
+from grader.reports.formats import (
+    write_check50,
+    write_classroom,
+    write_json,
+    write_markdown,
+    write_prairielearn,
+)
+from grader.reports.gradescope import write_gradescope
+from grader.reports.junit import write_junit
+from grader.reports.terminal import write_text
 from kit.school.result import GradingResult
 
+ReportWriter = Callable[[GradingResult], str]
 
-@dataclass(frozen=True, slots=True)
-class Format:
-    """One kind of report."""
-
-    module: str
-    """Its ``write(result) -> str`` is the writer."""
-    about: str
-
-
-FORMATS: Final[Mapping[str, Format]] = MappingProxyType(
+FORMATS: Final[Mapping[str, ReportWriter]] = MappingProxyType(
     {
-        "text": Format("terminal", "for people, in a terminal"),
-        "json": Format("native", "the whole result, for programs"),
-        "junit": Format("junit", "JUnit XML: GitLab, Jenkins, dashboards"),
-        "gradescope": Format("gradescope", "Gradescope's results.json"),
-        "classroom": Format("classroom", "GitHub Classroom's runner result"),
-        "prairielearn": Format("prairielearn", "PrairieLearn's results.json"),
-        "check50": Format("check50", "JSON in the manner of check50"),
-        "markdown": Format("markdown", "a job summary"),
+        "text": write_text,
+        "json": write_json,
+        "junit": write_junit,
+        "gradescope": write_gradescope,
+        "classroom": write_classroom,
+        "prairielearn": write_prairielearn,
+        "check50": write_check50,
+        "markdown": write_markdown,
     }
 )
-
-
-def find_writer(name: str) -> Callable[[GradingResult], str]:
-    """The writer of a format. KeyError if there is none."""
-    write: Callable[[GradingResult], str] = import_module(f"grader.reports.{FORMATS[name].module}").write
-    return write
+"""Every format by its name on the command line."""

@@ -20,8 +20,11 @@ VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
 )
 
 
-def write(result: GradingResult) -> str:
-    """A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0."""
+def write_gradescope(result: GradingResult) -> str:
+    """Writes Gradescope's ``results.json``.
+
+    A broken grader writes no score at all: Gradescope then reports the run as failed, and nobody gets 0.
+    """
     content: dict[str, Any] = {
         "execution_time": round(result.timing.wall_s, 2),
         "output": plain("\n".join(result.notices)),

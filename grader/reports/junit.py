@@ -8,7 +8,7 @@ from grader.reports.cleaning import one_line, xml
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, format_points
 
 
-def write(result: GradingResult) -> str:
+def write_junit(result: GradingResult) -> str:
     broken = sum(test.status is CriterionStatus.GRADER_ERROR for test in result.tests)
     skipped = sum(test.status is CriterionStatus.SKIPPED for test in result.tests)
     failed = sum(test.is_judged and test.status is not CriterionStatus.PASS for test in result.tests)

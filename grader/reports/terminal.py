@@ -7,8 +7,8 @@ import json
 import textwrap
 from collections.abc import Iterator
 
-from grader.reports import native
 from grader.reports.cleaning import one_line
+from grader.reports.formats import write_json
 from kit.school.result import GradingResult
 from kit.school.result_text import VERDICTS, criterion_lines, plain, points_text
 
@@ -16,14 +16,14 @@ WIDTH = 78
 LOG_LINES = 8
 
 
-def write(result: GradingResult, *, hints: int = 1) -> str:
-    """``hints``: how many hints of a criterion to show."""
-    return "\n".join(lines(result, hints)) + "\n"
+def write_text(result: GradingResult, *, hints: int = 1) -> str:
+    """Writes the result for people; ``hints``: how many hints of a criterion to show."""
+    return "\n".join(_lines(result, hints)) + "\n"
 
 
-def lines(result: GradingResult, hints: int) -> Iterator[str]:
+def _lines(result: GradingResult, hints: int) -> Iterator[str]:
     # What the JSON report shows of a result is clean: no terminal escapes, no commands of a CI runner.
-    shown = GradingResult.from_dict(json.loads(native.write(result)))
+    shown = GradingResult.from_dict(json.loads(write_json(result)))
     more_hints = f"For more help, add --hints {hints + 1}."
     for test in shown.tests:
         for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):

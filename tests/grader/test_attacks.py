@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.reports import FORMATS, find_writer
+from grader.reports import FORMATS
 from kit.host.sandbox.confinement import Level
 from kit.school.result import GradingVerdict
 from tests.grader.attacks import ATTACKS, TOKEN, Attack, attempt
@@ -58,7 +58,7 @@ def test_nobody_gains_anything(
         stopped = [test for test in outcome.result.tests if test.points < test.max_points]
         assert all(test.rationale for test in stopped), "what was lost is explained"
         for form in FORMATS:
-            report = find_writer(form)(outcome.result)
+            report = FORMATS[form](outcome.result)
             assert TOKEN not in report
             assert "::" not in report
             assert all(sign.isprintable() or sign == "\n" for sign in report)

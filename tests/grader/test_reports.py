@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from grader.reports import FORMATS, cleaning, find_writer
+from grader.reports import FORMATS, cleaning
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
 
 NASTY = {
@@ -53,7 +53,7 @@ def result(text: str, status: CriterionStatus = CriterionStatus.FAIL) -> Grading
 @pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
 @pytest.mark.parametrize("form", FORMATS)
 def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
-    report = find_writer(form)(result(text))
+    report = FORMATS[form](result(text))
     report.encode("utf-8")
     for line in report.splitlines():
         assert "::" not in line
@@ -66,16 +66,16 @@ def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
 
 @pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
 def test_xml_and_json_can_be_read_again(text: str) -> None:
-    root = ElementTree.fromstring(find_writer("junit")(result(text)))
+    root = ElementTree.fromstring(FORMATS["junit"](result(text)))
     assert root.attrib["failures"] == "2"
     for form in ("json", "gradescope", "classroom", "prairielearn", "check50"):
-        json.loads(find_writer(form)(result(text)))
-    assert GradingResult.from_dict(json.loads(find_writer("json")(result(text)))).points == 1.0
+        json.loads(FORMATS[form](result(text)))
+    assert GradingResult.from_dict(json.loads(FORMATS["json"](result(text)))).points == 1.0
 
 
 @pytest.mark.parametrize("text", NASTY.values(), ids=NASTY)
 def test_markdown_stays_text(text: str) -> None:
-    report = find_writer("markdown")(result(text))
+    report = FORMATS["markdown"](result(text))
     assert "<" not in report.replace("&lt;", "")
     assert "@" not in report
     assert "](" not in report.replace("\\]\\(", "")
@@ -102,23 +102,23 @@ def test_cut_text_says_so() -> None:
 
 @pytest.mark.parametrize("form", ["classroom", "prairielearn", "check50", "markdown"])
 def test_reports_for_students_hide_what_is_hidden(form: str) -> None:
-    report = find_writer(form)(result("no"))
+    report = FORMATS[form](result("no"))
     assert "s3cret" not in report
     assert "Hidden one" in report
 
 
 def test_gradescope_gets_the_visibility_and_not_a_broken_grade() -> None:
-    content = json.loads(find_writer("gradescope")(result("no")))
+    content = json.loads(FORMATS["gradescope"](result("no")))
     assert [test["visibility"] for test in content["tests"]] == ["visible", "hidden"]
     assert content["score"] == sum(test["score"] for test in content["tests"]) == 1.0
-    broken = json.loads(find_writer("gradescope")(result("no", CriterionStatus.GRADER_ERROR)))
+    broken = json.loads(FORMATS["gradescope"](result("no", CriterionStatus.GRADER_ERROR)))
     assert "score" not in broken
     assert "tests" not in broken
 
 
 def test_classroom_always_gets_tests_and_a_maximum() -> None:
     for status, expected in ((CriterionStatus.PASS, "fail"), (CriterionStatus.GRADER_ERROR, "error")):
-        content = json.loads(find_writer("classroom")(result("no", status)))
+        content = json.loads(FORMATS["classroom"](result("no", status)))
         assert (content["status"], content["max_score"]) == (expected, 3)
         assert isinstance(content["tests"], list)
 
@@ -129,24 +129,24 @@ def test_prairielearn_does_not_grade_what_did_not_run() -> None:
     )
     later = CriterionResult("b", "B", CriterionStatus.SKIPPED, 0.0, 1.0, depends_on="a")
     content = json.loads(
-        find_writer("prairielearn")(GradingResult("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
+        FORMATS["prairielearn"](GradingResult("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
     )
     assert content["gradable"] is False
     assert content["format_errors"] == ["work.py:3: SyntaxError"]
-    assert json.loads(find_writer("prairielearn")(result("no")))["score"] == pytest.approx(1 / 3)
+    assert json.loads(FORMATS["prairielearn"](result("no")))["score"] == pytest.approx(1 / 3)
 
 
 def test_check50_tells_failed_from_unknown() -> None:
-    assert [test["passed"] for test in json.loads(find_writer("check50")(result("no")))["results"]] == [
+    assert [test["passed"] for test in json.loads(FORMATS["check50"](result("no")))["results"]] == [
         False,
         False,
     ]
-    broken = json.loads(find_writer("check50")(result("no", CriterionStatus.GRADER_ERROR)))["results"]
+    broken = json.loads(FORMATS["check50"](result("no", CriterionStatus.GRADER_ERROR)))["results"]
     assert broken[0]["passed"] is None
 
 
 def test_junit_tells_a_failure_from_an_error() -> None:
-    root = ElementTree.fromstring(find_writer("junit")(result("no", CriterionStatus.GRADER_ERROR)))
+    root = ElementTree.fromstring(FORMATS["junit"](result("no", CriterionStatus.GRADER_ERROR)))
     assert (root.attrib["failures"], root.attrib["errors"]) == ("1", "1")
     names = [case.attrib["name"] for case in root.iter("testcase")]
     assert len(set(names)) == len(names)

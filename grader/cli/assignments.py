@@ -1,0 +1,169 @@
+"""``grader new``, ``checks``, ``self-test`` and ``ci``: verbs for teachers who write an assignment."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import textwrap
+from pathlib import Path
+from typing import Final
+
+import click
+
+from grader.ci import WORKFLOWS, GitSource, workflow
+from grader.cli import options
+
+TEMPLATES: Final = Path(__file__).parents[1] / "templates"
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--kind",
+    type=click.Choice(
+        sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir() and each.name[0] != "_")
+    ),
+    default="controller",
+    show_default=True,
+    help="What students hand in.",
+)
+def new(folder: Path, kind: str) -> None:
+    """Make the assignment FOLDER: a working example with starter, solution, wrong solutions and secret seeds.
+
+    Change it step by step, and run `grader self-test FOLDER` after each.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        options.fail(f"{folder} is there already and not empty; name another folder.")
+    try:
+        shutil.copytree(
+            TEMPLATES / kind,
+            folder,
+            dirs_exist_ok=True,
+            ignore=shutil.ignore_patterns("__pycache__", "*.pyc"),
+        )
+    except OSError as error:
+        options.fail(f"{folder} cannot be made: {error.strerror or error}.")
+    click.echo(f"{folder}: {kind}, ready. Try it: grader self-test {folder}")
+    click.echo(f"Then change {folder}/assignment.yaml. What can be checked: grader checks {kind}")
+
+
+WIDTH: Final = 78
+MARGIN: Final = 18
+
+
+@click.command()
+@click.argument("kind", required=False, default="controller")
+def checks(kind: str) -> None:
+    """List the checks that an assignment of this KIND may use: what each measures, what earns nothing and what earns
+    everything unless `share` says otherwise, and what `with` may set.
+
+    \b
+    grader checks reward
+    """
+    from dataclasses import fields
+
+    from grader.kinds.contract import find_kind, kind_names
+    from kit.world.problems import quoted, suggestion
+
+    if kind not in kind_names():
+        options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
+    for name, check in find_kind(kind).checks.items():
+        none, full = check.format(check.anchors.none), check.format(check.anchors.full)
+        params = ", ".join(f"{each.name}: {each.default!r}" for each in fields(check.params))
+        parts = [
+            f"“{none}” earns nothing, “{full}” everything" if full else "",
+            f"with: {params}" if params else "",
+        ]
+        text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
+        for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
+            click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
+    others = ", ".join(each for each in kind_names() if each != kind)
+    click.echo("\n" + textwrap.fill(f"Other kinds: {others}.", WIDTH))
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "--solutions",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Where the solution and the wrong ones lie, if not in FOLDER.",
+)
+@options.level
+def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
+    """Try out the assignment in FOLDER: its starter fails politely, its solution earns everything, each of its wrong
+    solutions loses what its file name says. Then the odds that a good work fails by bad luck.
+
+    Exit code: 0 all is as it should be; 1 it is not; 2 the assignment cannot be read.
+    """
+    from grader.grading import GradingOptions, LevelTooLow
+    from grader.reports.cleaning import plain
+    from grader.self_test import SUCCESSES, try_works, unfair_fail_odds
+
+    assignment = options.read_assignment(folder)
+    grading_options = GradingOptions(
+        options.as_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets
+    )
+    click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
+    failed = False
+    try:
+        for proof in try_works(assignment, grading_options, solutions):
+            failed |= bool(proof.problems)
+            click.echo(f"{'[no]' if proof.problems else '[ok]'} {proof.name:<32} {proof.summary}")
+            for problem in proof.problems:
+                click.echo(f"     {plain(problem, 600)}")
+    except LevelTooLow as error:
+        options.fail(str(error))
+    chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
+    if chances:
+        click.echo("\nThe odds that a work fails by bad luck, if in each episode it succeeds with")
+        click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESSES))
+        for each in chances:
+            rule = f"{each.criterion} ({each.passes} of {each.episodes})"
+            click.echo(f"{rule:<32}" + "".join(f"{unfair:>9.1%}" for unfair in each.unfair))
+    raise SystemExit(options.FAILED if failed else 0)
+
+
+PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
+
+
+@click.command()
+@click.argument("service", type=click.Choice(sorted(WORKFLOWS)))
+@options.assignment
+@click.option(
+    "--kit",
+    required=True,
+    metavar="ADDRESS[@VERSION]",
+    help="Where the kit is cloned from: https://..., perhaps with a branch or tag.",
+)
+@click.option(
+    "--write",
+    is_flag=True,
+    help="Put the file where it belongs, below the present folder, instead of printing it.",
+)
+def ci(service: str, folder: Path, kit: str, write: bool) -> None:
+    """Print a workflow that grades every push: for GitHub Actions (and GitHub Classroom) or GitLab CI.
+
+    Say the assignment's folder as it is called in the repository, and where the kit's source is kept:
+
+    \b
+    grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
+    """
+    from kit.workspace import write_atomically
+
+    assignment = options.read_assignment(folder)
+    name = folder.as_posix()
+    if not PLAIN_PATH.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
+        options.fail(f"{name}: name the folder relative to the repository, in letters, digits, _ . - and /.")
+    try:
+        text = workflow(service, submit=assignment.submit, assignment=name, kit=GitSource.read(kit))
+    except ValueError as error:
+        options.fail(f"{error}.")
+    if not write:
+        click.echo(text, nl=False)
+        return
+    file = Path(WORKFLOWS[service][0])
+    if file.exists():
+        options.fail(f"{file} is there already; remove it first.")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(file.absolute(), text.encode())
+    click.echo(f"{file}: written")

@@ -1,0 +1,156 @@
+"""Writers of the smaller report formats: JSON, check50, GitHub Classroom, PrairieLearn and Markdown."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any, Final
+
+from grader.reports.cleaning import fenced, markdown, one_line, plain
+from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, format_points
+
+
+def write_json(result: GradingResult) -> str:
+    """The whole result as JSON, for programs: nothing is left out, texts are cleaned."""
+    return json.dumps(_clean_json(result.as_dict()), indent=2, sort_keys=True, allow_nan=False) + "\n"
+
+
+def _clean_json(content: Any) -> Any:
+    if isinstance(content, str):
+        return plain(content, 20_000)
+    if isinstance(content, dict):
+        return {key: _clean_json(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_clean_json(value) for value in content]
+    return content
+
+
+def write_check50(result: GradingResult) -> str:
+    """JSON in the manner of check50: passed is true, false, or null where nothing is known."""
+    result = result.for_student()
+    content = {
+        "slug": one_line(result.assignment),
+        "version": result.grader_version,
+        "results": [_check50_test(test) for test in result.tests],
+    }
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _check50_test(test: CriterionResult) -> dict[str, Any]:
+    cause: dict[str, Any] | None = None
+    if test.status is not CriterionStatus.PASS:
+        cause = {"rationale": plain(test.rationale), "help": plain(test.hints[0]) if test.hints else None}
+        if test.actual:
+            cause |= {"expected": one_line(test.expected), "actual": one_line(test.actual)}
+    return {
+        "name": one_line(test.id),
+        "description": one_line(test.title),
+        "passed": test.status is CriterionStatus.PASS if test.is_judged else None,
+        "log": plain(test.log).splitlines()[:100],
+        "cause": cause,
+        "data": {"points": test.points, "max_points": test.max_points, **test.metrics},
+        "dependency": test.depends_on,
+    }
+
+
+MAX_CLASSROOM_OUTPUT: Final = 500
+"""Characters of output that Classroom keeps."""
+
+
+def write_classroom(result: GradingResult) -> str:
+    """GitHub Classroom's runner result (version 3): the JSON whose base64 is a step's output ``result``.
+
+    ``tests`` and ``max_score`` are always there, for its reporter reads them even when the run failed.
+    """
+    result = result.for_student()  # the log of the job is the student's to read
+    content: dict[str, Any] = {
+        "version": 3,
+        "status": {GradingVerdict.PASS: "pass", GradingVerdict.FAIL: "fail", GradingVerdict.BROKEN: "error"}[
+            result.verdict
+        ],
+        "max_score": round(result.max_points),
+        "tests": []
+        if result.verdict is GradingVerdict.BROKEN
+        else [_classroom_test(test) for test in result.tests],
+    }
+    if result.verdict is GradingVerdict.BROKEN:
+        content["message"] = "The grader broke. Nothing was lost: tell your teacher."
+    return json.dumps(content, separators=(",", ":"), allow_nan=False)
+
+
+def _classroom_test(test: CriterionResult) -> dict[str, Any]:
+    return {
+        "name": f"{one_line(test.title, 120)} ({format_points(test.points)}/{format_points(test.max_points)})",
+        "status": "pass" if test.status is CriterionStatus.PASS else "fail",
+        "score": test.points,
+        "message": one_line(test.rationale, MAX_CLASSROOM_OUTPUT - 20),
+        "output": plain(
+            "\n".join(part for part in (test.rationale, *test.hints[:1]) if part), MAX_CLASSROOM_OUTPUT - 20
+        ),
+        "duration": 0,
+    }
+
+
+NOT_RUN: Final = (CriterionStatus.STUDENT_ERROR, CriterionStatus.SKIPPED)
+
+
+def write_prairielearn(result: GradingResult) -> str:
+    """PrairieLearn's ``results.json``. Work that could not be run at all is not gradable, which costs no attempt."""
+    result = result.for_student()
+    content: dict[str, Any] = {"gradable": True, "output": plain("\n".join(result.notices))}
+    stopped = all(test.status in NOT_RUN for test in result.tests) and any(
+        test.status is CriterionStatus.STUDENT_ERROR for test in result.tests
+    )
+    if result.verdict is GradingVerdict.BROKEN:
+        content |= {"gradable": False, "message": "The grader broke. Nothing was lost: tell your teacher."}
+    elif stopped:
+        first = next(test for test in result.tests if test.status is CriterionStatus.STUDENT_ERROR)
+        content |= {"gradable": False, "format_errors": [plain(first.rationale)]}
+    else:
+        most = result.max_points
+        content["score"] = 0.0 if not most or result.points is None else min(1.0, result.points / most)
+        content["tests"] = [_prairielearn_test(test) for test in result.tests]
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _prairielearn_test(test: CriterionResult) -> dict[str, Any]:
+    return {
+        "name": one_line(test.title),
+        "description": one_line(test.rationale),
+        "points": test.points,
+        "max_points": test.max_points,
+        "message": plain("\n".join(f"hint: {hint}" for hint in test.hints[:1])),
+        "output": plain(test.log) + (f"\n{test.replay}" if test.replay else ""),
+    }
+
+
+def write_markdown(result: GradingResult) -> str:
+    """A job summary in Markdown: a table, what was wrong, and the worst episode. At most a few kilobytes."""
+    return "\n".join(_markdown_lines(result.for_student())) + "\n"
+
+
+def _markdown_lines(result: GradingResult) -> Iterator[str]:
+    points = (
+        "no grade"
+        if result.points is None
+        else f"{format_points(result.points)} of {format_points(result.max_points)} points"
+    )
+    yield f"## {markdown(result.assignment)}: {points}"
+    yield ""
+    yield "| Test | Outcome | Points |"
+    yield "| --- | --- | ---: |"
+    for test in result.tests:
+        yield f"| {markdown(test.title)} | {test.status.value} | {format_points(test.points)}/{format_points(test.max_points)} |"
+    for test in result.tests:
+        if test.rationale and test.status is not CriterionStatus.PASS:
+            yield ""
+            yield f"**{markdown(test.title)}**: {markdown(test.rationale, 600)}"
+            for hint in test.hints[:1]:
+                yield f"\nHint: {markdown(hint, 600)}"
+    worst = next((test for test in result.tests if test.replay), None)
+    if worst is not None:
+        yield ""
+        yield fenced(worst.replay)
+    for notice in result.notices:
+        yield ""
+        yield f"_{markdown(notice)}_"
