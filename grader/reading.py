@@ -19,11 +19,12 @@ from grader.scoring import Anchors
 from grader.teacher_tests import read_declared
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER, MIB, Limits
+from kit.plain_text import quoted, suggestion
 from kit.school.result import Visibility
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 ASSIGNMENT_FILE: Final = "assignment.yaml"
@@ -32,12 +33,12 @@ SECRET_FILE: Final = "secret.yaml"
 
 def read(folder: Path) -> Assignment:
     """The assignment in ``folder``. Raises WorldError with all its mistakes."""
-    problems = Problems()
+    problems = ProblemCollector()
     sheet = folder / ASSIGNMENT_FILE
-    documents = Documents(Enclosure.of(folder), {}, problems)
-    section = documents.section(sheet, Place(sheet))
+    documents = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems)
+    section = documents.section(sheet, SourceLocation(sheet))
     secret_file = folder / SECRET_FILE
-    secrets = documents.section(secret_file, Place(secret_file)) if secret_file.is_file() else None
+    secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     parsed = _assignment(section, secrets, folder)

@@ -1,58 +1,103 @@
-"""Plain text in aligned columns, for terminals of 80 columns, pipes and screen readers."""
+"""Plain text for terminals, pipes and screen readers: quoting, suggestions of names, and tables of 80 columns."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+import unicodedata
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import zip_longest
 
 WIDTH = 80
-MIN_COLUMN = 12
-GAP = "  "
+"""Characters in a line."""
+MIN_COLUMN_WIDTH = 12
+"""Table columns are not made narrower than this, even if the table exceeds its width."""
+COLUMN_GAP = "  "
 INDENT = "  "
+MAX_KNOWN_NAMES = 12
+"""Names that ``suggestion`` lists when none of them is close."""
 
 
-def table(rows: Sequence[Sequence[str]], width: int = WIDTH) -> list[str]:
-    """The rows as lines of at most ``width`` columns: the widest cells are wrapped, the others left as they are."""
-    return [line for lines in _wrapped(rows, width) for line in lines]
+# Quoting
 
 
-def blocks(rows: Iterable[Sequence[str]], width: int = WIDTH) -> list[str]:
-    """The same, but what stands in the first column becomes a line above the rows that have it in common."""
-    grouped: dict[str, list[Sequence[str]]] = {}
-    for first, *others in rows:
-        grouped.setdefault(first, []).append(others)
-    lines = _wrapped([others for block in grouped.values() for others in block], width - len(INDENT))
-    text: list[str] = []
-    for first, block in grouped.items():
-        text += textwrap.wrap(first, width)
-        text += indented(line for _ in block for line in next(lines))
-    return text
+def is_printable(text: str) -> bool:
+    """Returns whether a terminal shows the text as it is: spaces of any language, but no control characters."""
+    return all(c.isprintable() or unicodedata.category(c) == "Zs" for c in text)
 
 
-def indented(lines: Iterable[str]) -> list[str]:
-    return [INDENT + line for line in lines]
+def quoted(text: str, limit: int = 60) -> str:
+    """Returns ``text`` in double quotes for a message: cut to ``limit`` characters, control characters escaped."""
+    shown = text if len(text) <= limit else text[: limit - 3] + "..."
+    return '"' + "".join(c if is_printable(c) else ascii(c)[1:-1] for c in shown) + '"'
 
 
-def listed(names: Sequence[str], at_most: int = 4) -> str:
-    """The names in a row, of many only the first."""
+# Names
+
+
+def nearest_name(name: str, names: Iterable[str]) -> str | None:
+    """Returns the one of ``names`` closest to ``name``, ignoring case, or None if none is similar."""
+    from difflib import get_close_matches  # in here: most processes never misspell anything
+
+    by_lower = {known.lower(): known for known in names}
+    close = get_close_matches(name.lower(), by_lower, n=1, cutoff=0.6)
+    return by_lower[close[0]] if close else None
+
+
+def suggestion(name: str, names: Collection[str]) -> str:
+    """Returns the end of an error message about an unknown ``name``: the nearest of ``names``, or a list of them."""
+    close = nearest_name(name, names)
+    if close is not None:
+        return f"did you mean {quoted(close)}?"
+    if not names:
+        return "there is none"
+    known = [quoted(each) for each in sorted(names)]
+    return "known: " + ", ".join(known[:MAX_KNOWN_NAMES]) + (", ..." if len(known) > MAX_KNOWN_NAMES else "")
+
+
+def join_names(names: Sequence[str], at_most: int = 4) -> str:
+    """Returns the names separated by commas; of more than ``at_most`` the first ones and how many are left out."""
     if len(names) <= at_most:
         return ", ".join(names)
     return f"{', '.join(names[: at_most - 1])} and {len(names) - at_most + 1} more"
 
 
-def _wrapped(rows: Sequence[Sequence[str]], width: int) -> Iterator[list[str]]:
-    """The lines of each row."""
-    widths = _fitted([max(1, *map(len, column)) for column in zip(*rows, strict=True)], width)
+# Lines
+
+
+def indent_lines(lines: Iterable[str]) -> list[str]:
+    return [INDENT + line for line in lines]
+
+
+def table(rows: Sequence[Sequence[str]], width: int = WIDTH) -> list[str]:
+    """Returns the rows as aligned lines of at most ``width`` characters, wrapping the cells of the widest columns."""
+    return [line for lines in _row_lines(rows, width) for line in lines]
+
+
+def grouped_table(rows: Iterable[Sequence[str]], width: int = WIDTH) -> list[str]:
+    """Like ``table``, but rows with the same first cell are indented below one line that holds that cell."""
+    groups: dict[str, list[Sequence[str]]] = {}
+    for first, *others in rows:
+        groups.setdefault(first, []).append(others)
+    lines = _row_lines([others for group in groups.values() for others in group], width - len(INDENT))
+    text: list[str] = []
+    for first, group in groups.items():
+        text += textwrap.wrap(first, width)
+        text += indent_lines(line for _ in group for line in next(lines))
+    return text
+
+
+def _row_lines(rows: Sequence[Sequence[str]], width: int) -> Iterator[list[str]]:
+    """Yields the lines of each row."""
+    widths = _fit_widths([max(1, *map(len, column)) for column in zip(*rows, strict=True)], width)
     for row in rows:
         cells = [textwrap.wrap(cell, limit) for cell, limit in zip(row, widths, strict=True)]
         lines = zip_longest(*cells, fillvalue="")
-        yield [GAP.join(map(str.ljust, line, widths)).rstrip() for line in lines]
+        yield [COLUMN_GAP.join(map(str.ljust, line, widths)).rstrip() for line in lines]
 
 
-def _fitted(widths: list[int], width: int) -> list[int]:
-    """The widths, of which the largest are cut until all fit beside one another."""
+def _fit_widths(widths: list[int], width: int) -> list[int]:
+    """Returns the column widths, the largest reduced until all columns fit into ``width`` side by side."""
     widths = list(widths)
-    while sum(widths) + len(GAP) * (len(widths) - 1) > width and max(widths) > MIN_COLUMN:
+    while sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) > width and max(widths) > MIN_COLUMN_WIDTH:
         widths[widths.index(max(widths))] -= 1
     return widths

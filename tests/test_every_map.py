@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.layers.case_sources import open_task, solve_task
-from kit.sim.loading import load
-from kit.sim.simulation import Simulation
-from kit.world.catalogue import Case, MapCard, all_maps, maps_folder
-from kit.world.collision_rules import Touch, Touching
+from kit.sim.simulation import Simulation, load_world
+from kit.world.catalogue import MapCard, MapCase, all_maps, maps_folder
+from kit.world.collision_rules import CollisionRules, ContactKind
 from kit.world.records import Circle, Model, Polygon, World
 
 MAPS = maps_folder()
@@ -38,7 +37,7 @@ every_case = pytest.mark.parametrize(
 
 @cache
 def world(name: str) -> World:
-    return load(CARDS[name].world_file, root=CARDS[name].root)
+    return load_world(CARDS[name].world_file, root=CARDS[name].root)
 
 
 def robots(name: str) -> list[Model]:
@@ -47,7 +46,7 @@ def robots(name: str) -> list[Model]:
     return [next(model for model in world(name).models if model.name == robot) for robot in wanted]
 
 
-def starts(case: Case) -> list[Pose]:
+def starts(case: MapCase) -> list[Pose]:
     return [case.start, *([case.partner_start] if case.partner_start else [])]
 
 
@@ -63,7 +62,7 @@ def reach(robot: Model) -> float:
         for shape in (footprint.shape for footprint in body.footprints):
             corners = shape.points if isinstance(shape, Polygon) else (shape.center,)
             more = shape.radius if isinstance(shape, Circle) else 0.0
-            far += [math.hypot(*body.pose.point(*corner)) + more for corner in corners]
+            far += [math.hypot(*body.pose.transform_point(*corner)) + more for corner in corners]
     return max(far)
 
 
@@ -174,7 +173,7 @@ def test_nothing_gets_out(name: str) -> None:
 
 
 @every_case
-def test_every_start_has_room_to_turn(name: str, case: Case) -> None:
+def test_every_start_has_room_to_turn(name: str, case: MapCase) -> None:
     for robot, start in zip(robots(name), starts(case), strict=True):
         assert clearance(spread(start, case.start_shift), segments(name)).min() > reach(robot)
 
@@ -188,7 +187,7 @@ def test_no_two_models_start_on_one_another(name: str) -> None:
 
 
 @every_case
-def test_every_target_can_be_reached(name: str, case: Case) -> None:
+def test_every_target_can_be_reached(name: str, case: MapCase) -> None:
     been = floor(name).reached(case.start, max(reach(robot) for robot in robots(name)))
     for place in spread(case.target, case.target_shift):
         assert been[floor(name).square(place)]
@@ -196,30 +195,32 @@ def test_every_target_can_be_reached(name: str, case: Case) -> None:
 
 @every_map
 def test_robots_touch_and_see_walls_and_each_other_and_not_themselves(name: str) -> None:
-    touching = Touching(world(name))
+    touching = CollisionRules(world(name))
     own = {robot.name for robot in robots(name)}
     hulls = [
-        thing for thing in touching.things if thing.model in own and any(s.category for s in thing.surfaces)
+        thing for thing in touching.bodies if thing.model in own and any(s.category for s in thing.filters)
     ]
-    walls = [thing for thing in touching.things if thing.model is None]
+    walls = [thing for thing in touching.bodies if thing.model is None]
     assert len(hulls) == len(own)
     assert len(walls) == 1
     for one, other in combinations([*hulls, *walls], 2):
-        assert touching.between(one, other).touch is Touch.COLLIDES
+        assert touching.contact_rule(one, other).kind is ContactKind.COLLIDES
     for laser in (laser for laser in touching.lasers if laser.model in own):
-        seen = {thing for thing in touching.things if touching.seeing(laser, thing).sees}
+        seen = {thing for thing in touching.bodies if touching.visibility(laser, thing).is_visible}
         assert seen >= {thing for thing in [*hulls, *walls] if thing.model != laser.model}
         assert not any(thing.model == laser.model for thing in seen)
 
 
 @every_map
 def test_a_beacon_sees_robots_only_and_nothing_touches_it(name: str) -> None:
-    touching = Touching(world(name))
+    touching = CollisionRules(world(name))
     own = {robot.name for robot in robots(name)}
     for laser in (laser for laser in touching.lasers if laser.model == "beacon"):
-        assert {thing.model for thing in touching.things if touching.seeing(laser, thing).sees} == own
-    for one, other, verdict in touching.pairs():
-        assert "beacon" not in (one.model, other.model) or verdict.touch is Touch.PASSES
+        assert {
+            thing.model for thing in touching.bodies if touching.visibility(laser, thing).is_visible
+        } == own
+    for one, other, verdict in touching.contact_rules():
+        assert "beacon" not in (one.model, other.model) or verdict.kind is ContactKind.PASSES
 
 
 @every_map
@@ -236,7 +237,7 @@ def test_a_resting_robot_has_a_wall_in_every_direction_and_touches_none(name: st
     assert simulation.state().contacts == ()
     for robot in robots(name):
         assert simulation.state().pose(robot.name) == pytest.approx(robot.pose)
-        (view,) = (view for view in simulation.scan_views() if view.model == robot.name)
+        (view,) = (view for view in simulation.latest_scans() if view.model == robot.name)
         assert np.isfinite(view.ranges).all()
 
 

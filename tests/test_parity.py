@@ -21,9 +21,8 @@ from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.learning.environment.batch_map import Ground, Unsupported, fleet_of, ground_of
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.loading import load
 from kit.sim.plugins.laser import LaserParams
-from kit.sim.simulation import Simulation
+from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import all_maps
 from kit.world.records import Model, PluginSpec, World
 
@@ -58,12 +57,12 @@ class Both:
 
     world: World
     ground: Ground
-    fleet: kernels.Fleet
+    fleet: kernels.BatchGeometry
     robots: tuple[str, ...]
     lasers: tuple[str, ...]
 
     def simulation(self, poses: list[Pose], *, looking: bool) -> Simulation:
-        simulation = Simulation(self.world, step_size=TICK, wanted=lambda topic: looking)
+        simulation = Simulation(self.world, step_size=TICK, has_subscribers=lambda topic: looking)
         for robot, pose in zip(self.robots, poses, strict=True):
             simulation.move_model(robot, pose)
         return simulation
@@ -81,7 +80,7 @@ def both(name: str) -> Both:
     """Skips where the batch engine refuses the map: that has a test of its own."""
     card = CARDS[name]
     robots = tuple(each for each in (card.robot, card.partner) if each)
-    world = quiet(load(card.world_file, root=card.root))
+    world = quiet(load_world(card.world_file, root=card.root))
     try:
         ground = ground_of(world, name, robots)
     except Unsupported as refusal:
@@ -122,7 +121,7 @@ class Batch:
         """Who met something."""
         hit = np.zeros(self._free.shape, dtype=np.bool_)
         here = np.zeros(1, dtype=np.int64)
-        kernels.drive_worlds(self._fleet, here, twists[None], TICK, self.poses, self._free, hit)
+        kernels.step_worlds(self._fleet, here, twists[None], TICK, self.poses, self._free, hit)
         return cast("list[bool]", hit[0].tolist())
 
     def scan(self) -> NDArray[np.float32]:
@@ -131,7 +130,7 @@ class Batch:
         nothing = np.zeros(1, dtype=np.int64)
         robots, single = len(self.poses[0]), np.zeros((len(self.poses[0]), 0), dtype=np.int64)
         sectors, sensed = np.zeros((0, 3), dtype=np.int64), np.zeros((1, robots, 0), dtype=np.float32)
-        kernels.look_worlds(
+        kernels.scan_worlds(
             self._fleet, nothing, self.poses, nothing, nothing, 1e9, single, sectors, ranges, sensed
         )
         return ranges[0]
@@ -145,7 +144,7 @@ def differences(simulation: Simulation, engines: Both, batch: Batch) -> NDArray[
 @every_map
 def test_the_batch_engine_represents_a_map_or_names_what_it_cannot(name: str) -> None:
     card = CARDS[name]
-    world = load(card.world_file, root=card.root)
+    world = load_world(card.world_file, root=card.root)
     plain = all(
         body.kind == "static" or model.name in (card.robot, card.partner)
         for model in world.models
@@ -169,14 +168,14 @@ def test_free_driving_is_equal_and_collisions_come_together(name: str) -> None:
             hit = batch.tick(twists)
             if any(hit):
                 break
-            assert not any(simulation.touches(robot) for robot in engines.robots)
+            assert not any(simulation.is_touching(robot) for robot in engines.robots)
             assert differences(simulation, engines, batch).max() < 1e-9
         else:
             continue
-        touching = [simulation.touches(robot) for robot in engines.robots]
+        touching = [simulation.is_touching(robot) for robot in engines.robots]
         if touching != hit:
             simulation.step()
-            touching = [simulation.touches(robot) for robot in engines.robots]
+            touching = [simulation.is_touching(robot) for robot in engines.robots]
         assert touching == hit
         for away, blocked in zip(differences(simulation, engines, batch), hit, strict=True):
             assert not blocked or away[:2].max() < BLOCKED_WITHIN
@@ -204,11 +203,11 @@ def test_scans_are_bit_equal(name: str) -> None:
         engines.command(simulation, twists)
         for _ in range(5):
             simulation.step(7)
-            views = {(view.model, view.plugin): view for view in simulation.scan_views()}
+            views = {(view.model, view.plugin): view for view in simulation.latest_scans()}
             seen = [views[key] for key in zip(engines.robots, engines.lasers, strict=True)]
             batch = Batch(engines, [view.pose for view in seen])
             for view, ranges in zip(seen, batch.scan(), strict=True):
                 inside = ~np.isnan(view.ranges)
                 ours = ranges[: len(view.ranges)]
                 assert ours[inside].tobytes() == view.ranges[inside].tobytes()
-                assert ours[~inside] == pytest.approx(engines.fleet.reach)
+                assert ours[~inside] == pytest.approx(engines.fleet.max_range)

@@ -46,6 +46,6 @@ def test_a_pair_stays_side_by_side_round_a_bend(turn: str) -> None:
         assert across == pytest.approx(first[0], abs=0.03)
         assert along == pytest.approx(0.0, abs=0.03)
         assert heading == pytest.approx(0.0, abs=0.02)
-        assert not simulation.touches("left")
+        assert not simulation.is_touching("left")
         ticks(100)
         assert simulation.pose("left").theta == pytest.approx(start + turned, abs=0.02)

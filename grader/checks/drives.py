@@ -222,7 +222,7 @@ def comes_by(drive: DriveRecord, params: WaypointParams) -> float:
     way = drive.track[::CLEARANCE_INTERVAL, :2]
     for place in params.places:
         x, y = (float(number) for number in place.split())
-        near = np.flatnonzero(np.hypot(*(way - start.point(x, y)).T) <= params.within)
+        near = np.flatnonzero(np.hypot(*(way - start.transform_point(x, y)).T) <= params.within)
         if not len(near):
             break
         way, passed = way[near[0] :], passed + 1

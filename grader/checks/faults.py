@@ -10,7 +10,7 @@ from typing import Any, Final
 from grader.checks.contract import Check, Faults, NoParams, check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 UNSPECIFIED: Final = math.nan
 """A number that is not asked for: it differs from nothing by more than anything."""

@@ -11,7 +11,7 @@ from grader.checks.contract import NoParams, check
 from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import Box, WorldFacts
-from kit.world.problems import quoted
+from kit.plain_text import quoted
 
 
 @check(none=0, full=1, words=("does not load", "loads"))

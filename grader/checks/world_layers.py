@@ -11,7 +11,7 @@ from grader.checks.contract import NoParams, check
 from grader.checks.faults import WorldContents, world_check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import WorldFacts
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import Final
 
 from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
 from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 
 DAY = 86400.0
 """s"""
@@ -43,8 +43,8 @@ class LatePolicy:
 
 def read_policy(file: Path) -> LatePolicy:
     """``due``, ``grace_minutes``, ``per_day``, ``least``, ``latest_days`` from a YAML file. Raises WorldError."""
-    problems = Problems()
-    section = Documents(Enclosure.around(file), {}, problems).section(file, Place(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     due = parse_time(section.name("due"))

@@ -129,12 +129,12 @@ class DriveRecord:
         model = next(model for model in self.place.world.models if model.name == self.place.robot)
         footprints = [footprint.shape for footprint in model.bodies[0].footprints]
         polygons = tuple(
-            np.array([pose.point(*point) for point in shape.points])
+            np.array([pose.transform_point(*point) for point in shape.points])
             for shape in footprints
             if isinstance(shape, Polygon)
         )
         discs = tuple(
-            Disc(*pose.point(*shape.center), shape.radius)
+            Disc(*pose.transform_point(*shape.center), shape.radius)
             for shape in footprints
             if isinstance(shape, Circle)
         )

@@ -126,7 +126,10 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
     place = _place(trial)
     graph = Graph(log_sink=lambda record: None)
     simulation = Simulation(
-        place.world, seed=spec.seed, step_size=STEP, wanted=lambda topic: graph.subscription_count(topic) > 0
+        place.world,
+        seed=spec.seed,
+        step_size=STEP,
+        has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
     )
     runner = RestrictedRunner(simulation, graph, trial.services)
     recorder = Recorder(place.name, place.case.name if place.case else None, simulation)

@@ -23,7 +23,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
 from kit.learning.environment.transition import Transition
 from kit.learning.training.student_reward import FUNCTION, RewardFileError, columns_of, parameters_of
-from kit.world.problems import suggestion
+from kit.plain_text import suggestion
 
 SHUFFLE: Final = 1234
 """The seed of the order in which the same transitions are asked for a second time."""

@@ -40,7 +40,7 @@ class ServiceCall:
 def read_service_call(section: Section) -> ServiceCall:
     """Notes mistakes, and finishes the section."""
     given = section.section("request", None)
-    request: Mapping[str, Any] = {} if given is None else given.rest()
+    request: Mapping[str, Any] = {} if given is None else given.remaining_values()
     call = ServiceCall(
         section.name("name"),
         section.number("at", minimum=0),

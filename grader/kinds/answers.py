@@ -25,7 +25,7 @@ from grader.checks.contract import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
 from kit.host.failure import Failure
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
 
 MAX_ANSWER: Final = 200
@@ -164,7 +164,7 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
     """What was answered to each question; nothing where its key is missing or left empty."""
     known = {each.name: each for each in questions}
     given = {}
-    for name, value in section.rest().items():
+    for name, value in section.remaining_values().items():
         question = known.get(name)
         if question is None:
             section.error(f"no question {quoted(name)}: {suggestion(name, known)}", name)

@@ -15,10 +15,10 @@ from grader.checks.contract import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector, WorldError
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 Parsed = TypeVar("Parsed")
@@ -80,9 +80,11 @@ def find_kind(kind: str) -> Kind:
 
 def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:
     """What a handed-in YAML file says; or all its mistakes, each with its place, as one failure."""
-    problems = Problems()
+    problems = ProblemCollector()
     try:
-        section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+        section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
+            file, SourceLocation(file)
+        )
         problems.raise_if_any()
         assert section is not None  # None is noted as a problem
         parsed = make(section)

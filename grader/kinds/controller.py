@@ -14,11 +14,12 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.geometry import Pose
+from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Place as Where
 from kit.run.scenario import find_place
-from kit.sim.services import SERVICES
-from kit.world.catalogue import Case
-from kit.world.problems import WorldError, quoted, suggestion
+from kit.sim.simulation import SERVICES
+from kit.world.catalogue import MapCase
+from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
 
 LONGEST_EPISODE: Final = 3600.0
@@ -114,7 +115,7 @@ def place_of(section: Section, folder: Path) -> Where | None:
     if target is None:
         return place
     start = place.start or Pose()
-    made = Case(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
+    made = MapCase(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
     return replace(place, case=made)
 
 

@@ -185,13 +185,13 @@ class _Rerun:
         assert task.place is not None
         self._place = task.place
         simulation = Simulation(
-            task.place.world, seed=recording.seed, step_size=STEP, wanted=lambda topic: False
+            task.place.world, seed=recording.seed, step_size=STEP, has_subscribers=lambda topic: False
         )
         self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
         self._recording = recording
         self._metrics = MetricsRecorder.for_scenario(task.place)
         self._recorder = Recorder(recording.place, recording.case, simulation)
-        ends = simulation.endpoints_of(task.place.robot or "")
+        ends = simulation.model_endpoints(task.place.robot or "")
         self._topics = {end.topic for end in ends if end.direction == "subscribe" and end.type is Twist}
         self.fingerprint = Fingerprint()
         self.poses = np.empty((0, len(task.place.world.models), 3))

@@ -32,7 +32,7 @@ from grader.kinds.controller import place_of
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
-from kit.world.problems import quoted
+from kit.plain_text import quoted
 
 MOST_STEPS: Final = 400
 """Of an episode: one is driven to its very end."""

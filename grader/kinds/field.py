@@ -242,7 +242,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
         raise LookupError(f"{place.name} has no target.")
     course = Course.open(place.world.file, place.partners, case.target, case.target_radius, derived=True)
     course = replace(course, layout=_check_limits(read_layout(file, course.floor)))
-    simulation = Simulation(place.world, seed=seed, step_size=STEP, wanted=lambda topic: False)
+    simulation = Simulation(place.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
     field_run = _FieldRun(place, course, simulation)
     field_run.run(trial)
     return FieldDrive(

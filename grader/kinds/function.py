@@ -37,7 +37,7 @@ from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
 
 REFERENCE: Final = "reference.py"

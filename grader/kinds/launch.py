@@ -26,7 +26,7 @@ from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, p
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
-from kit.world.problems import quoted
+from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
 QUOTES: Final = "'\""

@@ -30,7 +30,8 @@ from kit.layers.assignment import Breach, NamedLayer, breaches
 from kit.layers.examples import EXAMPLES
 from kit.layers.reading import read_requirements
 from kit.layers.requirements import Case, Contact, Requirement, Sight, fit_together
-from kit.world.problems import WorldError, quoted, suggestion
+from kit.plain_text import quoted, suggestion
+from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
 
 MAX_ENTRIES: Final = 64

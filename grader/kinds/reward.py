@@ -10,7 +10,7 @@ from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from kit.world.problems import quoted
+from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
 LARGEST_PLAN: Final = 40

@@ -39,7 +39,7 @@ from kit.learning.environment.tasks import UnknownTask
 from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.optional_deps import LearnerMissing
 from kit.learning.training.presets import Falling
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
 
 MAX_STEPS: Final = 5_000_000

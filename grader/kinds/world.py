@@ -28,8 +28,8 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.controllers import find
 from kit.host.failure import GuestError
 from kit.host.sandbox.confinement import Level
+from kit.plain_text import quoted
 from kit.run.scenario import Place
-from kit.world.problems import quoted
 from kit.world.records import World
 from kit.world.yaml_section import Section
 

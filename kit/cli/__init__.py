@@ -84,11 +84,11 @@ class LazyGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError:
-            from difflib import get_close_matches
+            from kit.plain_text import nearest_name
 
             path = ctx.command_path
-            near = get_close_matches(args[0], self._verbs, n=1)
-            hint = f" Did you mean `{path} {near[0]}`?" if near else ""
+            near = nearest_name(args[0], self._verbs)
+            hint = f" Did you mean `{path} {near}`?" if near else ""
             raise click.UsageError(
                 f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the verbs.", ctx
             ) from None

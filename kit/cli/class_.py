@@ -103,11 +103,11 @@ def report(
     A folder stands for every .json file in it. Files that cannot be read are named and left out; two files of one
     student count once. Students are called S1, S2, ... unless --names is given.
     """
+    from kit.plain_text import suggestion
     from kit.school.report.class_data import gather
     from kit.school.report.class_report import CHAPTERS, class_report, set_up
     from kit.school.report.students import read_roll
     from kit.school.survey.reading import read_form
-    from kit.world.problems import suggestion
 
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:

@@ -230,9 +230,9 @@ def shown(value: Value) -> str:
     """An answer as it is told."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    from kit.world.problems import displayable
+    from kit.plain_text import is_printable
 
-    return "blank" if value is None else "".join(sign if displayable(sign) else "?" for sign in str(value))
+    return "blank" if value is None else "".join(sign if is_printable(sign) else "?" for sign in str(value))
 
 
 def _count(number: int) -> str:

@@ -322,7 +322,7 @@ def example(name: str | None, on_screen: bool) -> None:
     elif name in EXAMPLES:
         click.echo(written(EXAMPLES[name]), nl=False)
     else:
-        from kit.world.problems import quoted, suggestion
+        from kit.plain_text import quoted, suggestion
 
         options.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
 

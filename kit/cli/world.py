@@ -39,17 +39,17 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
     FILE_OR_MAP is a world file, a folder with a world.yaml, or the name of a map that comes with the kit. Exits
     with 0 if the world is sound, 1 if it has errors, 2 if there is no such world.
     """
-    from kit.sim.plugins import readers, world_readers
+    from kit.sim.plugins import plugin_readers, world_plugin_readers
     from kit.world.loading import load_world
     from kit.world.problems import WorldError
-    from kit.world.report import details, summary
+    from kit.world.report import world_report, world_report_data
 
     file, own_root = _find(world)
     try:
         loaded = load_world(
             file,
-            devices=readers,
-            world_devices=world_readers,
+            plugin_readers=plugin_readers,
+            world_plugin_readers=world_plugin_readers,
             root=root or own_root,
             environment=dict(map(_variable, variables)),
         )
@@ -61,19 +61,21 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
             count = len(error.problems)
             click.echo(f"\n{count} problem{'' if count == 1 else 's'}", err=True)
         raise SystemExit(1) from None
-    click.echo(json.dumps({"ok": True, **details(loaded)}, indent=2) if as_json else summary(loaded))
+    click.echo(
+        json.dumps({"ok": True, **world_report_data(loaded)}, indent=2) if as_json else world_report(loaded)
+    )
 
 
 def _find(world: str) -> tuple[Path, Path | None]:
     """The world file meant, and the folder it may use if that is not its own."""
-    from kit.world.catalogue import WORLD, UnknownMap, find_map, root_of
+    from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map
 
     path = Path(world)
     try:
         if path.is_dir():
-            path /= WORLD
+            path /= WORLD_FILE
         if path.exists():
-            return path, root_of(path)
+            return path, allowed_root_of(path)
     except OSError as error:  # no permission; a name too long
         raise click.UsageError(f"{path} cannot be opened: {error.strerror}.") from None
     if len(Path(world).parts) > 1 or path.suffix:
@@ -93,5 +95,5 @@ def _variable(text: str) -> tuple[str, str]:
 
 
 def _problem(problem: Problem) -> dict[str, str | int]:
-    place = problem.place
+    place = problem.location
     return {"file": str(place.file), "line": place.line, "column": place.column, "message": problem.message}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 
+from kit.plain_text import nearest_name
 from kit.workspace import at_home
 
 FOLDER = Path(__file__).parent
@@ -60,6 +60,6 @@ def find(name: str, folder: Path | None = None) -> ControllerFile:
     known = {item.name: item for item in (*shipped(), *(in_folder(folder) if folder else ()))}
     if name in known:
         return known[name]
-    near = get_close_matches(name, known, n=1)
-    hint = f" Did you mean {near[0]}?" if near else ""
+    near = nearest_name(name, known)
+    hint = f" Did you mean {near}?" if near else ""
     raise LookupError(f"There is no controller named {name}.{hint} There are: {', '.join(known)}.")

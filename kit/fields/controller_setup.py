@@ -16,7 +16,7 @@ from kit.fields.occupancy_grid import Floor, open_floor
 from kit.fields.planner import Size, Ways
 from kit.fields.trajectory import Comfort, Ride, plan_ride
 from kit.geometry import Pose, wrap_angle
-from kit.world.problems import suggestion
+from kit.plain_text import suggestion
 from kit.world.records import Circle, Footprint, Model, World
 
 SPARE: Final = 0.01
@@ -145,7 +145,7 @@ def _robot(model: Model) -> Robot:
         else None
     )
     points = [
-        (*body.pose.point(*corner), radius)
+        (*body.pose.transform_point(*corner), radius)
         for body in model.bodies
         for corner, radius in _corners(body.footprints)
     ]

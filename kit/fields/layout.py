@@ -26,10 +26,10 @@ from numpy.typing import ArrayLike
 from kit.fields.charges import Charge, CompositeCharge, Field, Floats, Handover, LineCharge, PointCharge
 from kit.fields.derived_charges import derive
 from kit.fields.occupancy_grid import Floor, wall_depth
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 FILE: Final = "charges.yaml"
@@ -96,8 +96,10 @@ def read_layout(file: Path, floor: Floor | None = None) -> Layout:
 
     Raises WorldError with all that is wrong.
     """
-    problems = Problems()
-    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
+        file, SourceLocation(file)
+    )
     charges: tuple[Charge, ...] = ()
     intensities = Intensities()
     if section is not None:

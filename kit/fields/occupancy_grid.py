@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.world.catalogue import root_of
+from kit.world.catalogue import allowed_root_of
 from kit.world.loading import load_world
 from kit.world.records import World
 
@@ -137,7 +137,7 @@ class Floor:
 
 def open_floor(world_file: Path) -> tuple[World, Floor]:
     """A world with its floor. Raises WorldError, and ValueError if it has no walls."""
-    world = load_world(world_file, root=root_of(world_file))
+    world = load_world(world_file, root=allowed_root_of(world_file))
     return world, floor_of(world)
 
 

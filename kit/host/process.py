@@ -356,7 +356,7 @@ def _packages(installed: Installed | None) -> list[str]:
 def readable_paths(file: Path) -> list[str]:
     """What a locked-in child may read: Python, installed packages, our own half, and the file's folder."""
     package = _HERE.parent
-    ours = [package / name for name in ("__init__.py", "geometry.py", "host", "msg", "ros")]
+    ours = [package / name for name in ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")]
     python = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), f"{sys.base_prefix}/lib"]
     loader = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if path]
     paths = [*map(str, ours), *python, *libraries(), *loader, *_SYSTEM, str(file.parent)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -17,6 +16,7 @@ from kit.host.protocol import Functions, Told, Values
 from kit.host.sandbox.confinement import DESK_LEVEL, Level
 from kit.host.sandbox.limits import DESK, Limits
 from kit.host.wire import Json, numbers_to_text
+from kit.plain_text import nearest_name
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -113,8 +113,8 @@ class StudentFunctions:
         self._child.close()
 
     def _missing(self, name: str) -> Failure:
-        near = get_close_matches(name, self.names, n=1)
-        hint = f" Is it the one that is called {near[0]}?" if near else ""
+        near = nearest_name(name, self.names)
+        hint = f" Is it the one that is called {near}?" if near else ""
         return Failure(FailureKind.IMPORT, f"there is no function {name}() in it.{hint}", self.file.name)
 
 

@@ -7,100 +7,100 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+Float64Array = NDArray[np.float64]
+Float32Array = NDArray[np.float32]
+Int64Array = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 
-class Segments(NamedTuple):
-    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.kernels.lidar_index.in_blocks``."""
+class WallBlocks(NamedTuple):
+    """Walls, sorted into blocks of neighbours, each within a disc; made by ``kit.kernels.lidar_index.make_wall_blocks``."""
 
-    ends: Floats
+    ends: Float64Array
     """(n, 4) ``x1 y1 x2 y2`` in world coordinates."""
-    starts: Integers
+    starts: Int64Array
     """(blocks + 1): block k is ``ends[starts[k]:starts[k + 1]]``."""
-    discs: Floats
+    discs: Float64Array
     """(blocks, 3) ``x y radius``, each containing its block."""
 
 
 class Shapes(NamedTuple):
     """Circles and convex polygons, in world coordinates or in those of their bodies, and their layer bits."""
 
-    circles: Floats
+    circles: Float64Array
     """(circles, 3) ``x y radius``."""
-    circle_bits: Integers
-    corners: Floats
+    circle_bits: Int64Array
+    corners: Float64Array
     """(corners, 2), polygon after polygon, counter-clockwise."""
-    starts: Integers
+    starts: Int64Array
     """(polygons + 1): polygon k is ``corners[starts[k]:starts[k + 1]]``."""
-    polygon_bits: Integers
+    polygon_bits: Int64Array
 
 
 class Beams(NamedTuple):
-    """The directions of a lidar's rays in its own frame; made by ``kit.kernels.lidar_index.beams``.
+    """The directions of a lidar's rays in its own frame; made by ``kit.kernels.lidar_index.make_beams``.
 
     Rays in opposite directions lie on one line, and what a wall does to one of them is known from the other.
     """
 
-    cos: Singles
+    cos: Float32Array
     """(rays,)"""
-    sin: Singles
+    sin: Float32Array
     """(rays,)"""
-    lines: Singles
+    lines: Float32Array
     """(2, lines): cos and sin of the lines. Whole vectors are faster: the last lines may point nowhere."""
-    runs: Integers
+    ray_runs: Int64Array
     """(runs, 4): rays from ``first`` to before ``end`` lie along (0) or against (1) the lines from ``line`` on."""
 
 
-class Gaze(NamedTuple):
+class ScanBuffers(NamedTuple):
     """A scan in the making."""
 
-    lines: Singles
+    lines: Float32Array
     """(2, lines): cos and sin of the lines, in the world."""
-    near: Singles
+    nearness: Float32Array
     """(2, lines): 1 / distance of the nearest thing so far along them, and, below 0, against them."""
-    room: Singles
+    scratch: Float32Array
     """As large, to work in."""
-    aimed: Singles
+    local_segments: Float32Array
     """(5, AIMED): segments as they are seen from the sensor, and their scales."""
 
 
-class Views(NamedTuple):
-    """Which walls can be seen from where: maps in square cells; made by ``kit.kernels.lidar_index.views``."""
+class VisibilityCells(NamedTuple):
+    """Which walls can be seen from where: maps in square cells; made by ``kit.kernels.lidar_index.make_visibility_cells``."""
 
-    ends: Floats
+    ends: Float64Array
     """(n, 4) ``x1 y1 x2 y2``: the walls of each view, view after view."""
-    starts: Integers
+    starts: Int64Array
     """(views + 1): view k is ``ends[starts[k]:starts[k + 1]]``."""
-    of_cell: Integers
+    view_of_cell: Int64Array
     """(cells): the view that holds all that can be seen from anywhere in a cell."""
-    corners: Floats
+    map_corners: Float64Array
     """(maps, 2) ``x y`` of the first cell's lower left corner."""
-    grids: Integers
+    map_grids: Int64Array
     """(maps, 3): number of the first cell, columns, rows; cells go row by row. No rows: there is no view."""
-    cell: float
+    cell_size: float
     """Its side [m]."""
 
 
-class Fleet(NamedTuple):
+class BatchGeometry(NamedTuple):
     """What the worlds of a batch share: the walls of their maps, and the robots' hulls and lidars."""
 
-    walls: Segments
+    walls: WallBlocks
     """Of all maps, one after the other."""
-    blocks: Integers
+    map_blocks: Int64Array
     """(maps + 1): map m has the blocks ``blocks[m]:blocks[m + 1]``."""
-    views: Views
+    visibility: VisibilityCells
     hulls: Shapes
     """Polygons in their robots' own frames; those of robot k are on layer bit ``1 << k``."""
-    sight: Integers
+    lidar_bits: Int64Array
     """(polygons): the same bits, 0 for a polygon that no lidar sees."""
-    robot_of: Integers
+    corner_robot: Int64Array
     """(corners): whose corner it is."""
-    radius: float
+    hull_radius: float
     """No hull reaches farther from its robot's origin [m]."""
     beams: Beams
-    reach: float
+    max_range: float
     """The lidars' [m]."""
-    noise: float
+    noise_std: float
     """Standard deviation of the noise on every range [m]."""

@@ -15,23 +15,23 @@ from typing import Any, TypeAlias, TypeVar, cast
 import numba
 import numpy as np
 
+from kit.kernels.arrays import BatchGeometry as BatchGeometry
 from kit.kernels.arrays import Beams as Beams
-from kit.kernels.arrays import Flags, Floats, Integers, Singles
-from kit.kernels.arrays import Fleet as Fleet
-from kit.kernels.arrays import Gaze as Gaze
-from kit.kernels.arrays import Segments as Segments
+from kit.kernels.arrays import BoolArray, Float32Array, Float64Array, Int64Array
+from kit.kernels.arrays import ScanBuffers as ScanBuffers
 from kit.kernels.arrays import Shapes as Shapes
-from kit.kernels.arrays import Views as Views
+from kit.kernels.arrays import VisibilityCells as VisibilityCells
+from kit.kernels.arrays import WallBlocks as WallBlocks
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-Single: TypeAlias = np.float32
-Bits: TypeAlias = np.uint64
-Half: TypeAlias = np.uint32
+FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
+Float32: TypeAlias = np.float32
+Uint64: TypeAlias = np.uint64
+Uint32: TypeAlias = np.uint32
 # An index that is not plainly a loop's own is made unsigned: else a negative one would have to be taken from the
 # end, as in Python, and the loop would not vectorise.
 
 
-def jit(function: Function) -> Function:
+def jit(function: FunctionT) -> FunctionT:
     """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start.
 
     A division by zero gives inf or nan, as in numpy: Python's check would keep loops from vectorising.
@@ -40,12 +40,12 @@ def jit(function: Function) -> Function:
     compiled = numba.njit(error_model="numpy")(function)
     with suppress(RuntimeError):  # neither beside this file nor in the user's cache
         compiled.enable_caching()
-    return cast(Function, compiled)
+    return cast(FunctionT, compiled)
 
 
-def inlined(function: Function) -> Function:
+def jit_inline(function: FunctionT) -> FunctionT:
     """Becomes a part of its callers: handing over arrays costs more than a short loop."""
-    return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
+    return cast(FunctionT, numba.njit(error_model="numpy", inline="always")(function))
 
 
 # --- motion -----------------------------------------------------------------------------------------------
@@ -83,9 +83,9 @@ def twist_step(
 
 
 @jit
-def ray_segment(
-    cos: Single, sin: Single, ax: Single, ay: Single, bx: Single, by: Single, scale: Single
-) -> Single:
+def ray_segment_nearness(
+    cos: Float32, sin: Float32, ax: Float32, ay: Float32, bx: Float32, by: Float32, scale: Float32
+) -> Float32:
     """How near to the origin the line ``(cos, sin)`` meets the segment a-b; below 0 against its direction. 0, or nan,
     where it does not. ``scale``: 1 / cross(a, b).
 
@@ -96,17 +96,19 @@ def ray_segment(
     a = cos * ay - sin * ax
     b = cos * by - sin * bx
     nearness = (b - a) * scale
-    return nearness if a * b <= 0 else Single(0)
+    return nearness if a * b <= 0 else Float32(0)
 
 
 @jit
-def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, near: Single) -> Single:
-    """The greater of ``near`` and how near the ray meets the circle about ``(x, y)``. One that starts inside does
+def ray_circle_nearness(
+    cos: Float32, sin: Float32, x: Float32, y: Float32, radius: Float32, nearest: Float32
+) -> Float32:
+    """The greater of ``nearest`` and how near the ray meets the circle about ``(x, y)``. One that starts inside does
     not meet it."""
     along = cos * x + sin * y
     across = cos * y - sin * x
-    nearness = Single(1) / (along - np.sqrt(radius * radius - across * across))  # nan where it misses
-    return nearness if nearness > near else near
+    nearness = Float32(1) / (along - np.sqrt(radius * radius - across * across))  # nan where it misses
+    return nearness if nearness > nearest else nearest
 
 
 # --- points, segments, convex polygons --------------------------------------------------------------------
@@ -114,7 +116,7 @@ def ray_circle(cos: Single, sin: Single, x: Single, y: Single, radius: Single, n
 
 
 @jit
-def point_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+def point_segment_distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance from a point to the segment a-b, which may be a point too."""
     dx, dy = bx - ax, by - ay
     length2 = dx * dx + dy * dy
@@ -125,7 +127,7 @@ def point_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float
 
 
 @jit
-def point_in_polygon(x: float, y: float, corners: Floats) -> bool:
+def point_in_polygon(x: float, y: float, corners: Float64Array) -> bool:
     """Whether the point lies inside a convex polygon or on its rim."""
     last = corners.shape[0] - 1
     for i in range(corners.shape[0]):
@@ -137,7 +139,7 @@ def point_in_polygon(x: float, y: float, corners: Floats) -> bool:
 
 
 @jit
-def point_polygon(x: float, y: float, corners: Floats) -> float:
+def point_polygon_distance(x: float, y: float, corners: Float64Array) -> float:
     """Distance from a point to a convex polygon; 0 inside."""
     if point_in_polygon(x, y, corners):
         return 0.0
@@ -146,13 +148,13 @@ def point_polygon(x: float, y: float, corners: Floats) -> float:
     for i in range(corners.shape[0]):
         j = i - 1 if i else last
         nearest = min(
-            nearest, point_segment(x, y, corners[j, 0], corners[j, 1], corners[i, 0], corners[i, 1])
+            nearest, point_segment_distance(x, y, corners[j, 0], corners[j, 1], corners[i, 0], corners[i, 1])
         )
     return nearest
 
 
 @jit
-def segment_meets_polygon(ax: float, ay: float, bx: float, by: float, corners: Floats) -> bool:
+def segment_intersects_polygon(ax: float, ay: float, bx: float, by: float, corners: Float64Array) -> bool:
     """Whether the segment a-b and a convex polygon have a point in common.
 
     Cyrus and Beck (1978): each edge cuts off the part of the segment that lies outside of it.
@@ -179,52 +181,54 @@ def segment_meets_polygon(ax: float, ay: float, bx: float, by: float, corners: F
 
 
 @jit
-def scrambled(z: Bits) -> Bits:
+def mix_bits64(z: Uint64) -> Uint64:
     """64 bits, well mixed: the finaliser of splitmix64 (Steele, Lea and Flood 2014)."""
-    z = (z ^ (z >> Bits(30))) * Bits(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> Bits(27))) * Bits(0x94D049BB133111EB)
-    return z ^ (z >> Bits(31))
+    z = (z ^ (z >> Uint64(30))) * Uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> Uint64(27))) * Uint64(0x94D049BB133111EB)
+    return z ^ (z >> Uint64(31))
 
 
 @jit
-def random_bits(key: int, counter: int) -> Bits:
+def random_bits(key: int, counter: int) -> Uint64:
     """64 bits that depend on ``(key, counter)`` alone: whoever draws first, draws the same."""
-    golden = Bits(0x9E3779B97F4A7C15)
-    return scrambled(scrambled(Bits(key) + golden) + Bits(counter) * golden)
+    golden = Uint64(0x9E3779B97F4A7C15)
+    return mix_bits64(mix_bits64(Uint64(key) + golden) + Uint64(counter) * golden)
 
 
 @jit
 def uniform(key: int, counter: int) -> float:
     """Uniform in [0, 1), 53 bits."""
-    return float(random_bits(key, counter) >> Bits(11)) * (1.0 / 9007199254740992.0)
+    return float(random_bits(key, counter) >> Uint64(11)) * (1.0 / 9007199254740992.0)
 
 
 @jit
-def bell(four: Half | Bits) -> Single:
+def normal_from_bits(four: Uint32 | Uint64) -> Float32:
     """Standard normal, of the sum of four 16-bit uniforms; never beyond 4.9.
 
     Bent to a normal one by a polynomial as Teichroew (1953) did with twelve: off by less than 0.007 up to 3.5. Without
     logarithm and cosine, so that a loop over rays vectorises.
     """
-    u = Single(np.int32(four)) * Single(1.0 / 65536.0) - Single(131070.0 / 65536.0)
+    u = Float32(np.int32(four)) * Float32(1.0 / 65536.0) - Float32(131070.0 / 65536.0)
     u2 = u * u
-    bent = Single(0.08163078) + u2 * (Single(-0.02656002) + u2 * Single(0.01351341))
-    return u * (Single(1.66182467) + u2 * bent)
+    bent = Float32(0.08163078) + u2 * (Float32(-0.02656002) + u2 * Float32(0.01351341))
+    return u * (Float32(1.66182467) + u2 * bent)
 
 
 @jit
-def normal(key: int, counter: int) -> Single:
+def normal(key: int, counter: int) -> Float32:
     """Standard normal, from one draw."""
-    bits, low = random_bits(key, counter), Bits(0xFFFF)
-    return bell((bits & low) + ((bits >> Bits(16)) & low) + ((bits >> Bits(32)) & low) + (bits >> Bits(48)))
+    bits, low = random_bits(key, counter), Uint64(0xFFFF)
+    return normal_from_bits(
+        (bits & low) + ((bits >> Uint64(16)) & low) + ((bits >> Uint64(32)) & low) + (bits >> Uint64(48))
+    )
 
 
 @jit
-def mixed(z: Half) -> Half:
+def mix_bits32(z: Uint32) -> Uint32:
     """32 bits, well mixed, in as many lanes as a processor has: a finaliser of murmur's kind (Wellons 2018)."""
-    z = Half((z ^ (z >> Half(16))) * Half(0x21F0AAAD))
-    z = Half((z ^ (z >> Half(15))) * Half(0xD35A2D97))
-    return Half(z ^ (z >> Half(15)))
+    z = Uint32((z ^ (z >> Uint32(16))) * Uint32(0x21F0AAAD))
+    z = Uint32((z ^ (z >> Uint32(15))) * Uint32(0xD35A2D97))
+    return Uint32(z ^ (z >> Uint32(15)))
 
 
 # --- what a lidar sees ------------------------------------------------------------------------------------
@@ -232,25 +236,27 @@ def mixed(z: Half) -> Half:
 
 LANES = 8
 """Lines are looked at in whole vectors of so many."""
-AIMED = 64
+SEGMENT_CHUNK = 64
 """Segments that are made ready at once."""
 
 
 @jit
-def lines_meeting(lines: Singles, x: Single, y: Single, radius: Single, near: Singles) -> tuple[int, int]:
-    """The first and one past the last line on which a disc lies nearer than ``near``, in whole vectors; the second is
+def lines_through_disc(
+    lines: Float32Array, x: Float32, y: Float32, radius: Float32, nearness: Float32Array
+) -> tuple[int, int]:
+    """The first and one past the last line on which a disc lies nearer than ``nearness``, in whole vectors; the second is
     0 if there is none.
 
     The disc is taken a little larger than it is, to make up for single precision.
     """
     count = np.int32(lines.shape[1])
     first, end = count, np.int32(0)
-    radius += Single(1e-5) * (Single(1) + abs(x) + abs(y) + radius)
+    radius += Float32(1e-5) * (Float32(1) + abs(x) + abs(y) + radius)
     for i in range(count):
         along = lines[0, i] * x + lines[1, i] * y
         across = lines[0, i] * y - lines[1, i] * x
-        ahead = (along >= -radius) & ((along - radius) * near[0, i] < Single(1))
-        behind = (along <= radius) & ((along + radius) * near[1, i] < Single(1))
+        ahead = (along >= -radius) & ((along - radius) * nearness[0, i] < Float32(1))
+        behind = (along <= radius) & ((along + radius) * nearness[1, i] < Float32(1))
         meets = (abs(across) <= radius) & (ahead | behind)
         line = np.int32(i)
         first = min(first, line if meets else count)
@@ -259,82 +265,108 @@ def lines_meeting(lines: Singles, x: Single, y: Single, radius: Single, near: Si
 
 
 @jit
-def aim(x: float, y: float, ends: Floats, first: int, end: int, aimed: Singles) -> int:
-    """Fills ``aimed`` (5, AIMED) with the segments ``ends[first:end]``, seen from ``(x, y)``, and their scales; how many
+def load_segments(
+    x: float, y: float, ends: Float64Array, first: int, end: int, local_segments: Float32Array
+) -> int:
+    """Fills ``local_segments`` (5, AIMED) with the segments ``ends[first:end]``, seen from ``(x, y)``, and their scales; how many
     those are, in whole fours: what is missing is met nowhere."""
     count = end - first
     for j in range(count):
-        row = Bits(first + j)
-        aimed[0, j], aimed[1, j] = Single(ends[row, 0] - x), Single(ends[row, 1] - y)
-        aimed[2, j], aimed[3, j] = Single(ends[row, 2] - x), Single(ends[row, 3] - y)
+        row = Uint64(first + j)
+        local_segments[0, j], local_segments[1, j] = Float32(ends[row, 0] - x), Float32(ends[row, 1] - y)
+        local_segments[2, j], local_segments[3, j] = Float32(ends[row, 2] - x), Float32(ends[row, 3] - y)
     for j in range(count):
-        aimed[4, j] = Single(1) / (aimed[0, j] * aimed[3, j] - aimed[1, j] * aimed[2, j])
+        local_segments[4, j] = Float32(1) / (
+            local_segments[0, j] * local_segments[3, j] - local_segments[1, j] * local_segments[2, j]
+        )
     fours = (count + 3) // 4 * 4
     for j in range(count, fours):
         for k in range(5):
-            aimed[k, j] = Single(0)
+            local_segments[k, j] = Float32(0)
     return int(fours)
 
 
-@inlined
-def meet_pair(
-    lines: Singles, aimed: Singles, j: int, near: Singles, nearer: Singles, line: int, last: int
+@jit_inline
+def cast_segment_pair(
+    lines: Float32Array,
+    local_segments: Float32Array,
+    j: int,
+    nearness: Float32Array,
+    new_nearness: Float32Array,
+    line: int,
+    last: int,
 ) -> None:
-    """Fills ``nearer`` for the lines from ``line`` to before ``last``: as near as ``near`` and the segments j and j + 1.
+    """Fills ``new_nearness`` for the lines from ``line`` to before ``last``: as near as ``nearness`` and the segments j and j + 1.
 
     Not in place: compilers would store under a mask, which is very slow on some processors.
     """
-    ax, ay, bx, by, one_scale = aimed[0, j], aimed[1, j], aimed[2, j], aimed[3, j], aimed[4, j]
+    ax, ay, bx, by, one_scale = (
+        local_segments[0, j],
+        local_segments[1, j],
+        local_segments[2, j],
+        local_segments[3, j],
+        local_segments[4, j],
+    )
     k = j + 1
-    cx, cy, dx, dy, other_scale = aimed[0, k], aimed[1, k], aimed[2, k], aimed[3, k], aimed[4, k]
-    for i in range(Bits(line), Bits(last)):
-        one = ray_segment(lines[0, i], lines[1, i], ax, ay, bx, by, one_scale)
-        other = ray_segment(lines[0, i], lines[1, i], cx, cy, dx, dy, other_scale)
-        ahead, behind = near[0, i], near[1, i]
+    cx, cy, dx, dy, other_scale = (
+        local_segments[0, k],
+        local_segments[1, k],
+        local_segments[2, k],
+        local_segments[3, k],
+        local_segments[4, k],
+    )
+    for i in range(Uint64(line), Uint64(last)):
+        one = ray_segment_nearness(lines[0, i], lines[1, i], ax, ay, bx, by, one_scale)
+        other = ray_segment_nearness(lines[0, i], lines[1, i], cx, cy, dx, dy, other_scale)
+        ahead, behind = nearness[0, i], nearness[1, i]
         ahead = one if one > ahead else ahead
         behind = one if one < behind else behind
-        nearer[0, i] = other if other > ahead else ahead
-        nearer[1, i] = other if other < behind else behind
+        new_nearness[0, i] = other if other > ahead else ahead
+        new_nearness[1, i] = other if other < behind else behind
 
 
 @jit
-def meet_segments(
-    x: float, y: float, gaze: Gaze, ends: Floats, first: int, end: int, line: int, last: int
+def cast_segments(
+    x: float, y: float, buffers: ScanBuffers, ends: Float64Array, first: int, end: int, line: int, last: int
 ) -> None:
     """Brings the lines from ``line`` to before ``last`` as near as the nearest of ``ends[first:end]``."""
-    near, room, aimed = gaze.near, gaze.room, gaze.aimed
-    for start in range(first, end, AIMED):
-        fours = aim(x, y, ends, start, min(start + AIMED, end), aimed)
+    nearness, scratch, local_segments = buffers.nearness, buffers.scratch, buffers.local_segments
+    for start in range(first, end, SEGMENT_CHUNK):
+        fours = load_segments(x, y, ends, start, min(start + SEGMENT_CHUNK, end), local_segments)
         for j in range(0, fours, 4):
-            meet_pair(gaze.lines, aimed, j, near, room, line, last)
-            meet_pair(gaze.lines, aimed, j + 2, room, near, line, last)
+            cast_segment_pair(buffers.lines, local_segments, j, nearness, scratch, line, last)
+            cast_segment_pair(buffers.lines, local_segments, j + 2, scratch, nearness, line, last)
 
 
 @jit
-def meet_walls(x: float, y: float, gaze: Gaze, walls: Segments, first: int, end: int) -> None:
+def cast_walls(x: float, y: float, buffers: ScanBuffers, walls: WallBlocks, first: int, end: int) -> None:
     """Brings every line as near as the nearest wall of the blocks from ``first`` to before ``end``."""
     for k in range(first, end):
-        line, last = 0, gaze.lines.shape[1]
+        line, last = 0, buffers.lines.shape[1]
         if end - first > 1:
-            disc_x, disc_y = Single(walls.discs[k, 0] - x), Single(walls.discs[k, 1] - y)
-            line, last = lines_meeting(gaze.lines, disc_x, disc_y, Single(walls.discs[k, 2]), gaze.near)
+            disc_x, disc_y = Float32(walls.discs[k, 0] - x), Float32(walls.discs[k, 1] - y)
+            line, last = lines_through_disc(
+                buffers.lines, disc_x, disc_y, Float32(walls.discs[k, 2]), buffers.nearness
+            )
         if line < last:
-            meet_segments(x, y, gaze, walls.ends, walls.starts[k], walls.starts[k + 1], line, last)
+            cast_segments(x, y, buffers, walls.ends, walls.starts[k], walls.starts[k + 1], line, last)
 
 
 @jit
-def meet_shapes(x: float, y: float, gaze: Gaze, shapes: Shapes, bits: int, line: int, last: int) -> None:
+def cast_shapes(
+    x: float, y: float, buffers: ScanBuffers, shapes: Shapes, bits: int, line: int, last: int
+) -> None:
     """Brings the lines from ``line`` to before ``last`` as near as the nearest shape on one of the layers ``bits``, but
     for those around the sensor."""
-    cos, sin, near = gaze.lines[0], gaze.lines[1], gaze.near
+    cos, sin, nearness = buffers.lines[0], buffers.lines[1], buffers.nearness
     for k in range(shapes.circles.shape[0]):
         if shapes.circle_bits[k] & bits == 0:
             continue
-        cx, cy = Single(shapes.circles[k, 0] - x), Single(shapes.circles[k, 1] - y)
-        radius = Single(shapes.circles[k, 2])
-        for i in range(Bits(line), Bits(last)):
-            near[0, i] = ray_circle(cos[i], sin[i], cx, cy, radius, near[0, i])
-            near[1, i] = -ray_circle(-cos[i], -sin[i], cx, cy, radius, -near[1, i])
+        cx, cy = Float32(shapes.circles[k, 0] - x), Float32(shapes.circles[k, 1] - y)
+        radius = Float32(shapes.circles[k, 2])
+        for i in range(Uint64(line), Uint64(last)):
+            nearness[0, i] = ray_circle_nearness(cos[i], sin[i], cx, cy, radius, nearness[0, i])
+            nearness[1, i] = -ray_circle_nearness(-cos[i], -sin[i], cx, cy, radius, -nearness[1, i])
     for k in range(shapes.polygon_bits.shape[0]):
         corners = shapes.corners[shapes.starts[k] : shapes.starts[k + 1]]
         if shapes.polygon_bits[k] & bits == 0 or point_in_polygon(x, y, corners):
@@ -342,43 +374,43 @@ def meet_shapes(x: float, y: float, gaze: Gaze, shapes: Shapes, bits: int, line:
         rim = np.empty((corners.shape[0], 4))
         for j in range(corners.shape[0]):
             rim[j, :2], rim[j, 2:] = corners[j - 1], corners[j]
-        meet_segments(x, y, gaze, rim, 0, corners.shape[0], line, last)
+        cast_segments(x, y, buffers, rim, 0, corners.shape[0], line, last)
 
 
 @jit
-def new_gaze(lines: Singles) -> Gaze:
+def allocate_scan_buffers(lines: Float32Array) -> ScanBuffers:
     """Room for scans along so many lines."""
-    aimed = np.empty((5, AIMED), dtype=np.float32)
-    return Gaze(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), aimed)
+    local_segments = np.empty((5, SEGMENT_CHUNK), dtype=np.float32)
+    return ScanBuffers(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), local_segments)
 
 
-@inlined
-def turn_lines(theta: float, lines: Singles, turned: Singles) -> None:
+@jit_inline
+def rotate_lines(theta: float, lines: Float32Array, turned: Float32Array) -> None:
     """Fills ``turned`` with the lines' directions in the world, for a sensor that points to ``theta``."""
-    cos, sin = Single(math.cos(theta)), Single(math.sin(theta))
+    cos, sin = Float32(math.cos(theta)), Float32(math.sin(theta))
     for i in range(lines.shape[1]):
         turned[0, i] = cos * lines[0, i] - sin * lines[1, i]
         turned[1, i] = sin * lines[0, i] + cos * lines[1, i]
 
 
-@inlined
-def spread(found: Singles, runs: Integers, ranges: Singles) -> None:
+@jit_inline
+def scatter_to_rays(found: Float32Array, runs: Int64Array, ranges: Float32Array) -> None:
     """Fills ``ranges`` (rays,) with what was found along and against the lines (2, lines)."""
     for k in range(runs.shape[0]):
         ray, side, line = runs[k, 0], runs[k, 2], runs[k, 3]
         for i in range(runs[k, 1] - ray):
-            ranges[Bits(ray + i)] = found[side, Bits(line + i)]
+            ranges[Uint64(ray + i)] = found[side, Uint64(line + i)]
 
 
 @jit
 def scan(
     pose: tuple[float, float, float],
     beams: Beams,
-    reach: float,
-    walls: Segments,
+    max_range: float,
+    walls: WallBlocks,
     shapes: Shapes,
     bits: int,
-    ranges: Singles,
+    ranges: Float32Array,
 ) -> None:
     """Fills ``ranges`` (rays,) with the distance along each ray to the nearest wall or shape; NaN beyond reach.
 
@@ -387,34 +419,34 @@ def scan(
     sensor is not seen. Lines are the inner loop, for there vector instructions take 4 to 16 at once.
     """
     x, y, theta = pose
-    gaze, least = new_gaze(beams.lines), Single(1.0 / reach)
-    near, room, last = gaze.near, gaze.room, beams.lines.shape[1]
-    turn_lines(theta, beams.lines, gaze.lines)
-    near[0], near[1] = least, -least
-    meet_walls(x, y, gaze, walls, 0, walls.discs.shape[0])
-    meet_shapes(x, y, gaze, shapes, bits, 0, last)
+    buffers, least = allocate_scan_buffers(beams.lines), Float32(1.0 / max_range)
+    nearness, scratch, last = buffers.nearness, buffers.scratch, beams.lines.shape[1]
+    rotate_lines(theta, beams.lines, buffers.lines)
+    nearness[0], nearness[1] = least, -least
+    cast_walls(x, y, buffers, walls, 0, walls.discs.shape[0])
+    cast_shapes(x, y, buffers, shapes, bits, 0, last)
     for i in range(last):
-        room[0, i] = Single(1) / near[0, i] if near[0, i] > least else Single(np.nan)
-        room[1, i] = Single(-1) / near[1, i] if near[1, i] < -least else Single(np.nan)
-    spread(room, beams.runs, ranges)
+        scratch[0, i] = Float32(1) / nearness[0, i] if nearness[0, i] > least else Float32(np.nan)
+        scratch[1, i] = Float32(-1) / nearness[1, i] if nearness[1, i] < -least else Float32(np.nan)
+    scatter_to_rays(scratch, beams.ray_runs, ranges)
 
 
 @jit
-def add_noise(ranges: Singles, deviation: float, key: int, number: int) -> None:
+def add_noise(ranges: Float32Array, deviation: float, key: int, number: int) -> None:
     """Adds normal noise: scan ``number`` of ``key``. A ray's depends on its place in the scan. NaN stays NaN."""
-    bits, low, half = random_bits(key, number), Half(0xFFFF), Half(16)
-    one, other = Half(bits), Half(bits >> Bits(32))
+    bits, low, half = random_bits(key, number), Uint32(0xFFFF), Uint32(16)
+    one, other = Uint32(bits), Uint32(bits >> Uint64(32))
     for i in range(ranges.shape[0]):
-        a, b = mixed(one), mixed(other)
-        ranges[i] += Single(deviation) * bell(
-            Half(a & low) + Half(a >> half) + Half(b & low) + Half(b >> half)
+        a, b = mix_bits32(one), mix_bits32(other)
+        ranges[i] += Float32(deviation) * normal_from_bits(
+            Uint32(a & low) + Uint32(a >> half) + Uint32(b & low) + Uint32(b >> half)
         )
-        one, other = Half(one + Half(0x9E3779B9)), Half(other + Half(0x85EBCA6B))
+        one, other = Uint32(one + Uint32(0x9E3779B9)), Uint32(other + Uint32(0x85EBCA6B))
 
 
 @jit
 def place_shapes(
-    poses: Floats, circle_body: Integers, corner_body: Integers, local: Shapes, world: Shapes
+    poses: Float64Array, circle_body: Int64Array, corner_body: Int64Array, local: Shapes, world: Shapes
 ) -> None:
     """Fills ``world`` with the shapes of ``local``, each carried by its body's pose.
 
@@ -441,15 +473,15 @@ def place_shapes(
 
 
 @jit
-def placed_hulls(fleet: Fleet, bits: Integers) -> Shapes:
+def allocate_hulls(geometry: BatchGeometry, bits: Int64Array) -> Shapes:
     """Room for the hulls of one world, where its robots are, on the layers ``bits``."""
-    own = fleet.hulls
+    own = geometry.hulls
     return Shapes(own.circles, own.circle_bits, np.empty_like(own.corners), own.starts, bits)
 
 
-@inlined
-def nearest_wall(
-    pose: Floats, hulls: Shapes, bit: int, radius: float, walls: Floats, first: int, end: int
+@jit_inline
+def wall_clearance(
+    pose: Float64Array, hulls: Shapes, bit: int, radius: float, walls: Float64Array, first: int, end: int
 ) -> tuple[float, bool]:
     """A distance from a robot's origin within which there is no wall, and whether one of ``walls[first:end]`` meets its hull.
 
@@ -458,7 +490,7 @@ def nearest_wall(
     """
     x, y, cos, sin, nearest = pose[0], pose[1], math.cos(pose[2]), math.sin(pose[2]), math.inf
     for row in range(first, end):
-        j = Bits(row)
+        j = Uint64(row)
         ax, ay, bx, by = walls[j, 0] - x, walls[j, 1] - y, walls[j, 2] - x, walls[j, 3] - y
         dx, dy = max(min(ax, bx), -max(ax, bx), 0.0), max(min(ay, by), -max(ay, by), 0.0)
         nearest = min(nearest, dx * dx + dy * dy)
@@ -467,13 +499,13 @@ def nearest_wall(
         ax, ay, bx, by = cos * ax + sin * ay, cos * ay - sin * ax, cos * bx + sin * by, cos * by - sin * bx
         for k in range(hulls.polygon_bits.shape[0]):
             corners = hulls.corners[hulls.starts[k] : hulls.starts[k + 1]]
-            if hulls.polygon_bits[k] == bit and segment_meets_polygon(ax, ay, bx, by, corners):
+            if hulls.polygon_bits[k] == bit and segment_intersects_polygon(ax, ay, bx, by, corners):
                 return 0.0, True
     return math.sqrt(nearest), False
 
 
 @jit
-def hulls_meet(hulls: Shapes) -> bool:
+def hulls_overlap(hulls: Shapes) -> bool:
     """Whether convex polygons of different robots meet: an edge of one and the other, or one lies inside."""
     for i in range(hulls.polygon_bits.shape[0]):
         one = hulls.corners[hulls.starts[i] : hulls.starts[i + 1]]
@@ -483,157 +515,205 @@ def hulls_meet(hulls: Shapes) -> bool:
                 if point_in_polygon(other[0, 0], other[0, 1], one):
                     return True
                 for k in range(one.shape[0]):
-                    if segment_meets_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
+                    if segment_intersects_polygon(one[k - 1, 0], one[k - 1, 1], one[k, 0], one[k, 1], other):
                         return True
     return False
 
 
-@inlined
-def stop_robots(
-    fleet: Fleet, number: int, before: Floats, room: Shapes, poses: Floats, free: Floats, hit: Flags
+@jit_inline
+def stop_colliding_robots(
+    geometry: BatchGeometry,
+    map_index: int,
+    before: Float64Array,
+    placed_hulls: Shapes,
+    poses: Float64Array,
+    clearance: Float64Array,
+    collided: BoolArray,
 ) -> None:
-    """Puts the robots of one world, on map ``number``, back where they meet something; they are hit.
+    """Puts the robots of one world, on map ``map_index``, back where they meet something; they are hit.
 
-    ``before``: where they were. ``room``: for the hulls where they are now.
+    ``before``: where they were. ``placed_hulls``: for the hulls where they are now.
     """
     if poses.shape[0] > 1:
-        place_shapes(poses, fleet.robot_of[:0], fleet.robot_of, fleet.hulls, room)
-    together = poses.shape[0] > 1 and hulls_meet(room)
+        place_shapes(poses, geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, placed_hulls)
+    overlapping = poses.shape[0] > 1 and hulls_overlap(placed_hulls)
     for k in range(poses.shape[0]):
-        meets = together
-        if free[k] <= fleet.radius:
-            walls = fleet.walls
-            first, end = walls.starts[fleet.blocks[number]], walls.starts[fleet.blocks[number + 1]]
-            hulls, bit = fleet.hulls, 1 << k
-            free[k], meets = nearest_wall(poses[k], hulls, bit, fleet.radius, walls.ends, first, end)
-        if meets or together:
-            poses[k], free[k], hit[k] = before[k], 0.0, True
+        meets = overlapping
+        if clearance[k] <= geometry.hull_radius:
+            walls = geometry.walls
+            first, end = (
+                walls.starts[geometry.map_blocks[map_index]],
+                walls.starts[geometry.map_blocks[map_index + 1]],
+            )
+            hulls, bit = geometry.hulls, 1 << k
+            clearance[k], meets = wall_clearance(
+                poses[k], hulls, bit, geometry.hull_radius, walls.ends, first, end
+            )
+        if meets or overlapping:
+            poses[k], clearance[k], collided[k] = before[k], 0.0, True
 
 
 @jit
-def drive_worlds(
-    fleet: Fleet, maps: Integers, twists: Floats, dt: float, poses: Floats, free: Floats, hit: Flags
+def step_worlds(
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    twists: Float64Array,
+    dt: float,
+    poses: Float64Array,
+    clearance: Float64Array,
+    collided: BoolArray,
 ) -> None:
     """Every robot moves for ``dt``. Where it would meet something it stays, and is hit: (n, r), set, never cleared.
 
-    ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``free`` (n, r): no wall
+    ``maps`` (n); ``twists`` (n, r, 2) forward [m/s] and turn [rad/s]; ``poses`` (n, r, 3). ``clearance`` (n, r): no wall
     is nearer, for sure; 0 where unknown. It spares most moves the search for walls.
     """
-    room, before = placed_hulls(fleet, fleet.hulls.polygon_bits), np.empty_like(poses[0])
+    placed_hulls, before = allocate_hulls(geometry, geometry.hulls.polygon_bits), np.empty_like(poses[0])
     for i in range(poses.shape[0]):
-        near = False
+        may_collide = False
         for k in range(poses.shape[1]):
             x, y, theta, forward = poses[i, k, 0], poses[i, k, 1], poses[i, k, 2], twists[i, k, 0]
             before[k, 0], before[k, 1], before[k, 2] = x, y, theta
             x, y, theta = twist_step(x, y, theta, forward, 0.0, twists[i, k, 1], dt)
             poses[i, k, 0], poses[i, k, 1], poses[i, k, 2] = x, y, theta
-            free[i, k] -= abs(forward) * dt
-            near |= free[i, k] <= fleet.radius
-            near |= k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * fleet.radius
-        if near:
-            stop_robots(fleet, maps[i], before, room, poses[i], free[i], hit[i])
+            clearance[i, k] -= abs(forward) * dt
+            may_collide |= clearance[i, k] <= geometry.hull_radius
+            may_collide |= (
+                k > 0 and math.hypot(x - poses[i, 0, 0], y - poses[i, 0, 1]) <= 2.0 * geometry.hull_radius
+            )
+        if may_collide:
+            stop_colliding_robots(
+                geometry, maps[i], before, placed_hulls, poses[i], clearance[i], collided[i]
+            )
 
 
 @jit
-def arrivals(
-    fleet: Fleet, poses: Floats, targets: Floats, radius: float, by_hull: bool, inside: Flags
+def find_arrivals(
+    geometry: BatchGeometry,
+    poses: Float64Array,
+    targets: Float64Array,
+    radius: float,
+    by_hull: bool,
+    inside: BoolArray,
 ) -> None:
     """Fills ``inside`` (n, r): who is within ``radius`` of ``targets`` (n, 2), by the hull or by its origin."""
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
             x, y = targets[i, 0] - poses[i, k, 0], targets[i, 1] - poses[i, k, 1]
             away = math.hypot(x, y)
-            if by_hull and radius < away <= radius + fleet.radius:
+            if by_hull and radius < away <= radius + geometry.hull_radius:
                 cos, sin = math.cos(poses[i, k, 2]), math.sin(poses[i, k, 2])
-                for j in range(fleet.hulls.polygon_bits.shape[0]):
-                    if fleet.hulls.polygon_bits[j] == 1 << k:
-                        corners = fleet.hulls.corners[fleet.hulls.starts[j] : fleet.hulls.starts[j + 1]]
-                        away = min(away, point_polygon(cos * x + sin * y, cos * y - sin * x, corners))
+                for j in range(geometry.hulls.polygon_bits.shape[0]):
+                    if geometry.hulls.polygon_bits[j] == 1 << k:
+                        corners = geometry.hulls.corners[
+                            geometry.hulls.starts[j] : geometry.hulls.starts[j + 1]
+                        ]
+                        away = min(
+                            away, point_polygon_distance(cos * x + sin * y, cos * y - sin * x, corners)
+                        )
             inside[i, k] = away <= radius
 
 
-@inlined
-def view_from(views: Views, number: int, x: float, y: float) -> int:
+@jit_inline
+def find_visibility_cell(visibility: VisibilityCells, number: int, x: float, y: float) -> int:
     """Which view of map ``number`` holds all that can be seen from ``(x, y)``; -1 if there is none."""
-    column = math.floor((x - views.corners[number, 0]) / views.cell)
-    row = math.floor((y - views.corners[number, 1]) / views.cell)
-    columns, rows = views.grids[number, 1], views.grids[number, 2]
+    column = math.floor((x - visibility.map_corners[number, 0]) / visibility.cell_size)
+    row = math.floor((y - visibility.map_corners[number, 1]) / visibility.cell_size)
+    columns, rows = visibility.map_grids[number, 1], visibility.map_grids[number, 2]
     if 0 <= column < columns and 0 <= row < rows:
-        return int(views.of_cell[views.grids[number, 0] + row * columns + column])
+        return int(visibility.view_of_cell[visibility.map_grids[number, 0] + row * columns + column])
     return -1
 
 
-@inlined
-def sense(far: float, single: Integers, sectors: Integers, ranges: Singles, sensed: Singles) -> None:
-    """Limits ``ranges`` (rays,) to 0..``far``, and fills ``sensed`` (numbers,) with some rays and minima.
+@jit_inline
+def reduce_ranges(
+    max_sensed: float,
+    single_rays: Int64Array,
+    sectors: Int64Array,
+    ranges: Float32Array,
+    readings: Float32Array,
+) -> None:
+    """Limits ``ranges`` (rays,) to 0..``max_sensed``, and fills ``readings`` (numbers,) with some rays and minima.
 
-    ``single`` (s,): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
+    ``single_rays`` (s,): rays given as they are, first. ``sectors`` (m, 3): number from 0, first ray and end of a stretch.
     """
-    nothing, most = Single(0), Single(far)
+    zero, limit = Float32(0), Float32(max_sensed)
     for i in range(ranges.shape[0]):
-        limited = ranges[i] if ranges[i] > nothing else nothing
-        ranges[i] = limited if limited < most else most
-    sensed[:] = most
+        limited = ranges[i] if ranges[i] > zero else zero
+        ranges[i] = limited if limited < limit else limit
+    readings[:] = limit
     for m in range(sectors.shape[0]):
-        number, least = single.shape[0] + sectors[m, 0], most
-        for i in range(Bits(sectors[m, 1]), Bits(sectors[m, 2])):
+        number, least = single_rays.shape[0] + sectors[m, 0], limit
+        for i in range(Uint64(sectors[m, 1]), Uint64(sectors[m, 2])):
             least = ranges[i] if ranges[i] < least else least
-        sensed[number] = least if least < sensed[number] else sensed[number]
-    for j in range(single.shape[0]):
-        sensed[j] = ranges[single[j]]
+        readings[number] = least if least < readings[number] else readings[number]
+    for j in range(single_rays.shape[0]):
+        readings[j] = ranges[single_rays[j]]
 
 
 @jit
-def look_worlds(
-    fleet: Fleet,
-    maps: Integers,
-    poses: Floats,
-    keys: Integers,
-    drawn: Integers,
-    far: float,
-    single: Integers,
-    sectors: Integers,
-    ranges: Singles,
-    sensed: Singles,
+def scan_worlds(
+    geometry: BatchGeometry,
+    maps: Int64Array,
+    poses: Float64Array,
+    keys: Int64Array,
+    scan_numbers: Int64Array,
+    max_sensed: float,
+    single_rays: Int64Array,
+    sectors: Int64Array,
+    ranges: Float32Array,
+    readings: Float32Array,
 ) -> None:
     """Scans of all robots, as ``scan`` and ``add_noise`` make them and ``sense`` limits them, (n, r, rays or more), and
     what they sense, (n, r, numbers).
 
-    The noise of world i is that of the scans ``drawn[i]`` and following of ``keys[i]``. ``single`` (r, s).
+    The noise of world i is that of the scans ``scan_numbers[i]`` and following of ``keys[i]``. ``single_rays`` (r, s).
     """
-    robots, rays, fixed, views = ranges.shape[1], fleet.beams.cos.shape[0], fleet.beams.lines, fleet.views
-    gaze, last = new_gaze(fixed), fixed.shape[1]
-    near, room = gaze.near, gaze.room
-    hulls, least = placed_hulls(fleet, fleet.sight), Single(1.0 / fleet.reach)
+    robots, rays, fixed, visibility = (
+        ranges.shape[1],
+        geometry.beams.cos.shape[0],
+        geometry.beams.lines,
+        geometry.visibility,
+    )
+    buffers, last = allocate_scan_buffers(fixed), fixed.shape[1]
+    nearness, scratch = buffers.nearness, buffers.scratch
+    hulls, least = allocate_hulls(geometry, geometry.lidar_bits), Float32(1.0 / geometry.max_range)
     for i in range(ranges.shape[0]):
         if robots > 1:
-            place_shapes(poses[i], fleet.robot_of[:0], fleet.robot_of, fleet.hulls, hulls)
+            place_shapes(poses[i], geometry.corner_robot[:0], geometry.corner_robot, geometry.hulls, hulls)
         for k in range(robots):
             x, y = poses[i, k, 0], poses[i, k, 1]
-            turn_lines(poses[i, k, 2], fixed, gaze.lines)
-            near[0], near[1] = least, -least
-            view = view_from(views, maps[i], x, y)
+            rotate_lines(poses[i, k, 2], fixed, buffers.lines)
+            nearness[0], nearness[1] = least, -least
+            view = find_visibility_cell(visibility, maps[i], x, y)
             if view >= 0:
-                first, end = views.starts[view], views.starts[view + 1]
-                meet_segments(x, y, gaze, views.ends, first, end, 0, last)
+                first, end = visibility.starts[view], visibility.starts[view + 1]
+                cast_segments(x, y, buffers, visibility.ends, first, end, 0, last)
             else:
-                first, end = fleet.blocks[maps[i]], fleet.blocks[maps[i] + 1]
-                meet_walls(x, y, gaze, fleet.walls, first, end)
+                first, end = geometry.map_blocks[maps[i]], geometry.map_blocks[maps[i] + 1]
+                cast_walls(x, y, buffers, geometry.walls, first, end)
             if robots > 1:
-                dx, dy = Single(poses[i, 1 - k, 0] - x), Single(poses[i, 1 - k, 1] - y)
-                line, stop = lines_meeting(gaze.lines, dx, dy, Single(fleet.radius), near)
-                meet_shapes(x, y, gaze, hulls, ~(1 << k), line, stop)
+                dx, dy = Float32(poses[i, 1 - k, 0] - x), Float32(poses[i, 1 - k, 1] - y)
+                line, stop = lines_through_disc(
+                    buffers.lines, dx, dy, Float32(geometry.hull_radius), nearness
+                )
+                cast_shapes(x, y, buffers, hulls, ~(1 << k), line, stop)
             for j in range(last):
-                room[0, j], room[1, j] = Single(1) / near[0, j], Single(-1) / near[1, j]
-            spread(room, fleet.beams.runs, ranges[i, k])
-            ranges[i, k, rays:] = Single(fleet.reach)
-            add_noise(ranges[i, k], fleet.noise, keys[i], drawn[i] + k)
-            sense(far, single[k], sectors, ranges[i, k], sensed[i, k])
+                scratch[0, j], scratch[1, j] = Float32(1) / nearness[0, j], Float32(-1) / nearness[1, j]
+            scatter_to_rays(scratch, geometry.beams.ray_runs, ranges[i, k])
+            ranges[i, k, rays:] = Float32(geometry.max_range)
+            add_noise(ranges[i, k], geometry.noise_std, keys[i], scan_numbers[i] + k)
+            reduce_ranges(max_sensed, single_rays[k], sectors, ranges[i, k], readings[i, k])
 
 
 @jit
-def look_up(
-    tables: Singles, corners: Floats, cell: float, cases: Integers, poses: Floats, found: Floats
+def interpolate_tables(
+    tables: Float32Array,
+    corners: Float64Array,
+    cell: float,
+    cases: Int64Array,
+    poses: Float64Array,
+    found: Float64Array,
 ) -> None:
     """Fills ``found`` (n, r) from a table each case has, between the four nearest cells.
 
@@ -652,7 +732,7 @@ def look_up(
 
 
 @jit
-def uniforms(keys: Integers, first: Integers, drawn: Floats) -> None:
+def fill_uniform(keys: Int64Array, first: Int64Array, drawn: Float64Array) -> None:
     """Fills ``drawn`` (n, m): row i with number ``first[i]`` and following of ``keys[i]``."""
     for i in range(drawn.shape[0]):
         for j in range(drawn.shape[1]):
@@ -660,7 +740,14 @@ def uniforms(keys: Integers, first: Integers, drawn: Floats) -> None:
 
 
 @jit
-def add_forces(x: Floats, y: Floats, charges: Floats, starts: Integers, fx: Floats, fy: Floats) -> None:
+def add_forces(
+    x: Float64Array,
+    y: Float64Array,
+    charges: Float64Array,
+    starts: Int64Array,
+    fx: Float64Array,
+    fy: Float64Array,
+) -> None:
     """Adds to ``fx``, ``fy`` (n) the forces of charges at the points ``x``, ``y`` (n); see ``kit.fields.charges``.
 
     ``charges`` (m, 9) ``ax ay ux uy length low high intensity rank``: stretches from a along the unit vector u, that
@@ -691,10 +778,10 @@ def add_forces(x: Floats, y: Floats, charges: Floats, starts: Integers, fx: Floa
             fy[i] += share * away_y[i]
 
 
-def warm() -> None:
+def compile_kernels() -> None:
     """Compiles, or loads from disk, what the interactive world calls: seconds the first time, then moments."""
     ranges, bits, corners = np.ones(2, dtype=np.float32), np.zeros(0, dtype=np.int64), np.zeros((3, 2))
-    walls = Segments(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
+    walls = WallBlocks(np.zeros((0, 4)), np.zeros(2, dtype=np.int64), np.zeros((1, 3)))
     shapes = Shapes(np.zeros((0, 3)), bits, np.zeros((0, 2)), np.zeros(1, dtype=np.int64), bits)
     ones = np.ones(2, dtype=np.float32)
     beams = Beams(ones, ones, np.zeros((2, LANES), dtype=np.float32), np.zeros((0, 4), dtype=np.int64))
@@ -703,6 +790,6 @@ def warm() -> None:
     place_shapes(np.zeros((1, 3)), bits, bits, shapes, shapes)
     twist_step(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1)
     mean_velocity(0.0, 1.0, 0.0, 0.0, 0.1)
-    point_polygon(2.0, 0.0, corners)
+    point_polygon_distance(2.0, 0.0, corners)
     normal(1, 0)
     uniform(1, 0)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
 from kit.launch.errors import CannotStart
 from kit.launch.requests import Start
+from kit.plain_text import nearest_name
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.execution.arguments import parse_ros_arguments
 
@@ -57,8 +57,8 @@ def world_wanted(request: Start) -> WorldWanted:
         raise CannotStart(f"{request.where}flatland_server: {problem}") from None
     values = {name: parameter.value for name, parameter in given.items()}
     for name in sorted(values.keys() - KNOWN):
-        near = get_close_matches(name, KNOWN, 1)
-        hint = f"; did you mean '{near[0]}'?" if near else ""
+        near = nearest_name(name, KNOWN)
+        hint = f"; did you mean '{near}'?" if near else ""
         raise CannotStart(f"{request.where}flatland_server has no parameter '{name}'{hint}")
     if "world_path" not in values:
         raise CannotStart(

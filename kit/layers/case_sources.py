@@ -14,8 +14,8 @@ from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
 from kit.layers.reading import Requirements, is_world, read_requirements, written
 from kit.layers.requirements import Case
-from kit.world.catalogue import WORLD, find_map, map_names, root_of
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
+from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names
 from kit.world.records import World
 
 
@@ -69,7 +69,7 @@ def open_task(
         asked = read_requirements(path)
         if asked.world is None:
             return _without_world(asked.case, asked, never)
-        path, own_root = asked.world, root_of(asked.world)
+        path, own_root = asked.world, allowed_root_of(asked.world)
     root = own_root if root is None else root
     source = WorldSource(lambda: read_world(path, root=root, environment=environment), root)
     slots = slots_of(source.read(), one_model_never_collides=never)
@@ -94,9 +94,9 @@ def _find(target: str) -> tuple[Path | None, Path | None]:
     path = Path(target)
     try:
         if path.is_dir():
-            path /= WORLD
+            path /= WORLD_FILE
         if path.exists():
-            return path, root_of(path)
+            return path, allowed_root_of(path)
     except (OSError, ValueError) as error:  # no permission; a name too long; a NUL in it
         raise UnknownTask(f"{quoted(target)} cannot be opened") from error
     if target in EXAMPLES:

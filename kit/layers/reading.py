@@ -39,10 +39,11 @@ from kit.layers.requirements import (
     Sight,
     Sighting,
 )
-from kit.world.documents import Documents
-from kit.world.files import Enclosure, Unusable
-from kit.world.problems import Problem, Problems, WorldError, quoted, suggestion
-from kit.world.records import Place
+from kit.plain_text import quoted, suggestion
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot, UnusableFile
+from kit.world.problems import Problem, ProblemCollector, WorldError
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 _PAIRS: Final[Mapping[str, Relation]] = MappingProxyType(
@@ -65,7 +66,7 @@ class Requirements:
     """For each model of the case, the model instances of the world it stands for: itself, if nothing else is said."""
     bodies: Mapping[str, tuple[str, ...]]
     """For each part of a model, the bodies it consists of (``body``, or ``body.0`` for its first footprint)."""
-    places: Mapping[Requirement, Place] = field(default_factory=dict)
+    places: Mapping[Requirement, SourceLocation] = field(default_factory=dict)
     """Where the file speaks of a pair, or of a laser and an entity."""
 
 
@@ -89,12 +90,12 @@ class Names:
 
 def read_requirements(path: Path) -> Requirements:
     """What a requirements file asks. Raises WorldError with all that is wrong in it."""
-    problems = Problems()
+    problems = ProblemCollector()
     try:
-        documents = Documents(Enclosure.around(path), {}, problems)
-        section = documents.section(path, Place(path))
-    except Unusable as error:
-        raise WorldError([Problem(Place(path), f"cannot read it: {error}")]) from error
+        documents = WorldDocuments(AllowedRoot.containing(path), {}, problems)
+        section = documents.section(path, SourceLocation(path))
+    except UnusableFile as error:
+        raise WorldError([Problem(SourceLocation(path), f"cannot read it: {error}")]) from error
     if section is None:
         problems.raise_if_any()
         raise AssertionError("a missing section is noted as a problem")
@@ -102,7 +103,7 @@ def read_requirements(path: Path) -> Requirements:
     world = section.name("world", "") if section.has("world") else ""
     copies, bodies = _lists(section, "copies"), _lists(section, "bodies")
     names = _names(section, copies)
-    places: dict[Requirement, Place] = {}
+    places: dict[Requirement, SourceLocation] = {}
     contacts = _contacts(section, names, places)
     lasers = tuple(_lasers(section, names, places))
     _check_keys(section, "copies", copies, names.models, "model")
@@ -118,7 +119,7 @@ def read_requirements(path: Path) -> Requirements:
             title,
         )
     except CaseError as error:
-        raise WorldError([Problem(Place(path), str(error))]) from error
+        raise WorldError([Problem(SourceLocation(path), str(error))]) from error
     named = {model: copies.get(model, (model,)) for model in names.models}
     return Requirements(path, case, path.parent / world if world else None, named, bodies, places)
 
@@ -169,9 +170,11 @@ def _check_keys(section: Section, key: str, found: Iterable[str], known: Iterabl
             section.error(f"{quoted(name)} is no {what}: {suggestion(name, known)}", key)
 
 
-def _contacts(section: Section, names: Names, places: dict[Requirement, Place]) -> dict[Contact, Relation]:
+def _contacts(
+    section: Section, names: Names, places: dict[Requirement, SourceLocation]
+) -> dict[Contact, Relation]:
     """Every pair the file speaks of. Two statements about one pair that differ are noted, with both places."""
-    said: dict[Contact, tuple[Relation, Place]] = {}
+    said: dict[Contact, tuple[Relation, SourceLocation]] = {}
     for key, relation in _PAIRS.items():
         inner = section.section(key, None)
         for name in () if inner is None else inner.keys():
@@ -182,7 +185,7 @@ def _contacts(section: Section, names: Names, places: dict[Requirement, Place]) 
                     if wrong := _impossible(contact, relation, names):
                         inner.error(wrong, name)
                         continue
-                    old, place = said.setdefault(contact, (relation, inner.place_of(name)))
+                    old, place = said.setdefault(contact, (relation, inner.location_of(name)))
                     if old != relation:
                         inner.error(
                             _contradiction(str(contact), _IN_WORDS[relation], _IN_WORDS[old], place), name
@@ -215,10 +218,10 @@ def _impossible(contact: Contact, relation: Relation, names: Names) -> str | Non
     return None
 
 
-def _lasers(section: Section, names: Names, places: dict[Requirement, Place]) -> Iterator[Laser]:
+def _lasers(section: Section, names: Names, places: dict[Requirement, SourceLocation]) -> Iterator[Laser]:
     """Every laser with what the file says of it. Statements that contradict each other are noted."""
     known = _lists(section, "lasers")
-    said: dict[Sight, tuple[Sighting, Place]] = {}
+    said: dict[Sight, tuple[Sighting, SourceLocation]] = {}
     for key, sighting in _SIGHTS.items():
         inner = section.section(key, None)
         for laser in () if inner is None else inner.keys():
@@ -228,7 +231,7 @@ def _lasers(section: Section, names: Names, places: dict[Requirement, Place]) ->
                     f"there is no laser {quoted(laser)} under lasers: {suggestion(laser, known)}", laser
                 )
             for sight in (Sight(laser, e) for n in inner.texts(laser) for e in names.meant(n, inner, laser)):
-                old, place = said.setdefault(sight, (sighting, inner.place_of(laser)))
+                old, place = said.setdefault(sight, (sighting, inner.location_of(laser)))
                 if old != sighting:
                     inner.error(_contradiction(str(sight), _IN_WORDS[sighting], _IN_WORDS[old], place), laser)
     places.update({sight: place for sight, (_, place) in said.items()})
@@ -253,7 +256,7 @@ _IN_WORDS: Final = MappingProxyType(
 )
 
 
-def _contradiction(what: str, here: str, there: str, place: Place) -> str:
+def _contradiction(what: str, here: str, there: str, place: SourceLocation) -> str:
     return f"contradiction: {what} {here} here, and {there} in line {place.line}: strike one of the two"
 
 
@@ -316,11 +319,13 @@ def _mapping(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
 
 def is_world(path: Path) -> bool:
     """Whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
-    problems = Problems()
+    problems = ProblemCollector()
     try:
-        section = Documents(Enclosure.around(path), {}, problems).section(path, Place(path))
-    except Unusable as error:
-        raise WorldError([Problem(Place(path), f"cannot read it: {error}")]) from error
+        section = WorldDocuments(AllowedRoot.containing(path), {}, problems).section(
+            path, SourceLocation(path)
+        )
+    except UnusableFile as error:
+        raise WorldError([Problem(SourceLocation(path), f"cannot read it: {error}")]) from error
     problems.raise_if_any()
     keys = set() if section is None else set(section.keys())
     return bool(keys & {"properties", "layers", "plugins"}) and not keys & {

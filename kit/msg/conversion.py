@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Mapping
-from difflib import get_close_matches
 from typing import Any, TypeVar
 
 from kit.msg.fields import FieldError, Fixed, Kind, Many, Nested, Scalar
 from kit.msg.message import Message
+from kit.plain_text import nearest_name
 
 M = TypeVar("M", bound=Message)
 
@@ -55,8 +55,8 @@ def _message(cls: type[M], data: Any, path: str) -> M:
     values = {}
     for key, value in data.items():
         if key not in kinds:
-            near = get_close_matches(str(key), kinds, 1)
-            hint = f"did you mean '{near[0]}'?" if near else f"its fields are: {', '.join(kinds) or 'none'}"
+            near = nearest_name(str(key), kinds)
+            hint = f"did you mean '{near}'?" if near else f"its fields are: {', '.join(kinds) or 'none'}"
             raise ConversionError(f"{where}{name} has no field '{key}'; {hint}")
         values[key] = _value(kinds[key], value, f"{path}.{key}" if path else key)
     return cls(**values)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from importlib import import_module
 
 from kit.msg.message import Field, Message, Service
+from kit.plain_text import nearest_name
 
 PACKAGES = (
     "builtin_interfaces",
@@ -60,8 +60,8 @@ def find_interface(name: str) -> Interface:
             found = cls.__ros_type__.split("/")
             if found[2] == parts[-1] and (len(parts) == 2 or found == parts):
                 return cls
-    near = get_close_matches(name, interface_names(), 1)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
+    near = nearest_name(name, interface_names())
+    hint = f"; did you mean '{near}'?" if near else ""
     raise UnknownInterface(f"there is no message or service '{name}'{hint}")
 
 

@@ -323,13 +323,13 @@ def _source_of_copy(field: Field) -> str:
 
 
 def _refuse_unknown(cls: type[Message], unknown: Iterable[str]) -> NoReturn:
-    from difflib import get_close_matches
+    from kit.plain_text import nearest_name
 
     known = [field.name for field in cls.__ros_fields__]
     parts = []
     for name in unknown:
-        near = get_close_matches(name, known, 1)
-        parts.append(f"'{name}'" + (f" (did you mean '{near[0]}'?)" if near else ""))
+        near = nearest_name(name, known)
+        parts.append(f"'{name}'" + (f" (did you mean '{near}'?)" if near else ""))
     raise FieldError(
         f"Invalid arguments passed to constructor: {cls.__ros_type__} has no field {', '.join(parts)}; "
         f"its fields are {', '.join(known) or 'none'}"

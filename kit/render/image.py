@@ -126,10 +126,10 @@ class _Pen:
         extent, (x, y) = robot.extent, robot.extent.middle
         size = max(extent.width, extent.height, 6 * self._camera.cell) / 2
         wedge = ((x + size * 1.4, y), (x - size * 0.5, y + size * 0.6), (x - size * 0.5, y - size * 0.6))
-        corners = self._project(np.array([robot.pose.point(*corner) for corner in wedge])).tolist()
+        corners = self._project(np.array([robot.pose.transform_point(*corner) for corner in wedge])).tolist()
         self._draw.polygon([(x, y) for x, y in corners], fill=PAPER, outline=COLORS[role], width=SMOOTHING)
         if label:
-            self.text(*robot.pose.point(x - size * 2, y), label)
+            self.text(*robot.pose.transform_point(x - size * 2, y), label)
 
     def arrows(self, arrows: FloatArray) -> None:
         """As long as they are strong, a twentieth of the picture at most."""

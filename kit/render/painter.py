@@ -165,7 +165,7 @@ def _nose(robot: Body, camera: Camera, encoder: Encoder) -> FloatArray:
     middle = extent.middle
     places = (middle, (extent.right, middle[1]), (extent.right + 1.0, middle[1]))
     start, front, ahead = camera.project(
-        np.array([robot.pose.point(*place) for place in places]), encoder.across, encoder.down
+        np.array([robot.pose.transform_point(*place) for place in places]), encoder.across, encoder.down
     )
     step = (ahead - front) / np.abs(ahead - front).max()  # one dot along the longer axis
     beyond = max(2.0, NOSE * extent.width / camera.cell) * encoder.across

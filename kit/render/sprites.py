@@ -48,7 +48,7 @@ class Stamps:
         for mark in scene.marks:
             self._put(self._cell(mark.x, mark.y), mark.label, Role.TEXT)
         robots = scene.robots
-        middles = [robot.pose.point(*robot.extent.middle) for robot in robots]
+        middles = [robot.pose.transform_point(*robot.extent.middle) for robot in robots]
         for x, y in scene.contacts.tolist():
             self._put_contact(x, y, middles)
         for number, (robot, middle) in enumerate(zip(robots, middles, strict=True)):
@@ -85,7 +85,7 @@ class Stamps:
         role, arrows = ROBOTS[number % len(ROBOTS)], self._symbols.robots[number % len(self._symbols.robots)]
         if self._symbols.noses:
             front = extent.right if rows_across(robot, self._camera) >= SMALLEST_OUTLINE else extent.middle[0]
-            base = self._cell(*robot.pose.point(front, extent.middle[1]))
+            base = self._cell(*robot.pose.transform_point(front, extent.middle[1]))
             if base is not None:
                 eighth = round(theta / math.tau * 8) * math.tau / 8
                 ahead = base[0] - round(math.sin(eighth)), base[1] + round(math.cos(eighth))

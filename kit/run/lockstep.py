@@ -34,7 +34,7 @@ class Observer:
         """A message is about to reach the devices that subscribe to ``topic``."""
 
     def on_service(self, service: str, *arguments: Any) -> None:
-        """A service has changed the world, see ``kit.sim.services.SERVICES``."""
+        """A service has changed the world, see ``kit.sim.simulation.SERVICES``."""
 
     def on_step(self, simulation: Simulation) -> None:
         """The simulation has made a step."""

@@ -142,7 +142,7 @@ class MetricsRecorder(Observer):
         if robot.at is not None:
             robot.distance += math.hypot(x - robot.at[0], y - robot.at[1])
         robot.at = x, y
-        is_touching = simulation.touches(robot.name)
+        is_touching = simulation.is_touching(robot.name)
         if is_touching:
             robot.contact_steps += 1
             if not robot.is_touching:

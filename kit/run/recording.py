@@ -26,8 +26,7 @@ from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
 from kit.run.lockstep import Observer
 from kit.run.runner import Runner
-from kit.sim.services import SERVICES
-from kit.sim.simulation import Simulation, SimulationError
+from kit.sim.simulation import SERVICES, Simulation, SimulationError
 from kit.workspace import write_atomically
 from kit.world.records import World
 
@@ -47,7 +46,7 @@ class Input:
 
     tick: int
     kind: str
-    """``accept``, or one of ``kit.sim.services.SERVICES``."""
+    """``accept``, or one of ``kit.sim.simulation.SERVICES``."""
     content: tuple[Any, ...]
     """JSON-able."""
 

@@ -15,9 +15,8 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
 from kit.run.world_services import offer_world_services
-from kit.sim.plugin import Endpoint, Outgoing
-from kit.sim.services import tell
-from kit.sim.simulation import Simulation
+from kit.sim.plugin import OutgoingMessage, TopicEndpoint
+from kit.sim.simulation import Simulation, call_service
 
 
 class Runner:
@@ -38,7 +37,7 @@ class Runner:
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
         self._node = create_graph_node(graph, "flatland_server")
-        self._endpoints: dict[Endpoint, Callable[[], object]] = {}  # what destroys each again
+        self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
         offer_world_services(self._node, self)
         self._connect_devices()
@@ -72,7 +71,7 @@ class Runner:
 
         Raises SimulationError.
         """
-        tell(self.simulation, service, *arguments)
+        call_service(self.simulation, service, *arguments)
         for observer in self.observers:
             observer.on_service(service, *arguments)
         if service == "reset":
@@ -114,7 +113,7 @@ class Runner:
                 self._connect(endpoint)
         self.graph.advance(self.simulation.time_ns)
 
-    def _connect(self, endpoint: Endpoint) -> None:
+    def _connect(self, endpoint: TopicEndpoint) -> None:
         if endpoint.direction == "publish":
             publisher = self._node.create_publisher(endpoint.type, endpoint.topic, 10)
             self._publishers[endpoint.topic] = publisher.publish_without_copy
@@ -124,7 +123,7 @@ class Runner:
             subscription = self._node.create_subscription(endpoint.type, endpoint.topic, accept, 10)
             self._endpoints[endpoint] = partial(self._node.destroy_subscription, subscription)
 
-    def _disconnect(self, endpoint: Endpoint) -> None:
+    def _disconnect(self, endpoint: TopicEndpoint) -> None:
         self._endpoints.pop(endpoint)()
 
     def accept(self, topic: str, message: Any) -> None:
@@ -133,7 +132,7 @@ class Runner:
             observer.on_message(topic, message)
         self.simulation.accept(topic, message)
 
-    def _publish_all(self, messages: Iterable[Outgoing]) -> None:
+    def _publish_all(self, messages: Iterable[OutgoingMessage]) -> None:
         for outgoing in messages:
             self._publishers[outgoing.topic](outgoing.message)
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.sim.loading import load
+from kit.sim.simulation import load_world
 from kit.workspace import at_home
-from kit.world.catalogue import WORLD, Case, MapCard, find_map, map_names
+from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names
 from kit.world.records import Model, World
 
 BEACON = "beacon"
@@ -25,7 +25,7 @@ class Place:
     world: World
     robot: str | None
     """The model that drives; None in a world without models."""
-    case: Case | None = None
+    case: MapCase | None = None
     charges: Path | None = None
     """A charge file to use in place of the world's own; see ``kit.fields.layout``."""
 
@@ -59,20 +59,20 @@ class Place:
         return None if self.driven is None else self.driven.pose
 
 
-def place_on_map(card: MapCard, case: Case | None = None) -> Place:
+def place_on_map(card: MapCard, case: MapCase | None = None) -> Place:
     """A map of the catalogue, by default its first case. Raises WorldError."""
     case = case or card.cases[0]
     poses = {card.robot: case.start, BEACON: Pose(*case.target)}
     if card.partner is not None and case.partner_start is not None:
         poses[card.partner] = case.partner_start
-    world = load(card.world_file, root=card.root)
+    world = load_world(card.world_file, root=card.root)
     models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
     return Place(card.name, card.title, replace(world, models=models), card.robot, case)
 
 
 def place_in_file(file: Path, root: Path | None = None) -> Place:
     """A world file of the user's; its first model with a drive is the robot. Raises WorldError."""
-    world = load(file, root=root)
+    world = load_world(file, root=root)
     driven = _drivers(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)
     title = file.stem if file.stem != "world" else file.parent.name
@@ -93,7 +93,7 @@ def find_place(name: str, case: str | None = None, root: Path | None = None) -> 
     path = at_home(name)
     if name not in map_names():
         if path.is_dir():
-            path = path / WORLD
+            path = path / WORLD_FILE
         if path.is_file() or path.suffix in (".yaml", ".yml"):
             return place_in_file(path.absolute(), root)
     card = find_map(name)

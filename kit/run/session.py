@@ -59,9 +59,9 @@ class Session:
         self.graph = Graph() if graph is None else graph
         self.graph.log.sink = self._said
         self._looked_at: frozenset[str] = frozenset()
-        simulation = Simulation(place.world, seed=seed, step_size=step_size, wanted=self._is_wanted)
+        simulation = Simulation(place.world, seed=seed, step_size=step_size, has_subscribers=self._is_wanted)
         if watched:
-            ends = (end for name in place.partners for end in simulation.endpoints_of(name))
+            ends = (end for name in place.partners for end in simulation.model_endpoints(name))
             self._looked_at = frozenset(end.topic for end in ends)
         self.runner = Runner(simulation, self.graph)
         self.metrics = MetricsRecorder.for_scenario(place)
@@ -128,7 +128,7 @@ class Session:
 
     def command_topics(self, model: str) -> tuple[str, ...]:
         """Where a model's devices take commands, as Twists."""
-        ends = self.runner.simulation.endpoints_of(model)
+        ends = self.runner.simulation.model_endpoints(model)
         return tuple(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
 
     def _print(self, line: str) -> None:

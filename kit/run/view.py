@@ -18,7 +18,7 @@ from kit.sim.state import SimulationState
 
 if TYPE_CHECKING:
     from kit.run.session import Session
-    from kit.sim.surroundings import Outline, ScanView
+    from kit.sim.state import FootprintOutline, LatestScan
 
 SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
 """Of a robot: name and direction [rad] of the middle of each quarter."""
@@ -63,8 +63,8 @@ class _Standing:
     """The world as it stands, taken once for a view."""
 
     state: SimulationState
-    outlines: tuple[Outline, ...]
-    scans: tuple[ScanView, ...]
+    outlines: tuple[FootprintOutline, ...]
+    scans: tuple[LatestScan, ...]
 
 
 NO_BEAMS = np.empty((0, 4))
@@ -93,7 +93,7 @@ class Showing:
         standing = _Standing(
             simulation.state(),
             simulation.outlines(),
-            tuple(scan for scan in simulation.scan_views() if scan.model == robot),
+            tuple(scan for scan in simulation.latest_scans() if scan.model == robot),
         )
         driven = next((body for body in standing.state.bodies if body.model == robot), None)
         if driven is not None:
@@ -133,7 +133,7 @@ class Showing:
 
 def _bodies(view: _Standing, drivers: tuple[str, ...]) -> tuple[Body, ...]:
     """One picture body per model: its footprints, and the pose of its first body."""
-    shapes: dict[str, list[Outline]] = {}
+    shapes: dict[str, list[FootprintOutline]] = {}
     for outline in view.outlines:
         shapes.setdefault(outline.model, []).append(outline)
     order = (*drivers, *(model for model in shapes if model not in drivers))
@@ -150,7 +150,7 @@ def _bodies(view: _Standing, drivers: tuple[str, ...]) -> tuple[Body, ...]:
     )
 
 
-def _beams(scan: ScanView) -> FloatArray:
+def _beams(scan: LatestScan) -> FloatArray:
     hits = scan.hits
     return np.column_stack([np.full_like(hits, scan.pose[:2]), hits])
 
@@ -160,7 +160,7 @@ def _forward_and_turn(pose: Pose, velocity: tuple[float, float, float]) -> tuple
     return math.cos(pose.theta) * vx + math.sin(pose.theta) * vy, turn
 
 
-def _nearest(scan: ScanView) -> tuple[tuple[str, float | None], ...]:
+def _nearest(scan: LatestScan) -> tuple[tuple[str, float | None], ...]:
     angles = np.arctan2(scan.beams.sin, scan.beams.cos)
     found = []
     for side, middle in SIDES:

@@ -18,7 +18,7 @@ class Run(Protocol):
     paused: bool
 
     def call_service(self, service: str, *arguments: Any) -> None:
-        """One of ``kit.sim.services.SERVICES``. Raises SimulationError."""
+        """One of ``kit.sim.simulation.SERVICES``. Raises SimulationError."""
 
     def step_paused(self, ticks: int) -> Awaitable[None]:
         """So many ticks in spite of the pause."""

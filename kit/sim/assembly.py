@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import pymunk
 
 from kit.geometry import Pose
-from kit.sim.bodies import PhysicalBody, Rigid
+from kit.sim.bodies import PhysicalBody, RigidBody
 from kit.world.records import Body, Circle, Footprint, Joint, Model
 
-CORRECTION = 0.5**100
+ERROR_BIAS = 0.5**100
 """Share of a contact's or joint's error left after a second: half of it goes every 10 ms."""
 
 MAX_TRAVEL, MAX_ROTATION = 2.0, math.pi / 2
@@ -27,55 +27,55 @@ MAX_TRAVEL, MAX_ROTATION = 2.0, math.pi / 2
 MIN_MASS, MIN_GYRATION = 1e-15, 1e-6
 """What weighs less [kg] counts as weightless, and no mass is nearer to its centre [m]: else the solver overflows."""
 
-BOUNCY = 1
+RESTITUTION_TYPE = 1
 """pymunk's collision type of footprints with restitution."""
 
-_KINDS = {
+_BODY_TYPES = {
     "dynamic": pymunk.Body.DYNAMIC,
     "kinematic": pymunk.Body.KINEMATIC,
     "static": pymunk.Body.STATIC,
 }
 
-_STRIDE = 0.4
+_TRAVEL_SHARE = 0.4
 """A stride, as a share of the thinnest footprint: at half of it, a wall could end up behind the middle."""
 
-Group = dict[str, Pose]
+WeldedGroup = dict[str, Pose]
 """Names of bodies that move as one, and their poses in the frame of the first."""
 
 
 @dataclass(frozen=True, slots=True)
-class Assembly:
+class ModelAssembly:
     """A model as pymunk has it."""
 
     bodies: tuple[PhysicalBody, ...]
     """In the order of the file."""
-    rigids: tuple[Rigid, ...]
+    rigid_bodies: tuple[RigidBody, ...]
     constraints: tuple[pymunk.Constraint, ...]
-    apart: frozenset[frozenset[PhysicalBody]]
+    never_touching: frozenset[frozenset[PhysicalBody]]
     """Pairs of bodies whose joint keeps them from colliding."""
 
 
-def assemble(model: Model, step_size: float) -> Assembly:
+def assemble_model(model: Model, step_size: float) -> ModelAssembly:
     """Builds a model's bodies, shapes and joints, in no space yet. ``step_size`` [s] bounds speed and stiffness."""
     described = {body.name: body for body in model.bodies}
     built: dict[str, PhysicalBody] = {}
     rigids = []
-    for group in _groups(model):
+    for group in _welded_groups(model):
         members = [(described[name], offset) for name, offset in group.items()]
-        rigid, bodies = _build(model.name, members, step_size)
-        rigid.place(model.pose.compose(members[0][0].pose))
+        rigid, bodies = _build_rigid_body(model.name, members, step_size)
+        rigid.set_pose(model.pose.compose(members[0][0].pose))
         rigids.append(rigid)
         built |= {body.name: body for body in bodies}
     constraints: list[pymunk.Constraint] = []
     for joint in model.joints:
         a, b = (built[anchor.body] for anchor in joint.anchors)
-        if a.rigid is not b.rigid and not _both_fixed(a, b):
+        if a.rigid is not b.rigid and not _are_both_fixed(a, b):
             constraints += _constraints(joint, a, b, step_size)
-    return Assembly(
+    return ModelAssembly(
         bodies=tuple(built[body.name] for body in model.bodies),
-        rigids=tuple(rigids),
+        rigid_bodies=tuple(rigids),
         constraints=tuple(constraints),
-        apart=frozenset(
+        never_touching=frozenset(
             frozenset(built[anchor.body] for anchor in joint.anchors)
             for joint in model.joints
             if not joint.collide_connected
@@ -86,15 +86,15 @@ def assemble(model: Model, step_size: float) -> Assembly:
 # Which bodies move as one
 
 
-def _groups(model: Model) -> list[Group]:
+def _welded_groups(model: Model) -> list[WeldedGroup]:
     """The model's bodies, in groups that move as one. The first weld found decides where a body sits."""
     described = {body.name: body for body in model.bodies}
     welded: dict[str, list[tuple[str, Pose]]] = {name: [] for name in described}
     for joint in model.joints:
         if _is_stiff(joint, described):
-            for a, b, offset in _both_ways(joint):
+            for a, b, offset in _weld_offsets(joint):
                 welded[a].append((b, offset))
-    groups: list[Group] = []
+    groups: list[WeldedGroup] = []
     seen: set[str] = set()
     for name in described:
         if name in seen:
@@ -107,7 +107,9 @@ def _groups(model: Model) -> list[Group]:
                     group[b] = group[a].compose(offset)
                     waiting.append(b)
         seen |= group.keys()
-        groups += [{one: Pose()} for one in group] if _clashes(group, described, model.joints) else [group]
+        groups += (
+            [{one: Pose()} for one in group] if _has_overlap(group, described, model.joints) else [group]
+        )
     return groups
 
 
@@ -117,14 +119,14 @@ def _is_stiff(joint: Joint, described: dict[str, Body]) -> bool:
     return joint.kind == "weld" and joint.frequency == 0 and a.kind == b.kind == "dynamic" and same_damping
 
 
-def _both_ways(joint: Joint) -> tuple[tuple[str, str, Pose], ...]:
+def _weld_offsets(joint: Joint) -> tuple[tuple[str, str, Pose], ...]:
     """From either body of a weld to the other, and the other's pose in the first one's frame."""
     (a, (ax, ay)), (b, (bx, by)) = ((anchor.body, anchor.point) for anchor in joint.anchors)
     offset = Pose(ax, ay, joint.angle).compose(Pose(-bx, -by))
     return (a, b, offset), (b, a, offset.relative(Pose()))
 
 
-def _clashes(group: Group, described: dict[str, Body], joints: Iterable[Joint]) -> bool:
+def _has_overlap(group: WeldedGroup, described: dict[str, Body], joints: Iterable[Joint]) -> bool:
     """Whether two bodies of the group overlap and may collide."""
     apart = {
         frozenset(anchor.body for anchor in joint.anchors) for joint in joints if not joint.collide_connected
@@ -133,7 +135,7 @@ def _clashes(group: Group, described: dict[str, Body], joints: Iterable[Joint]) 
     owners: dict[pymunk.Shape, str] = {}
     for name, offset in group.items():
         for footprint in described[name].footprints:
-            shape = _shape(space.static_body, footprint, offset)
+            shape = _build_shape(space.static_body, footprint, offset)
             for overlapping in space.shape_query(shape):  # only those that its layers let it collide with
                 other = owners.get(overlapping.shape, name)
                 if other != name and frozenset((other, name)) not in apart:
@@ -146,15 +148,16 @@ def _clashes(group: Group, described: dict[str, Body], joints: Iterable[Joint]) 
 # Bodies and shapes
 
 
-def _build(
+def _build_rigid_body(
     model: str, members: list[tuple[Body, Pose]], step_size: float
-) -> tuple[Rigid, list[PhysicalBody]]:
+) -> tuple[RigidBody, list[PhysicalBody]]:
     """One rigid body of the members, at the origin."""
     first = members[0][0]
-    body = pymunk.Body(body_type=_KINDS[first.kind])
-    body.position_func = _stay
+    body = pymunk.Body(body_type=_BODY_TYPES[first.kind])
+    body.position_func = _keep_position
     shapes = [
-        [_shape(body, footprint, offset) for footprint in member.footprints] for member, offset in members
+        [_build_shape(body, footprint, offset) for footprint in member.footprints]
+        for member, offset in members
     ]
     if first.kind == "dynamic":
         masses = [
@@ -162,14 +165,16 @@ def _build(
             for (member, _), own in zip(members, shapes, strict=True)
             for footprint, shape in zip(member.footprints, own, strict=True)
         ]
-        _weigh(body, masses)
+        _set_mass(body, masses)
     solid = [f for member, _ in members for f in member.footprints if f.mask and not f.sensor]
-    rigid = Rigid(
+    rigid = RigidBody(
         body=body,
-        reach=max((_reach(shape, body.center_of_gravity) for s in shapes for shape in s), default=0.0),
-        stride=_STRIDE * min((_thickness(footprint) for footprint in solid), default=math.inf),
-        top_speed=MAX_TRAVEL / step_size,
-        top_turn=MAX_ROTATION / step_size,
+        outer_radius=max(
+            (_farthest_distance(shape, body.center_of_gravity) for s in shapes for shape in s), default=0.0
+        ),
+        max_travel=_TRAVEL_SHARE * min((_thickness(footprint) for footprint in solid), default=math.inf),
+        max_speed=MAX_TRAVEL / step_size,
+        max_turn_rate=MAX_ROTATION / step_size,
         is_static=first.kind == "static",
         linear_damping=first.linear_damping if first.kind == "dynamic" else 0.0,
         angular_damping=first.angular_damping if first.kind == "dynamic" else 0.0,
@@ -181,27 +186,27 @@ def _build(
     return rigid, bodies
 
 
-def _stay(body: pymunk.Body, dt: float) -> None:
+def _keep_position(body: pymunk.Body, dt: float) -> None:
     """In place of pymunk's position update: ``Physics.step`` moves bodies after the contacts, not before."""
 
 
-def _shape(body: pymunk.Body, footprint: Footprint, offset: Pose) -> pymunk.Shape:
+def _build_shape(body: pymunk.Body, footprint: Footprint, offset: Pose) -> pymunk.Shape:
     """One footprint of a body that sits at ``offset`` in pymunk's body."""
     form = footprint.shape
     shape: pymunk.Shape
     if isinstance(form, Circle):
-        shape = pymunk.Circle(body, form.radius, offset.point(*form.center))
+        shape = pymunk.Circle(body, form.radius, offset.transform_point(*form.center))
     else:
-        shape = pymunk.Poly(body, [offset.point(*corner) for corner in form.points])
+        shape = pymunk.Poly(body, [offset.transform_point(*corner) for corner in form.points])
     shape.sensor = footprint.sensor
     shape.filter = pymunk.ShapeFilter(categories=footprint.category, mask=footprint.mask)
-    shape.friction = mixable(footprint.friction)
+    shape.friction = friction_factor(footprint.friction)
     shape.elasticity = footprint.restitution
-    shape.collision_type = BOUNCY if footprint.restitution else 0
+    shape.collision_type = RESTITUTION_TYPE if footprint.restitution else 0
     return shape
 
 
-def _weigh(body: pymunk.Body, masses: list[tuple[pymunk.Shape, float]]) -> None:
+def _set_mass(body: pymunk.Body, masses: list[tuple[pymunk.Shape, float]]) -> None:
     """Gives the body the mass, centre of mass and moment of inertia of its shapes with their masses [kg].
 
     Without any mass it weighs 1 kg about its origin and nothing turns it, as in Box2D.
@@ -212,12 +217,12 @@ def _weigh(body: pymunk.Body, masses: list[tuple[pymunk.Shape, float]]) -> None:
         return
     x = sum(mass * shape.center_of_gravity.x for shape, mass in masses) / total
     y = sum(mass * shape.center_of_gravity.y for shape, mass in masses) / total
-    moment = sum(_moment(shape, mass, (x, y)) for shape, mass in masses)
+    moment = sum(_moment_of_inertia(shape, mass, (x, y)) for shape, mass in masses)
     body.mass, body.moment = total, max(moment, total * MIN_GYRATION**2)
     body.center_of_gravity = x, y
 
 
-def _moment(shape: pymunk.Shape, mass: float, center: tuple[float, float]) -> float:
+def _moment_of_inertia(shape: pymunk.Shape, mass: float, center: tuple[float, float]) -> float:
     """Its moment of inertia about ``center`` [kg m^2]."""
     x, y = center
     if isinstance(shape, pymunk.Circle):
@@ -226,12 +231,12 @@ def _moment(shape: pymunk.Shape, mass: float, center: tuple[float, float]) -> fl
     return pymunk.moment_for_poly(mass, shape.get_vertices(), (-x, -y))
 
 
-def mixable(friction: float) -> float:
+def friction_factor(friction: float) -> float:
     """pymunk multiplies two frictions, Box2D takes the root of the product."""
     return math.sqrt(friction)
 
 
-def _reach(shape: pymunk.Shape, center: tuple[float, float]) -> float:
+def _farthest_distance(shape: pymunk.Shape, center: tuple[float, float]) -> float:
     """Its farthest point from ``center`` [m]."""
     if isinstance(shape, pymunk.Circle):
         return math.dist(shape.offset, center) + shape.radius
@@ -255,7 +260,7 @@ def _thickness(footprint: Footprint) -> float:
 # Joints
 
 
-def _both_fixed(a: PhysicalBody, b: PhysicalBody) -> bool:
+def _are_both_fixed(a: PhysicalBody, b: PhysicalBody) -> bool:
     """A joint between two bodies that nothing can push has nothing to do."""
     return "dynamic" not in (a.description.kind, b.description.kind)
 
@@ -263,7 +268,7 @@ def _both_fixed(a: PhysicalBody, b: PhysicalBody) -> bool:
 def _constraints(joint: Joint, a: PhysicalBody, b: PhysicalBody, step_size: float) -> list[pymunk.Constraint]:
     """What holds two bodies at their anchors, and their angles where the joint says so."""
     (anchor_a, anchor_b) = (
-        body.offset.point(*anchor.point) for body, anchor in zip((a, b), joint.anchors, strict=True)
+        body.offset.transform_point(*anchor.point) for body, anchor in zip((a, b), joint.anchors, strict=True)
     )
     first, second = a.rigid.body, b.rigid.body
     twisted = a.offset.theta - b.offset.theta  # how far the angle of the rigids is from that of the bodies
@@ -276,7 +281,7 @@ def _constraints(joint: Joint, a: PhysicalBody, b: PhysicalBody, step_size: floa
     elif joint.kind == "weld":
         found.append(_spring(joint, first, second, joint.angle + twisted, step_size))
     for constraint in found:
-        constraint.error_bias = CORRECTION
+        constraint.error_bias = ERROR_BIAS
         constraint.max_bias = MAX_TRAVEL / step_size
     return found
 

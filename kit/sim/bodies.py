@@ -15,29 +15,29 @@ from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.world.records import Body
 
-Twist = tuple[float, float, float]
+BodyTwist = tuple[float, float, float]
 """Forward and to the left [m/s], turn [rad/s], in a body's own frame."""
 
 
 @dataclass(eq=False, slots=True)
-class Rigid:
+class RigidBody:
     """One pymunk body: a body of a model, or several that stiff welds make one."""
 
     body: pymunk.Body
-    reach: float
+    outer_radius: float
     """Its farthest point from the centre of mass [m]."""
-    stride: float
+    max_travel: float
     """How far it may move at once and still not pass through a wall [m]."""
-    top_speed: float
+    max_speed: float
     """Nothing commands it to be faster [m/s] ..."""
-    top_turn: float
+    max_turn_rate: float
     """... or to turn faster [rad/s]."""
     is_static: bool
     linear_damping: float
     angular_damping: float
-    command: Twist | None = None
+    commanded_twist: BodyTwist | None = None
     """What a drive asks for in the next step, of the centre of mass."""
-    held: Pose | None = None
+    held_pose: Pose | None = None
     """Where it stays during the next step, whatever pushes it."""
 
     @property
@@ -52,44 +52,44 @@ class Rigid:
         x, y = self.body.center_of_gravity
         return x, y
 
-    def place(self, pose: Pose) -> None:
+    def set_pose(self, pose: Pose) -> None:
         """Puts it there. Velocities stay."""
         self.body.angle = pose.theta
         self.body.position = pose.x, pose.y
         if self.is_static and self.body.space is not None:
             self.body.space.reindex_shapes_for_body(self.body)
 
-    def speed(self) -> float:
+    def speed_bound(self) -> float:
         """No point of it is faster in the next step [m/s], unless something hits it."""
-        if self.command is not None:
-            forward, lateral, turn = self.command
-            return math.hypot(forward, lateral) + abs(turn) * self.reach
-        return self.body.velocity.length + abs(self.body.angular_velocity) * self.reach
+        if self.commanded_twist is not None:
+            forward, lateral, turn = self.commanded_twist
+            return math.hypot(forward, lateral) + abs(turn) * self.outer_radius
+        return self.body.velocity.length + abs(self.body.angular_velocity) * self.outer_radius
 
-    def accelerate(self, dt: float) -> None:
+    def update_velocity(self, dt: float) -> None:
         """Takes on the velocity of the next ``dt``, before contacts act on it."""
         body = self.body
-        if self.command is not None:
-            body.velocity = kernels.mean_velocity(body.angle, *self.command, dt)
-            body.angular_velocity = self.command[2]
+        if self.commanded_twist is not None:
+            body.velocity = kernels.mean_velocity(body.angle, *self.commanded_twist, dt)
+            body.angular_velocity = self.commanded_twist[2]
         if self.linear_damping:
             body.velocity /= 1.0 + dt * self.linear_damping
         if self.angular_damping:
             body.angular_velocity /= 1.0 + dt * self.angular_damping
 
-    def move(self, dt: float) -> None:
+    def update_pose(self, dt: float) -> None:
         """Follows its velocity for ``dt``, after contacts acted on it; at most a stride."""
         body = self.body
-        distance = (body.velocity.length + abs(body.angular_velocity) * self.reach) * dt
-        if self.held is not None or not math.isfinite(distance):  # the solver gives up on absurd joints
-            stay = self.held or self.pose
+        distance = (body.velocity.length + abs(body.angular_velocity) * self.outer_radius) * dt
+        if self.held_pose is not None or not math.isfinite(distance):  # the solver gives up on absurd joints
+            stay = self.held_pose or self.pose
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
             pymunk.Body.update_position(body, dt)  # uses up what pymunk would correct
-            self.place(stay)
+            self.set_pose(stay)
             return
-        if distance > self.stride:
-            body.velocity *= self.stride / distance
-            body.angular_velocity *= self.stride / distance
+        if distance > self.max_travel:
+            body.velocity *= self.max_travel / distance
+            body.angular_velocity *= self.max_travel / distance
         pymunk.Body.update_position(body, dt)
 
 
@@ -99,7 +99,7 @@ class PhysicalBody:
 
     model: str
     description: Body
-    rigid: Rigid
+    rigid: RigidBody
     offset: Pose
     """Its pose in the frame of the rigid body."""
     shapes: list[pymunk.Shape] = field(default_factory=list)
@@ -128,39 +128,39 @@ class PhysicalBody:
             return
         x, y = self._from_center()
         self.rigid.body.velocity = (
-            clipped(vx + turn * y, self.rigid.top_speed),
-            clipped(vy - turn * x, self.rigid.top_speed),
+            clamp(vx + turn * y, self.rigid.max_speed),
+            clamp(vy - turn * x, self.rigid.max_speed),
         )
-        self.rigid.body.angular_velocity = clipped(turn, self.rigid.top_turn)
+        self.rigid.body.angular_velocity = clamp(turn, self.rigid.max_turn_rate)
 
     def drive(self, forward: float, lateral: float, turn: float) -> None:
         """Moves the body with this twist for one step, whatever it weighs, as far as contacts let it."""
-        forward, lateral = clipped(forward, self.rigid.top_speed), clipped(lateral, self.rigid.top_speed)
-        turn = clipped(turn, self.rigid.top_turn)
+        forward, lateral = clamp(forward, self.rigid.max_speed), clamp(lateral, self.rigid.max_speed)
+        turn = clamp(turn, self.rigid.max_turn_rate)
         x, y = self.rigid.center
         cos, sin = math.cos(self.offset.theta), math.sin(self.offset.theta)
-        self.rigid.command = (
+        self.rigid.commanded_twist = (
             cos * forward - sin * lateral - turn * (y - self.offset.y),
             sin * forward + cos * lateral + turn * (x - self.offset.x),
             turn,
         )
 
-    def place(self, pose: Pose) -> None:
+    def set_pose(self, pose: Pose) -> None:
         """Puts the body, and what is stiffly welded to it, there. Velocities stay."""
-        self.rigid.place(pose.compose(self.offset.relative(Pose())))
+        self.rigid.set_pose(pose.compose(self.offset.relative(Pose())))
 
     def hold(self, pose: Pose) -> None:
         """Puts the body there for a whole step, at rest: it passes through what is in its way."""
-        self.place(pose)
-        self.rigid.held = self.rigid.pose
+        self.set_pose(pose)
+        self.rigid.held_pose = self.rigid.pose
 
     def _from_center(self) -> tuple[float, float]:
         """The origin as seen from the centre of mass, in the world frame [m]."""
         cx, cy = self.rigid.center
         theta = self.rigid.body.angle
-        return Pose(0.0, 0.0, theta).point(self.offset.x - cx, self.offset.y - cy)
+        return Pose(0.0, 0.0, theta).transform_point(self.offset.x - cx, self.offset.y - cy)
 
 
-def clipped(value: float, limit: float) -> float:
+def clamp(value: float, limit: float) -> float:
     """``value``, or the limit that it exceeds."""
     return min(max(value, -limit), limit)

@@ -1,7 +1,7 @@
 """Where a device stands: what it is built from, and what it may ask of the simulation.
 
 A device is one file of ``kit/sim/plugins/``: a frozen record of parameters with ``build(site)``, the plugin that
-this builds, and a ``DEVICE`` that says under which type world files know it and how its parameters are read.
+this builds, and a ``PLUGIN_TYPE`` that says under which type world files know it and how its parameters are read.
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from kit.sim.bodies import PhysicalBody
-from kit.sim.clock import Clock
+from kit.sim.clock_and_noise import Clock
 from kit.sim.physics import Physics
-from kit.sim.plugin import Endpoint, Outgoing, Plugin
-from kit.sim.surroundings import Surroundings
-from kit.world.plugin_reader import ModelScope, Section, WorldScope
+from kit.sim.plugin import OutgoingMessage, Plugin, TopicEndpoint
+from kit.sim.surroundings import LaserScene
+from kit.world.plugin_reader import ModelScope, WorldScope
 from kit.world.records import Model, World
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
-class Site:
+class PluginContext:
     """A model's device and its surroundings."""
 
     name: str
@@ -29,20 +30,20 @@ class Site:
     bodies: Mapping[str, PhysicalBody]
     clock: Clock
     physics: Physics
-    surroundings: Surroundings
-    wanted: Callable[[str], bool]
+    laser_scene: LaserScene
+    has_subscribers: Callable[[str], bool]
     """Whether anybody listens to a topic."""
 
-    def publisher(self, topic: str, message_type: type[Any]) -> Publisher:
+    def publisher(self, topic: str, message_type: type[Any]) -> PluginPublisher:
         """For a topic as the model file names it: under the model's namespace, unless it starts with /."""
-        return Publisher(self.model.topic(topic), message_type, self.wanted)
+        return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers)
 
-    def subscription(self, topic: str, message_type: type[Any]) -> Endpoint:
-        return Endpoint("subscribe", self.model.topic(topic), message_type)
+    def subscription(self, topic: str, message_type: type[Any]) -> TopicEndpoint:
+        return TopicEndpoint("subscribe", self.model.topic(topic), message_type)
 
 
 @dataclass(frozen=True, slots=True)
-class WorldSite:
+class WorldPluginContext:
     """A device of the world itself."""
 
     name: str
@@ -52,55 +53,55 @@ class WorldSite:
 
 
 @dataclass(frozen=True, slots=True)
-class Publisher:
+class PluginPublisher:
     """One topic of a device, by its absolute name."""
 
     topic: str
     type: type[Any]
-    _wanted: Callable[[str], bool]
+    _has_subscribers: Callable[[str], bool]
 
     @property
-    def endpoint(self) -> Endpoint:
-        return Endpoint("publish", self.topic, self.type)
+    def endpoint(self) -> TopicEndpoint:
+        return TopicEndpoint("publish", self.topic, self.type)
 
     @property
-    def wanted(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether anybody listens."""
-        return self._wanted(self.topic)
+        return self._has_subscribers(self.topic)
 
-    def send(self, make: Callable[[], Any]) -> list[Outgoing]:
-        """The message that ``make`` makes, if anybody listens."""
-        return [Outgoing(self.topic, make())] if self._wanted(self.topic) else []
+    def publish(self, make_message: Callable[[], Any]) -> list[OutgoingMessage]:
+        """The message that ``make_message`` makes, if anybody listens."""
+        return [OutgoingMessage(self.topic, make_message())] if self._has_subscribers(self.topic) else []
 
 
-class Params(Protocol):
+class PluginParams(Protocol):
     """The parameters of a model's device."""
 
-    def build(self, site: Site) -> Plugin: ...
+    def build(self, context: PluginContext) -> Plugin: ...
 
 
-class WorldParams(Protocol):
+class WorldPluginParams(Protocol):
     """The parameters of a device of the world."""
 
-    def build(self, site: WorldSite) -> Plugin: ...
+    def build(self, context: WorldPluginContext) -> Plugin: ...
 
 
 @dataclass(frozen=True, slots=True)
-class Device:
+class PluginType:
     """A type of model plugin."""
 
     type: str
     """As model files name it."""
-    read: Callable[[Section, ModelScope], Params]
+    read_params: Callable[[Section, ModelScope], PluginParams]
     """Makes parameters of its section."""
     example: str
     """The least that a model file must say about it, for a model whose bodies and joints have plain names."""
 
 
 @dataclass(frozen=True, slots=True)
-class WorldDevice:
+class WorldPluginType:
     """A type of world plugin."""
 
     type: str
-    read: Callable[[Section, WorldScope], WorldParams]
+    read_params: Callable[[Section, WorldScope], WorldPluginParams]
     example: str

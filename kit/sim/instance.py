@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from typing import cast
 
 from kit.sim.bodies import PhysicalBody
-from kit.sim.clock import Clock
-from kit.sim.context import Params, Site, WorldParams, WorldSite
-from kit.sim.noise import stream_of
+from kit.sim.clock_and_noise import Clock, stream_key
+from kit.sim.context import PluginContext, PluginParams, WorldPluginContext, WorldPluginParams
 from kit.sim.physics import Physics
 from kit.sim.plugin import Plugin
-from kit.sim.surroundings import Surroundings
+from kit.sim.surroundings import LaserScene
 from kit.world.records import Model, PluginSpec, World
 
 
 @dataclass(frozen=True, slots=True)
-class StandingModel:
+class ModelInstance:
     """A model in the simulation."""
 
     model: Model
@@ -25,30 +24,30 @@ class StandingModel:
     plugins: tuple[Plugin, ...]
 
 
-class Stage:
+class WorldInstance:
     """One run of a world, from its beginning."""
 
     def __init__(self, world: World, seed: int, step_size: float, wanted: Callable[[str], bool]) -> None:
         self.clock = Clock(step_size)
         self.physics = Physics(world.velocity_iterations, step_size)
-        self.surroundings = Surroundings(self.physics)
-        self.models: dict[str, StandingModel] = {}
+        self.laser_scene = LaserScene(self.physics)
+        self.models: dict[str, ModelInstance] = {}
         self.plugins: tuple[Plugin, ...] = ()
         """In the order in which they are called: model by model, then those of the world."""
         self._world_plugins: list[Plugin] = []
         self._seed = seed
-        self._wanted = wanted
+        self._has_subscribers = wanted
         for layer in world.layers:
             if layer.walls is not None:
                 self.physics.add_wall(layer.name, layer.bits, layer.walls.segments)
         for model in world.models:
             self.add_model(model)
         for spec in world.plugins:
-            site = WorldSite(spec.name, world, self.clock, self.physics)
-            plugin = cast(WorldParams, _read(spec)).build(site)
-            plugin.reset(stream_of(seed, spec.name))
+            context = WorldPluginContext(spec.name, world, self.clock, self.physics)
+            plugin = cast(WorldPluginParams, _params_of(spec)).build(context)
+            plugin.reset(stream_key(seed, spec.name))
             self._world_plugins.append(plugin)
-        self._line_up()
+        self._index_plugins()
 
     def add_model(self, model: Model) -> None:
         """Puts a model and its devices on the stage."""
@@ -56,38 +55,42 @@ class Stage:
         by_name = {body.name: body for body in bodies}
         plugins = []
         for spec in model.plugins:
-            site = Site(spec.name, model, by_name, self.clock, self.physics, self.surroundings, self._wanted)
-            plugin = cast(Params, _read(spec)).build(site)
-            plugin.reset(stream_of(self._seed, model.name, spec.name))
+            context = PluginContext(
+                spec.name, model, by_name, self.clock, self.physics, self.laser_scene, self._has_subscribers
+            )
+            plugin = cast(PluginParams, _params_of(spec)).build(context)
+            plugin.reset(stream_key(self._seed, model.name, spec.name))
             plugins.append(plugin)
-        self.models[model.name] = StandingModel(model, bodies, tuple(plugins))
-        self._line_up()
+        self.models[model.name] = ModelInstance(model, bodies, tuple(plugins))
+        self._index_plugins()
 
     def remove_model(self, name: str) -> None:
         """KeyError if it is not there."""
         del self.models[name]
         self.physics.remove_model(name)
-        self.surroundings.forget(name)
-        self._line_up()
+        self.laser_scene.forget_model(name)
+        self._index_plugins()
 
-    def _line_up(self) -> None:
+    def _index_plugins(self) -> None:
         """Who is called in each phase of a step, and by which topics."""
-        of_models = [plugin for standing in self.models.values() for plugin in standing.plugins]
-        self.plugins = (*of_models, *self._world_plugins)
-        self.before = tuple(plugin for plugin in self.plugins if _overrides(plugin, "before_step"))
-        self.after = tuple(plugin for plugin in self.plugins if _overrides(plugin, "after_step"))
-        self.listeners: dict[str, list[Plugin]] = {}
+        model_plugins = [plugin for standing in self.models.values() for plugin in standing.plugins]
+        self.plugins = (*model_plugins, *self._world_plugins)
+        self.before_step_plugins = tuple(
+            plugin for plugin in self.plugins if _overrides(plugin, "before_step")
+        )
+        self.after_step_plugins = tuple(plugin for plugin in self.plugins if _overrides(plugin, "after_step"))
+        self.subscribers: dict[str, list[Plugin]] = {}
         for plugin in self.plugins:
             for endpoint in plugin.endpoints:
                 if endpoint.direction == "subscribe":
-                    self.listeners.setdefault(endpoint.topic, []).append(plugin)
+                    self.subscribers.setdefault(endpoint.topic, []).append(plugin)
 
 
-def _read(spec: PluginSpec) -> object:
+def _params_of(spec: PluginSpec) -> object:
     """The parameters of a plugin, as its device read them."""
     if not hasattr(spec.params, "build"):
         raise TypeError(
-            f"{spec.place}: nobody has read this plugin; load the world with kit.sim.loading.load"
+            f"{spec.location}: nobody has read this plugin; load the world with kit.sim.simulation.load_world"
         )
     return spec.params
 

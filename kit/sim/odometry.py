@@ -15,21 +15,28 @@ from kit.kernels import kernels
 from kit.msg import geometry_msgs, nav_msgs
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.bodies import PhysicalBody, Twist
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Publisher, Site
-from kit.sim.keys import read_rate, read_topic, read_variances
-from kit.sim.messages import TF_TOPIC, pose_message, transform, transforms, twist_message
-from kit.sim.noise import Noise, stream_of
-from kit.sim.plugin import Outgoing
-from kit.world.plugin_reader import Section
+from kit.sim.bodies import BodyTwist, PhysicalBody
+from kit.sim.clock_and_noise import RandomStream, UpdateTimer, stream_key
+from kit.sim.context import PluginContext, PluginPublisher
+from kit.sim.plugin import OutgoingMessage
+from kit.sim.ros_conventions import (
+    TF_TOPIC,
+    pose_message,
+    read_rate,
+    read_topic,
+    read_variances,
+    tf_message,
+    transform_message,
+    twist_message,
+)
+from kit.world.yaml_section import Section
 
 Covariances = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Of pose and twist, (36,) each."""
 
-_EXACT: Covariances = np.zeros(36), np.zeros(36)
+_NO_COVARIANCE: Covariances = np.zeros(36), np.zeros(36)
 
-MODES = MappingProxyType({"ideal": False, "encoders": True})
+ENCODER_MODES = MappingProxyType({"ideal": False, "encoders": True})
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +59,7 @@ class OdometryParams:
     pose_covariance: tuple[float, ...]
     """36 numbers, row by row."""
     twist_covariance: tuple[float, ...]
-    encoders: bool
+    use_encoders: bool
     wheel_separation: float
     """[m]"""
     wheel_error: float
@@ -61,7 +68,7 @@ class OdometryParams:
     """Standard deviation of the way a wheel seems to have gone, in m per root of a metre."""
 
 
-def read_odometry(section: Section) -> OdometryParams:
+def read_odometry_params(section: Section) -> OdometryParams:
     odom_frame = section.name("odom_frame_id", "odom")
     pose_noise = read_variances(section, "odom_pose_noise")
     twist_noise = read_variances(section, "odom_twist_noise")
@@ -77,16 +84,18 @@ def read_odometry(section: Section) -> OdometryParams:
         publish_tf=section.flag("enable_odom_tf_pub", True),
         pose_noise=pose_noise,
         twist_noise=twist_noise,
-        pose_covariance=section.numbers("odom_pose_covariance", _on_diagonal(pose_noise), length=36),
-        twist_covariance=section.numbers("odom_twist_covariance", _on_diagonal(twist_noise), length=36),
-        encoders=section.choice("odometry", MODES, "ideal"),
+        pose_covariance=section.numbers("odom_pose_covariance", _diagonal_covariance(pose_noise), length=36),
+        twist_covariance=section.numbers(
+            "odom_twist_covariance", _diagonal_covariance(twist_noise), length=36
+        ),
+        use_encoders=section.choice("odometry", ENCODER_MODES, "ideal"),
         wheel_separation=section.number("wheel_separation", 0.145, above=0),
         wheel_error=section.number("wheel_error", 0.005, minimum=0),
         wheel_slip=section.number("wheel_slip", 0.002, minimum=0),
     )
 
 
-def _on_diagonal(variances: Sequence[float]) -> tuple[float, ...]:
+def _diagonal_covariance(variances: Sequence[float]) -> tuple[float, ...]:
     """6 x 6, in ROS's order x, y, z, roll, pitch, yaw."""
     x, y, yaw = variances
     return tuple(float(v) for v in np.diag([x, y, 0.0, 0.0, 0.0, yaw]).ravel())
@@ -105,20 +114,22 @@ class Odometry:
     gives them in the world frame, against the definition of nav_msgs/Odometry.
     """
 
-    def __init__(self, params: OdometryParams, site: Site, body: PhysicalBody, ahead: float = 0.0) -> None:
-        """``ahead``: how far the body's origin lies before the axle of the two wheels [m]."""
+    def __init__(
+        self, params: OdometryParams, context: PluginContext, body: PhysicalBody, origin_offset: float = 0.0
+    ) -> None:
+        """``origin_offset``: how far the body's origin lies before the axle of the two wheels [m]."""
         self._params = params
         self._body = body
-        self._ahead = ahead
-        self._clock = site.clock
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._base_frame = site.model.frame(body.name)
-        self._odom_frame = site.model.frame(params.odom_frame)
-        self._truth_frame = site.model.frame(params.ground_truth_frame)
-        self._odom = site.publisher(params.odom_topic, nav_msgs.Odometry)
-        self._truth = site.publisher(params.ground_truth_topic, nav_msgs.Odometry)
-        self._twist = site.publisher(params.twist_topic, geometry_msgs.TwistStamped)
-        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self._origin_offset = origin_offset
+        self._clock = context.clock
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._base_frame = context.model.frame(body.name)
+        self._odom_frame = context.model.frame(params.odom_frame)
+        self._truth_frame = context.model.frame(params.ground_truth_frame)
+        self._odom = context.publisher(params.odom_topic, nav_msgs.Odometry)
+        self._truth = context.publisher(params.ground_truth_topic, nav_msgs.Odometry)
+        self._twist = context.publisher(params.twist_topic, geometry_msgs.TwistStamped)
+        self._tf = context.publisher(TF_TOPIC, TFMessage)
         enabled = {
             self._odom: params.publish_odom,
             self._truth: params.publish_odom,
@@ -130,59 +141,69 @@ class Odometry:
         self.endpoints = [publisher.endpoint for publisher in self._enabled]
 
     def reset(self, seed: int) -> None:
-        self._noise = Noise(seed)
-        wheels = Noise(stream_of(seed, "wheel radius"))
+        self._noise_stream = RandomStream(seed)
+        wheels = RandomStream(stream_key(seed, "wheel radius"))
         self._wheel_errors = [wheels.normal(side, self._params.wheel_error) for side in (0, 1)]
-        self._slips = Noise(stream_of(seed, "wheel slip"))
-        self._counted = self._body.pose
+        self._slip_stream = RandomStream(stream_key(seed, "wheel slip"))
+        self._encoder_pose = self._body.pose
         """Where the encoders believe the body is."""
 
-    def step(self, twist: Twist, dt: float) -> list[Outgoing]:
+    def step(self, twist: BodyTwist, dt: float) -> list[OutgoingMessage]:
         """What is to be said now, before the body moves with ``twist`` for ``dt``."""
-        sent = self._report(twist) if self._timer.due() else []
-        if self._params.encoders:
-            self._count(twist, dt)
+        sent = self._publish(twist) if self._timer.is_due() else []
+        if self._params.use_encoders:
+            self._update_encoder_pose(twist, dt)
         return sent
 
-    def _count(self, twist: Twist, dt: float) -> None:
+    def _update_encoder_pose(self, twist: BodyTwist, dt: float) -> None:
         """Follows the motion as the encoders see it."""
         half = self._params.wheel_separation / 2
         left, right = (
-            self._measured(side, (twist[0] - twist[2] * offset) * dt)
+            self._encoder_distance(side, (twist[0] - twist[2] * offset) * dt)
             for side, offset in enumerate((half, -half))
         )
         forward, turn = (left + right) / 2 / dt, (right - left) / (2 * half) / dt
-        self._counted = Pose(*kernels.twist_step(*self._counted, forward, turn * self._ahead, turn, dt))
+        self._encoder_pose = Pose(
+            *kernels.twist_step(*self._encoder_pose, forward, turn * self._origin_offset, turn, dt)
+        )
 
-    def _measured(self, side: int, way: float) -> float:
+    def _encoder_distance(self, wheel: int, distance: float) -> float:
         """The way [m] that a wheel went, by its encoder."""
-        slip = self._slips.normal(2 * self._clock.tick + side, self._params.wheel_slip)
-        return way * (1.0 + self._wheel_errors[side]) + slip * math.sqrt(abs(way))
+        slip = self._slip_stream.normal(2 * self._clock.tick + wheel, self._params.wheel_slip)
+        return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 
-    def _report(self, twist: Twist) -> list[Outgoing]:
+    def _publish(self, twist: BodyTwist) -> list[OutgoingMessage]:
         true = self._body.pose
-        pose = self._noisy(0, self._counted if self._params.encoders else true, self._params.pose_noise)
-        noisy_twist = self._noisy(3, twist, self._params.twist_noise)
+        pose = self._with_noise(
+            0, self._encoder_pose if self._params.use_encoders else true, self._params.pose_noise
+        )
+        noisy_twist = self._with_noise(3, twist, self._params.twist_noise)
         header = Header(stamp=self._clock.stamp, frame_id=self._base_frame)
-        makers: dict[Publisher, Callable[[], object]] = {
-            self._odom: lambda: self._message(self._odom_frame, Pose(*pose), noisy_twist, self._covariances),
-            self._truth: lambda: self._message(self._truth_frame, true, twist, _EXACT),
+        makers: dict[PluginPublisher, Callable[[], object]] = {
+            self._odom: lambda: self._odometry_message(
+                self._odom_frame, Pose(*pose), noisy_twist, self._covariances
+            ),
+            self._truth: lambda: self._odometry_message(self._truth_frame, true, twist, _NO_COVARIANCE),
             self._twist: lambda: geometry_msgs.TwistStamped(header=header, twist=twist_message(*noisy_twist)),
-            self._tf: lambda: transforms(
-                transform(self._clock.stamp, self._odom_frame, self._base_frame, Pose(*pose))
+            self._tf: lambda: tf_message(
+                transform_message(self._clock.stamp, self._odom_frame, self._base_frame, Pose(*pose))
             ),
         }
-        return [sent for publisher in self._enabled for sent in publisher.send(makers[publisher])]
+        return [sent for publisher in self._enabled for sent in publisher.publish(makers[publisher])]
 
-    def _noisy(self, first: int, values: Twist | Pose, variances: Sequence[float]) -> Twist:
-        """Three values with normal noise; ``first`` numbers them within a step."""
+    def _with_noise(
+        self, first_index: int, values: BodyTwist | Pose, variances: Sequence[float]
+    ) -> BodyTwist:
+        """Three values with normal noise; ``first_index`` numbers them within a step."""
         a, b, c = (
-            value + self._noise.normal(6 * self._clock.tick + first + i, math.sqrt(variance))
+            value + self._noise_stream.normal(6 * self._clock.tick + first_index + i, math.sqrt(variance))
             for i, (value, variance) in enumerate(zip(values, variances, strict=True))
         )
         return a, b, c
 
-    def _message(self, frame: str, pose: Pose, twist: Twist, covariances: Covariances) -> nav_msgs.Odometry:
+    def _odometry_message(
+        self, frame: str, pose: Pose, twist: BodyTwist, covariances: Covariances
+    ) -> nav_msgs.Odometry:
         of_pose, of_twist = covariances
         return nav_msgs.Odometry(
             header=Header(stamp=self._clock.stamp, frame_id=frame),

@@ -10,16 +10,16 @@ import pymunk
 from numpy.typing import NDArray
 
 from kit.geometry import Pose
-from kit.sim.assembly import BOUNCY, CORRECTION, Assembly, assemble, mixable
-from kit.sim.bodies import PhysicalBody, Rigid
-from kit.sim.contacts import Contacts, bounce
+from kit.sim.assembly import ERROR_BIAS, RESTITUTION_TYPE, ModelAssembly, assemble_model, friction_factor
+from kit.sim.bodies import PhysicalBody, RigidBody
+from kit.sim.contacts import ContactTracker, apply_restitution
 from kit.sim.state import Contact
 from kit.world.records import Model
 
 WALL_FRICTION = 0.2
 """Box2D's default, which Flatland leaves to its walls."""
 
-SLOP = 0.001
+CONTACT_SLOP = 0.001
 """How deep things that touch may overlap for good [m]: without any, a contact would come and go."""
 
 MAX_SUBSTEPS = 250
@@ -27,7 +27,7 @@ MAX_SUBSTEPS = 250
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wall:
+class WallBody:
     """The wall segments of one layer, in one static body."""
 
     layer: str
@@ -43,59 +43,59 @@ class Physics:
 
     def __init__(self, iterations: int, step_size: float) -> None:
         """``iterations``: of the solver, per step; pymunk has none of its own for positions."""
-        self.walls: list[Wall] = []
+        self.walls: list[WallBody] = []
         self.bodies: list[PhysicalBody] = []
         """In load order: model by model, body by body."""
-        self.version = 0
+        self.poses_version = 0
         """Counts every change of a pose."""
-        self.cast = 0
+        self.shapes_version = 0
         """Counts every change of who is there."""
         self._step_size = step_size
         self._substep = step_size
         self._space = pymunk.Space()
         self._space.iterations = iterations
-        self._space.collision_slop = SLOP
-        self._space.collision_bias = CORRECTION
-        self._space.on_collision(BOUNCY, None, pre_solve=bounce)
-        self._touching = Contacts(self._space)
+        self._space.collision_slop = CONTACT_SLOP
+        self._space.collision_bias = ERROR_BIAS
+        self._space.on_collision(RESTITUTION_TYPE, None, pre_solve=apply_restitution)
+        self._contact_tracker = ContactTracker(self._space)
         self._contacts: tuple[int, tuple[Contact, ...]] = (0, ())
         """Those at the version given first."""
-        self._assemblies: dict[str, Assembly] = {}
-        self._moving: list[Rigid] = []
+        self._assemblies: dict[str, ModelAssembly] = {}
+        self._moving: list[RigidBody] = []
 
     # Who is there
 
-    def add_wall(self, layer: str, bits: int, ends: NDArray[np.float64]) -> Wall:
+    def add_wall(self, layer: str, bits: int, ends: NDArray[np.float64]) -> WallBody:
         """Adds segments (n, 4) ``x1 y1 x2 y2`` in the world [m], of zero thickness and two-sided."""
         body = pymunk.Body(body_type=pymunk.Body.STATIC)
         segments = tuple(pymunk.Segment(body, (x1, y1), (x2, y2), 0.0) for x1, y1, x2, y2 in ends.tolist())
         of_layer = pymunk.ShapeFilter(categories=bits, mask=bits)
         for segment in segments:
             segment.filter = of_layer
-            segment.friction = mixable(WALL_FRICTION)
+            segment.friction = friction_factor(WALL_FRICTION)
         self._space.add(body, *segments)
-        self._recast()
-        self._touching.add_wall(layer, self.cast, segments)
-        wall = Wall(layer, bits, ends, segments)
+        self._shapes_changed()
+        self._contact_tracker.add_wall(layer, self.shapes_version, segments)
+        wall = WallBody(layer, bits, ends, segments)
         self.walls.append(wall)
         return wall
 
-    def remove_wall(self, wall: Wall) -> None:
-        self._touching.remove(wall.segments)
+    def remove_wall(self, wall: WallBody) -> None:
+        self._contact_tracker.remove(wall.segments)
         self._space.remove(*wall.segments)
         self.walls.remove(wall)
-        self._recast()
+        self._shapes_changed()
 
     def add_model(self, model: Model) -> tuple[PhysicalBody, ...]:
         """Adds a model's bodies, at the model's pose, at rest."""
-        assembly = assemble(model, self._step_size)
-        for rigid in assembly.rigids:
+        assembly = assemble_model(model, self._step_size)
+        for rigid in assembly.rigid_bodies:
             self._space.add(rigid.body, *rigid.body.shapes)
         self._space.add(*assembly.constraints)
         for body in assembly.bodies:
-            self._recast()
-            self._touching.add_body(body, self.cast)
-        self._touching.keep_apart(assembly.apart)
+            self._shapes_changed()
+            self._contact_tracker.add_body(body, self.shapes_version)
+        self._contact_tracker.exclude_pairs(assembly.never_touching)
         self._assemblies[model.name] = assembly
         self._list_bodies()
         return assembly.bodies
@@ -103,21 +103,21 @@ class Physics:
     def remove_model(self, name: str) -> None:
         assembly = self._assemblies.pop(name)
         self._space.remove(*assembly.constraints)
-        for rigid in assembly.rigids:
+        for rigid in assembly.rigid_bodies:
             shapes = tuple(rigid.body.shapes)
-            self._touching.remove(shapes)
+            self._contact_tracker.remove(shapes)
             self._space.remove(rigid.body, *shapes)
         self._list_bodies()
-        self._recast()
+        self._shapes_changed()
 
-    def _recast(self) -> None:
-        self.cast += 1
-        self.version += 1
+    def _shapes_changed(self) -> None:
+        self.shapes_version += 1
+        self.poses_version += 1
 
     def _list_bodies(self) -> None:
         assemblies = self._assemblies.values()
         self.bodies = [body for assembly in assemblies for body in assembly.bodies]
-        self._moving = [rigid for a in assemblies for rigid in a.rigids if not rigid.is_static]
+        self._moving = [rigid for a in assemblies for rigid in a.rigid_bodies if not rigid.is_static]
 
     # The step
 
@@ -128,47 +128,49 @@ class Physics:
         body through a wall, and act one step late. So its bodies stay put in ``Space.step`` and move after it. A
         fast body makes the step fall into shorter ones, in each of which nothing goes farther than its stride.
         """
-        count = max((self._parts(rigid) for rigid in self._moving), default=1)
+        count = max((self._substep_count(rigid) for rigid in self._moving), default=1)
         self._substep = self._step_size / count
         for _ in range(count):
             for rigid in self._moving:
-                rigid.accelerate(self._substep)
+                rigid.update_velocity(self._substep)
             self._space.step(self._substep)
             for rigid in self._moving:
-                rigid.move(self._substep)
+                rigid.update_pose(self._substep)
         for rigid in self._moving:
-            rigid.command = rigid.held = None
-        self.version += 1
+            rigid.commanded_twist = rigid.held_pose = None
+        self.poses_version += 1
 
-    def _parts(self, rigid: Rigid) -> int:
+    def _substep_count(self, rigid: RigidBody) -> int:
         """Into how many parts a step must fall for this body."""
-        distance = rigid.speed() * self._step_size
-        return 1 if distance <= rigid.stride else min(MAX_SUBSTEPS, math.ceil(distance / rigid.stride))
+        distance = rigid.speed_bound() * self._step_size
+        return (
+            1 if distance <= rigid.max_travel else min(MAX_SUBSTEPS, math.ceil(distance / rigid.max_travel))
+        )
 
     def hold(self, body: PhysicalBody, pose: Pose) -> None:
         """Puts a body, and what is stiffly welded to it, there for a step, whatever is in its way."""
         body.hold(pose)
-        self.version += 1
+        self.poses_version += 1
 
     def move_model(self, name: str, pose: Pose) -> None:
         """Puts the first body of a model there, and the others around it as they were. Contacts are forgotten."""
         assembly = self._assemblies[name]
         start = assembly.bodies[0].pose
-        for rigid in assembly.rigids:
-            rigid.place(pose.compose(start.relative(rigid.pose)))
+        for rigid in assembly.rigid_bodies:
+            rigid.set_pose(pose.compose(start.relative(rigid.pose)))
             shapes = tuple(rigid.body.shapes)  # taken out and put back, they touch nothing
             self._space.remove(*shapes)
             self._space.add(*shapes)
-        self.version += 1
+        self.poses_version += 1
 
     # What touches
 
     def is_touching(self, body: PhysicalBody) -> bool:
         """Whether the body touches anything, or one of its sensor footprints overlaps anything."""
-        return self._touching.touch(body)
+        return self._contact_tracker.is_touching(body)
 
     def contacts(self) -> tuple[Contact, ...]:
         """All pairs of footprints, and of footprints and wall segments, that touched in the last step."""
-        if self._contacts[0] != self.version:
-            self._contacts = self.version, self._touching.found(self._substep)
+        if self._contacts[0] != self.poses_version:
+            self._contacts = self.poses_version, self._contact_tracker.contacts(self._substep)
         return self._contacts[1]

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 
 @dataclass(frozen=True, slots=True)
-class Endpoint:
+class TopicEndpoint:
     """A topic that a device publishes or subscribes, by its absolute name, and its message class."""
 
     direction: Literal["publish", "subscribe"]
@@ -21,7 +21,7 @@ class Endpoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Outgoing:
+class OutgoingMessage:
     """A message on its way from a device to a topic."""
 
     topic: str
@@ -31,7 +31,7 @@ class Outgoing:
 class Plugin:
     """One device of one model (or of the world). The simulation calls it; these defaults do nothing."""
 
-    endpoints: Sequence[Endpoint] = ()
+    endpoints: Sequence[TopicEndpoint] = ()
 
     def reset(self, seed: int) -> None:
         """Back to how it was when built, with noise that depends on ``seed`` alone."""
@@ -42,10 +42,10 @@ class Plugin:
     def accept(self, topic: str, message: Any) -> None:
         """Takes a message that arrived on one of its subscribed topics."""
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         """Called before the physics step: drives set velocities; lasers look at the world as it is now."""
         return ()
 
-    def after_step(self, dt: float) -> Iterable[Outgoing]:
+    def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
         """Called after the physics step and the advance of the clock: bumpers report what touched."""
         return ()

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kit.geometry import Pose
+from kit.kernels.arrays import Beams
+from kit.world.records import Color
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +60,40 @@ class SimulationState:
             if state.model == model and body in (None, state.body):
                 return state.pose
         raise KeyError(model if body is None else f"{model}/{body}")
+
+
+@dataclass(frozen=True, slots=True)
+class FootprintOutline:
+    """One footprint as it lies in the world."""
+
+    model: str
+    body: str
+    color: Color
+    points: tuple[tuple[float, float], ...]
+    """The corners of a polygon [m]; the centre of a circle, then the point of its rim ahead of the body."""
+    radius: float
+    """[m], 0 for a polygon."""
+    sensor: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LatestScan:
+    """What a laser saw when it last looked."""
+
+    model: str
+    plugin: str
+    pose: Pose
+    """The sensor's, in the world."""
+    beams: Beams
+    """The directions of its rays, in its own frame."""
+    ranges: NDArray[np.float32]
+    """(rays,) [m], noise included, NaN where nothing is in range."""
+
+    @property
+    def hits(self) -> NDArray[np.float64]:
+        """(hits, 2) ``x y`` in the world [m]."""
+        seen = ~np.isnan(self.ranges)
+        ranges, cos, sin = self.ranges[seen], self.beams.cos[seen], self.beams.sin[seen]
+        turn = np.exp(1j * self.pose.theta)
+        ends = ranges * (cos + 1j * sin) * turn + complex(self.pose.x, self.pose.y)
+        return np.column_stack([ends.real, ends.imag])

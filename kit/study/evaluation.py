@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.school.report.chapters.setting import Setting
 from kit.school.report.class_data import ClassData
 from kit.school.report.class_report import set_up
@@ -115,7 +115,7 @@ def _divisions(setting: Setting) -> Grid:
     return grid
 
 
-def _spread(setting: Setting, measures: Sequence[Floats]) -> Grid:
+def _spread(setting: Setting, measures: Sequence[Float64Array]) -> Grid:
     """M and SD of each group, a column for each measure."""
     grid: Grid = {}
     for group in setting.groups:
@@ -160,7 +160,7 @@ def _text(setting: Setting) -> Grid:
     of = {"prior": _mean(prior), "gained": _mean(gained)}
     of |= {"difficulty": _mean(hard), "explanation": _mean(told)}
     assert setting.score is not None
-    rows: dict[str, Floats] = {
+    rows: dict[str, Float64Array] = {
         "prior, Robotics": prior["robotics"],
         "prior, ROS 1": prior["ros1"],
         "prior, ROS 2": prior["ros2"],
@@ -175,13 +175,13 @@ def _text(setting: Setting) -> Grid:
     return {name: (found.mean, found.sd) for name, values in rows.items() for found in [summary(values)]}
 
 
-def _by_topic(measures: Sequence[Measure]) -> dict[str, Floats]:
+def _by_topic(measures: Sequence[Measure]) -> dict[str, Float64Array]:
     return {each.id: each.values for each in measures}
 
 
-def _mean(measures: Mapping[str, Floats]) -> Floats:
+def _mean(measures: Mapping[str, Float64Array]) -> Float64Array:
     """Each subject's mean over topics; nobody left one of these blank."""
-    mean: Floats = np.stack(list(measures.values())).mean(axis=0)
+    mean: Float64Array = np.stack(list(measures.values())).mean(axis=0)
     return mean
 
 

@@ -9,14 +9,15 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
+from kit.plain_text import quoted
 from kit.school.quiz.answers import Outcome
 from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
 from kit.school.survey.questions import HIGHEST, LOWEST, Phase, Purpose, Question
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 FILE: Final = Path(__file__).with_name("evaluation.yaml")
@@ -70,8 +71,8 @@ class Study:
 
 def read_study(file: Path = FILE) -> Study:
     """Raises WorldError with all mistakes of the file."""
-    problems = Problems()
-    section = Documents(Enclosure.around(file), {}, problems).section(file, Place(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     subjects = section.integer("subjects", minimum=2)
@@ -89,7 +90,7 @@ def read_study(file: Path = FILE) -> Study:
 
 def _ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
     questions: list[Question] = []
-    values: dict[tuple[Phase, str], Floats] = {}
+    values: dict[tuple[Phase, str], Float64Array] = {}
     for section in sections:
         purpose = section.choice("purpose", _PURPOSES) or Purpose.WORDS
         if not section.flag("counted", True):

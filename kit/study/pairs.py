@@ -234,7 +234,7 @@ class _Log(Observer):
         )
 
     def _beside(self, simulation: Simulation, left: Pose, right: Pose) -> tuple[bool, bool, float]:
-        views = {view.model: view.ranges for view in simulation.scan_views()}
+        views = {view.model: view.ranges for view in simulation.latest_scans()}
         rays = [
             views[name][list(which)]
             for name, which in zip(self._names, adjacency.SIDE_RAYS, strict=True)

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
+from kit.plain_text import quoted, suggestion
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-CARD = "about.yaml"
-WORLD = "world.yaml"
+CARD_FILE = "about.yaml"
+WORLD_FILE = "world.yaml"
 
 
 class UnknownMap(LookupError):
@@ -22,7 +23,7 @@ class UnknownMap(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class MapCase:
     """A task on a map: drive from ``start`` to within ``target_radius`` of ``target``. In metres and radians."""
 
     name: str
@@ -32,7 +33,7 @@ class Case:
     start_shift: tuple[float, float]
     """How far the start may be moved at random, to either side, along x and y."""
     target_shift: tuple[float, float]
-    any_heading: bool
+    is_heading_random: bool
     """Whether the start's heading may be any."""
     group: str
     """Cases that results are given for together; may be empty."""
@@ -54,7 +55,7 @@ class MapCard:
     """The model of the world that drives."""
     partner: str | None
     """The second model, where two drive as one."""
-    cases: tuple[Case, ...]
+    cases: tuple[MapCase, ...]
 
     @property
     def root(self) -> Path:
@@ -71,7 +72,7 @@ def maps_folder() -> Path:
     raise FileNotFoundError(f"the maps are missing: neither in {package / 'data'} nor beside {package}")
 
 
-def root_of(world_file: Path) -> Path | None:
+def allowed_root_of(world_file: Path) -> Path | None:
     """The folder that a world file of the catalogue may read; None for any other file, which gets its own."""
     try:
         folder = maps_folder()
@@ -98,46 +99,46 @@ def find_map(name: str, folder: Path | None = None) -> MapCard:
 def map_names(folder: Path | None = None) -> tuple[str, ...]:
     """The names of all maps, without reading them: every folder with a card is one."""
     folder = maps_folder() if folder is None else folder
-    return tuple(sorted(card.parent.name for card in folder.glob(f"*/{CARD}")))
+    return tuple(sorted(card.parent.name for card in folder.glob(f"*/{CARD_FILE}")))
 
 
 def _read_card(folder: Path) -> MapCard:
-    problems = Problems()
-    file = folder / CARD
-    section = Documents(Enclosure.of(folder), {}, problems).section(file, Place(file))
-    card = None if section is None else _card(section, folder)
+    problems = ProblemCollector()
+    file = folder / CARD_FILE
+    section = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems).section(file, SourceLocation(file))
+    card = None if section is None else _card_from(section, folder)
     problems.raise_if_any()
     assert card is not None  # None is noted as a problem
     return card
 
 
-def _card(section: Section, folder: Path) -> MapCard:
+def _card_from(section: Section, folder: Path) -> MapCard:
     card = MapCard(
         name=folder.name,
         title=section.name("title"),
         summary=section.name("summary"),
         source=section.text("source"),
         folder=folder,
-        world_file=folder / WORLD,
+        world_file=folder / WORLD_FILE,
         robot=section.name("robot", "serp"),
         partner=section.name("partner") if section.has("partner") else None,
-        cases=tuple(_cases(section.sections("cases", at_least=1))),
+        cases=tuple(_cases_from(section.sections("cases", at_least=1))),
     )
     section.finish()
     return card
 
 
-def _cases(sections: tuple[Section, ...]) -> Iterator[Case]:
+def _cases_from(sections: tuple[Section, ...]) -> Iterator[MapCase]:
     names: set[str] = set()
     for section in sections:
-        case = Case(
+        case = MapCase(
             name=section.name("name"),
             start=section.pose("start"),
             target=section.point("target"),
             target_radius=section.number("target_radius", 0.2, above=0),
             start_shift=section.point("start_shift", (0.0, 0.0)),
             target_shift=section.point("target_shift", (0.0, 0.0)),
-            any_heading=section.flag("any_heading", False),
+            is_heading_random=section.flag("any_heading", False),
             group=section.text("group", ""),
             partner_start=section.pose("partner_start") if section.has("partner_start") else None,
         )

@@ -15,40 +15,27 @@ from itertools import combinations
 from typing import NamedTuple
 
 from kit.geometry import Pose
-from kit.world.records import ALL_LAYERS, Circle, Footprint, Layer, Model, Sight, World
-
-__all__ = [
-    "Cause",
-    "Laser",
-    "Seeing",
-    "Sight",
-    "Surface",
-    "Thing",
-    "Touch",
-    "Touching",
-    "Verdict",
-    "contains",
-]
+from kit.world.records import ALL_LAYERS, Circle, Footprint, LaserMount, Layer, Model, World
 
 
-class Surface(NamedTuple):
+class CollisionFilter(NamedTuple):
     """What matters of a footprint, or of walls, for touching and seeing."""
 
     category: int
     mask: int
-    sensor: bool
+    is_sensor: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
+class CollisionBody:
     """A rigid body: one of a model, or all walls of one entry of ``layers``, which count as a static one."""
 
     model: str | None
     """None for walls."""
     body: str
     """For walls, the layer's first name."""
-    dynamic: bool
-    surfaces: frozenset[Surface]
+    is_dynamic: bool
+    filters: frozenset[CollisionFilter]
 
     @property
     def name(self) -> str:
@@ -56,19 +43,19 @@ class Thing:
 
 
 @dataclass(frozen=True, slots=True)
-class Laser:
+class LaserPlugin:
     """A plugin that sees."""
 
     model: str
     plugin: str
-    sight: Sight
+    mount: LaserMount
 
     @property
     def name(self) -> str:
         return f"{self.model}/{self.plugin}"
 
 
-class Touch(Enum):
+class ContactKind(Enum):
     """What happens where two bodies meet."""
 
     COLLIDES = "collides with"
@@ -76,7 +63,7 @@ class Touch(Enum):
     PASSES = "passes through"
 
 
-class Cause(Enum):
+class RuleReason(Enum):
     """Why; the text is completed with the names of layers or of a joint."""
 
     SHARED_LAYER = "both in {}"
@@ -94,146 +81,158 @@ class Cause(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ContactRule:
     """What two bodies do where they meet, and why."""
 
-    touch: Touch
-    cause: Cause
+    kind: ContactKind
+    reason: RuleReason
     names: tuple[str, ...] = ()
     """The layers they share, or the joint."""
 
     @property
-    def why(self) -> str:
-        return self.cause.value.format(", ".join(self.names))
+    def explanation(self) -> str:
+        return self.reason.value.format(", ".join(self.names))
 
 
 @dataclass(frozen=True, slots=True)
-class Seeing:
+class LaserVisibility:
     """Whether a laser sees a body, and why."""
 
-    sees: bool
-    cause: Cause
+    is_visible: bool
+    reason: RuleReason
     names: tuple[str, ...] = ()
     """The layers by which it does, or would."""
 
     @property
-    def why(self) -> str:
-        return self.cause.value.format(", ".join(self.names))
+    def explanation(self) -> str:
+        return self.reason.value.format(", ".join(self.names))
 
 
-class Touching:
+class CollisionRules:
     """Answers for one world. ``things`` and ``lasers`` are in load order, walls first."""
 
     def __init__(self, world: World) -> None:
         self._layer_bits = world.layer_bits
-        self.things: tuple[Thing, ...] = (*_walls(world.layers), *_bodies(world.models))
-        self.lasers: tuple[Laser, ...] = tuple(_lasers(world.models))
-        self._carriers = {(m.name, b.name): b for m in world.models for b in m.bodies}
-        self._joined: dict[tuple[str | None, frozenset[str]], str] = {
+        self.bodies: tuple[CollisionBody, ...] = (*_wall_bodies(world.layers), *_model_bodies(world.models))
+        self.lasers: tuple[LaserPlugin, ...] = tuple(_lasers(world.models))
+        self._model_bodies = {(m.name, b.name): b for m in world.models for b in m.bodies}
+        self._joints: dict[tuple[str | None, frozenset[str]], str] = {
             (model.name, frozenset(anchor.body for anchor in joint.anchors)): joint.name
             for model in world.models
             for joint in model.joints
             if not joint.collide_connected
         }
-        self._by_surfaces: dict[tuple[frozenset[Surface], frozenset[Surface]], Verdict] = {}
+        self._rules_by_filters: dict[
+            tuple[frozenset[CollisionFilter], frozenset[CollisionFilter]], ContactRule
+        ] = {}
 
-    def between(self, a: Thing, b: Thing) -> Verdict:
+    def contact_rule(self, a: CollisionBody, b: CollisionBody) -> ContactRule:
         """What happens where the two meet."""
         if a.model == b.model and a.body == b.body:
-            return Verdict(Touch.PASSES, Cause.SAME_BODY)
-        if not a.dynamic and not b.dynamic:
-            return Verdict(Touch.PASSES, Cause.NEITHER_MOVES)
-        if a.model == b.model and (joint := self._joined.get((a.model, frozenset({a.body, b.body})))):
-            return Verdict(Touch.PASSES, Cause.JOINED, (joint,))
-        key = (a.surfaces, b.surfaces)
-        if key not in self._by_surfaces:
-            self._by_surfaces[key] = self._meeting(*key)
-        return self._by_surfaces[key]
+            return ContactRule(ContactKind.PASSES, RuleReason.SAME_BODY)
+        if not a.is_dynamic and not b.is_dynamic:
+            return ContactRule(ContactKind.PASSES, RuleReason.NEITHER_MOVES)
+        if a.model == b.model and (joint := self._joints.get((a.model, frozenset({a.body, b.body})))):
+            return ContactRule(ContactKind.PASSES, RuleReason.JOINED, (joint,))
+        key = (a.filters, b.filters)
+        if key not in self._rules_by_filters:
+            self._rules_by_filters[key] = self._rule_for_filters(*key)
+        return self._rules_by_filters[key]
 
-    def pairs(self) -> Iterator[tuple[Thing, Thing, Verdict]]:
+    def contact_rules(self) -> Iterator[tuple[CollisionBody, CollisionBody, ContactRule]]:
         """Every pair of things, each once."""
-        return ((a, b, self.between(a, b)) for a, b in combinations(self.things, 2))
+        return ((a, b, self.contact_rule(a, b)) for a, b in combinations(self.bodies, 2))
 
-    def seeing(self, laser: Laser, thing: Thing) -> Seeing:
+    def visibility(self, laser: LaserPlugin, thing: CollisionBody) -> LaserVisibility:
         """Whether the laser sees the thing when it stands in its way."""
-        outside, around = self._sides(laser, thing)
-        bits = laser.sight.bits
-        seen = _union(s.category & bits for s in outside if not s.sensor)
-        hidden = _union(s.category & bits for s in around if not s.sensor)
-        sensors = _union(s.category & bits for s in thing.surfaces if s.sensor)
+        outside, around = self._split_by_laser(laser, thing)
+        bits = laser.mount.bits
+        seen = _bit_union(s.category & bits for s in outside if not s.is_sensor)
+        hidden = _bit_union(s.category & bits for s in around if not s.is_sensor)
+        sensors = _bit_union(s.category & bits for s in thing.filters if s.is_sensor)
         if seen:
-            cause = Cause.SEEN_BUT_FOR_ITS_OWN if hidden else Cause.SEEN
-            return Seeing(True, cause, self._names(seen))
-        for shared, cause in ((hidden, Cause.INSIDE), (sensors, Cause.SENSORS_UNSEEN)):
+            cause = RuleReason.SEEN_BUT_FOR_ITS_OWN if hidden else RuleReason.SEEN
+            return LaserVisibility(True, cause, self._layer_names(seen))
+        for shared, cause in ((hidden, RuleReason.INSIDE), (sensors, RuleReason.SENSORS_UNSEEN)):
             if shared:
-                return Seeing(False, cause, self._names(shared))
-        return Seeing(False, Cause.NO_SHARED_LAYER if thing.surfaces else Cause.NO_FOOTPRINT)
+                return LaserVisibility(False, cause, self._layer_names(shared))
+        return LaserVisibility(
+            False, RuleReason.NO_SHARED_LAYER if thing.filters else RuleReason.NO_FOOTPRINT
+        )
 
-    def views(self) -> Iterator[tuple[Laser, Thing, Seeing]]:
+    def visibilities(self) -> Iterator[tuple[LaserPlugin, CollisionBody, LaserVisibility]]:
         """Every laser with every thing."""
-        return ((laser, thing, self.seeing(laser, thing)) for laser in self.lasers for thing in self.things)
+        return (
+            (laser, thing, self.visibility(laser, thing)) for laser in self.lasers for thing in self.bodies
+        )
 
-    def _meeting(self, a: frozenset[Surface], b: frozenset[Surface]) -> Verdict:
+    def _rule_for_filters(self, a: frozenset[CollisionFilter], b: frozenset[CollisionFilter]) -> ContactRule:
         collides = senses = passes = 0
         for one in a:
             for other in b:
                 shared = one.category & other.category
                 if not (one.mask & other.category and other.mask & one.category):
                     passes |= shared
-                elif one.sensor or other.sensor:
+                elif one.is_sensor or other.is_sensor:
                     senses |= shared
                 else:
                     collides |= shared
         for bits, touch, cause in (
-            (collides, Touch.COLLIDES, Cause.SHARED_LAYER),
-            (senses, Touch.SENSES, Cause.SENSOR),
-            (passes, Touch.PASSES, Cause.COLLISION_OFF),
+            (collides, ContactKind.COLLIDES, RuleReason.SHARED_LAYER),
+            (senses, ContactKind.SENSES, RuleReason.SENSOR),
+            (passes, ContactKind.PASSES, RuleReason.COLLISION_OFF),
         ):
             if bits:
-                return Verdict(touch, cause, self._names(bits))
-        return Verdict(Touch.PASSES, Cause.NO_SHARED_LAYER if a and b else Cause.NO_FOOTPRINT)
+                return ContactRule(touch, cause, self._layer_names(bits))
+        return ContactRule(
+            ContactKind.PASSES, RuleReason.NO_SHARED_LAYER if a and b else RuleReason.NO_FOOTPRINT
+        )
 
-    def _sides(self, laser: Laser, thing: Thing) -> tuple[frozenset[Surface], frozenset[Surface]]:
+    def _split_by_laser(
+        self, laser: LaserPlugin, thing: CollisionBody
+    ) -> tuple[frozenset[CollisionFilter], frozenset[CollisionFilter]]:
         """The thing's surfaces that do not, and that do, lie around the laser: its own body's may."""
-        if (laser.model, laser.sight.body) != (thing.model, thing.body):
-            return thing.surfaces, frozenset()
-        sides: tuple[set[Surface], set[Surface]] = (set(), set())
-        for footprint in self._carriers[laser.model, laser.sight.body].footprints:
-            sides[contains(footprint, laser.sight.origin)].add(_surface(footprint))
+        if (laser.model, laser.mount.body) != (thing.model, thing.body):
+            return thing.filters, frozenset()
+        sides: tuple[set[CollisionFilter], set[CollisionFilter]] = (set(), set())
+        for footprint in self._model_bodies[laser.model, laser.mount.body].footprints:
+            sides[footprint_contains(footprint, laser.mount.origin)].add(_filter_of(footprint))
         return frozenset(sides[False]), frozenset(sides[True])
 
-    def _names(self, bits: int) -> tuple[str, ...]:
+    def _layer_names(self, bits: int) -> tuple[str, ...]:
         if bits == ALL_LAYERS:
             return ("all layers",)
         return tuple(name for name, bit in self._layer_bits.items() if bit & bits)
 
 
-def _walls(layers: Iterable[Layer]) -> Iterator[Thing]:
+def _wall_bodies(layers: Iterable[Layer]) -> Iterator[CollisionBody]:
     for layer in layers:
         if layer.walls is not None:
-            yield Thing(None, layer.name, False, frozenset({Surface(layer.bits, layer.bits, False)}))
+            yield CollisionBody(
+                None, layer.name, False, frozenset({CollisionFilter(layer.bits, layer.bits, False)})
+            )
 
 
-def _bodies(models: Iterable[Model]) -> Iterator[Thing]:
+def _model_bodies(models: Iterable[Model]) -> Iterator[CollisionBody]:
     for model in models:
         for body in model.bodies:
-            surfaces = frozenset(_surface(footprint) for footprint in body.footprints)
-            yield Thing(model.name, body.name, body.kind == "dynamic", surfaces)
+            surfaces = frozenset(_filter_of(footprint) for footprint in body.footprints)
+            yield CollisionBody(model.name, body.name, body.kind == "dynamic", surfaces)
 
 
-def _lasers(models: Iterable[Model]) -> Iterator[Laser]:
+def _lasers(models: Iterable[Model]) -> Iterator[LaserPlugin]:
     for model in models:
         for plugin in model.plugins:
-            sight = getattr(plugin.params, "sight", None)
-            if isinstance(sight, Sight):
-                yield Laser(model.name, plugin.name, sight)
+            mount = getattr(plugin.params, "mount", None)
+            if isinstance(mount, LaserMount):
+                yield LaserPlugin(model.name, plugin.name, mount)
 
 
-def _surface(footprint: Footprint) -> Surface:
-    return Surface(footprint.category, footprint.mask, footprint.sensor)
+def _filter_of(footprint: Footprint) -> CollisionFilter:
+    return CollisionFilter(footprint.category, footprint.mask, footprint.sensor)
 
 
-def contains(footprint: Footprint, origin: Pose) -> bool:
+def footprint_contains(footprint: Footprint, origin: Pose) -> bool:
     """Whether a point given in the body's frame lies in the footprint."""
     shape = footprint.shape
     if isinstance(shape, Circle):
@@ -242,7 +241,7 @@ def contains(footprint: Footprint, origin: Pose) -> bool:
     return all((bx - ax) * (origin.y - ay) >= (by - ay) * (origin.x - ax) for (ax, ay), (bx, by) in corners)
 
 
-def _union(bits: Iterable[int]) -> int:
+def _bit_union(bits: Iterable[int]) -> int:
     union = 0
     for some in bits:
         union |= some

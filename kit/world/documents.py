@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from kit.world.files import Enclosure, Unusable, read_bytes
-from kit.world.problems import Problems, quoted
-from kit.world.records import Place
-from kit.world.yaml_reader import Budget, Composer, NotYaml
+from kit.plain_text import quoted
+from kit.world.files import AllowedRoot, UnusableFile, read_bytes
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
+from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
 from kit.world.yaml_tree import MapNode, Node
 
@@ -18,80 +19,86 @@ MAX_INCLUDES = 16
 """How deep files may include one another."""
 
 
-class Documents:
+class WorldDocuments:
     """Reads each file once. What is wrong is noted in ``problems``; only an exceeded limit raises WorldError.
 
     ``environment``: the variables that ``env()`` may read.
     """
 
-    def __init__(self, enclosure: Enclosure, environment: Mapping[str, str], problems: Problems) -> None:
-        self.enclosure = enclosure
+    def __init__(
+        self, allowed_root: AllowedRoot, environment: Mapping[str, str], problems: ProblemCollector
+    ) -> None:
+        self.allowed_root = allowed_root
         self.problems = problems
         self._environment = environment
-        self._budget = Budget(problems)
-        self._known: dict[Path, tuple[tuple[Node, ...], int]] = {}
+        self._budget = NodeBudget(problems)
+        self._read_files: dict[Path, tuple[tuple[Node, ...], int]] = {}
 
-    def section(self, file: Path, named_at: Place) -> Section | None:
-        """The mapping that a file holds, which ``named_at`` names; None where it holds none, which is noted."""
-        documents = self._read(file, named_at, (), 0)
+    def section(self, file: Path, referenced_at: SourceLocation) -> Section | None:
+        """The mapping that a file holds, which ``referenced_at`` names; None where it holds none, which is noted."""
+        documents = self._read(file, referenced_at, (), 0)
         if not documents:
             return None
         if len(documents) > 1:
-            self.problems.add(documents[1].place, "a second document: this file must hold one")
+            self.problems.add(documents[1].location, "a second document: this file must hold one")
         if isinstance(documents[0], MapNode):
             return Section(documents[0], self.problems)
-        self.problems.add(documents[0].place, "the file must hold a mapping of keys to values")
+        self.problems.add(documents[0].location, "the file must hold a mapping of keys to values")
         return None
 
-    def named(self, section: Section, key: str) -> Path | None:
+    def referenced_file(self, section: Section, key: str) -> Path | None:
         """The file that a key names, relative to the file in which the name stands; None if it may not be used."""
         name = section.name(key)
         if not name:
             return None
         try:
-            return self.enclosure.locate(name, section.place_of(key).file.parent)
-        except Unusable as error:
+            return self.allowed_root.resolve(name, section.location_of(key).file.parent)
+        except UnusableFile as error:
             section.error(str(error), key)
             return None
 
-    def _read(self, file: Path, named_at: Place, chain: tuple[Path, ...], depth: int) -> tuple[Node, ...]:
-        if file in self._known:
-            documents, size = self._known[file]
-            self._budget.spend(size, named_at)
+    def _read(
+        self, file: Path, referenced_at: SourceLocation, chain: tuple[Path, ...], depth: int
+    ) -> tuple[Node, ...]:
+        if file in self._read_files:
+            documents, size = self._read_files[file]
+            self._budget.count(size, referenced_at)
             return documents
         before = self._budget.spent
         documents = ()
         try:
-            composer = Composer(
+            composer = YamlComposer(
                 file,
                 problems=self.problems,
                 budget=self._budget,
                 environment=self._environment,
-                include=partial(self._included, (*chain, file)),
+                include=partial(self._include, (*chain, file)),
             )
             documents = tuple(composer.documents(read_text(file, MAX_YAML_BYTES), depth))
             if not documents:
-                self.problems.add(Place(file), "the file is empty")
-        except Unusable as error:
-            self.problems.add(named_at, f"cannot read {quoted(str(file), 200)}: {error}")
-        except NotYaml as error:
-            self.problems.add(error.problem.place, error.problem.message)
-        self._known[file] = documents, self._budget.spent - before
+                self.problems.add(SourceLocation(file), "the file is empty")
+        except UnusableFile as error:
+            self.problems.add(referenced_at, f"cannot read {quoted(str(file), 200)}: {error}")
+        except InvalidYaml as error:
+            self.problems.add(error.problem.location, error.problem.message)
+        self._read_files[file] = documents, self._budget.spent - before
         return documents
 
-    def _included(self, chain: tuple[Path, ...], name: str, place: Place, depth: int) -> tuple[Node, ...]:
+    def _include(
+        self, chain: tuple[Path, ...], name: str, location: SourceLocation, depth: int
+    ) -> tuple[Node, ...]:
         try:
-            file = self.enclosure.locate(name, place.file.parent)
-        except Unusable as error:
-            self.problems.add(place, str(error))
+            file = self.allowed_root.resolve(name, location.file.parent)
+        except UnusableFile as error:
+            self.problems.add(location, str(error))
             return ()
         if file in chain:
-            self.problems.add(place, f"{quoted(name)} would include itself without end")
+            self.problems.add(location, f"{quoted(name)} would include itself without end")
             return ()
         if len(chain) > MAX_INCLUDES:
-            self.problems.add(place, f"files include one another more than {MAX_INCLUDES} deep")
+            self.problems.add(location, f"files include one another more than {MAX_INCLUDES} deep")
             return ()
-        return self._read(file, place, chain, depth)
+        return self._read(file, location, chain, depth)
 
 
 def read_text(file: Path, limit: int) -> str:
@@ -101,4 +108,4 @@ def read_text(file: Path, limit: int) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise Unusable(f"it is not a text in UTF-8 (line {line})") from error
+        raise UnusableFile(f"it is not a text in UTF-8 (line {line})") from error

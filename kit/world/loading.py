@@ -6,34 +6,39 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.world.documents import Documents
-from kit.world.files import Enclosure, Unusable
+from kit.plain_text import quoted
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot, UnusableFile
 from kit.world.layer_reader import LayerReader
-from kit.world.model_reader import ModelEntry, read_model
-from kit.world.plugin_reader import DeviceReader, WorldDeviceReader, WorldScope, read_plugins
-from kit.world.problems import Problem, Problems, WorldError, quoted
-from kit.world.records import Model, Place, World
+from kit.world.model_reader import ModelPlacement, read_model
+from kit.world.plugin_reader import PluginReader, WorldPluginReader, WorldScope, read_plugins
+from kit.world.problems import Problem, ProblemCollector, WorldError
+from kit.world.records import Model, SourceLocation, World
 from kit.world.yaml_section import Section
 
 
 def load_world(
     path: Path,
     *,
-    devices: Mapping[str, DeviceReader] | None = None,
-    world_devices: Mapping[str, WorldDeviceReader] | None = None,
+    plugin_readers: Mapping[str, PluginReader] | None = None,
+    world_plugin_readers: Mapping[str, WorldPluginReader] | None = None,
     root: Path | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> World:
     """The world that a file describes, with its layers and models.
 
-    ``devices``, ``world_devices``: who reads the parameters of each type of plugin; without them types are
+    ``plugin_readers``, ``world_plugin_readers``: who reads the parameters of each type of plugin; without them types are
     not checked and ``PluginSpec.params`` is a plain mapping. ``root``: the folder that the world may not leave,
     by default its own. ``environment``: the variables that ``env()`` in a file may read, by default none, so
     that a stranger's world learns nothing about the machine. Raises WorldError with all that is wrong.
     """
-    documents, file = _open(path, root, environment)
-    section = documents.section(file, Place(file))
-    world = World(file) if section is None else _world(section, file, documents, devices, world_devices)
+    documents, file = _open_documents(path, root, environment)
+    section = documents.section(file, SourceLocation(file))
+    world = (
+        World(file)
+        if section is None
+        else _read_world(section, file, documents, plugin_readers, world_plugin_readers)
+    )
     documents.problems.raise_if_any()
     return world
 
@@ -45,7 +50,7 @@ def load_model(
     namespace: str = "",
     pose: Pose = Pose(),
     layer_bits: Mapping[str, int],
-    devices: Mapping[str, DeviceReader] | None = None,
+    plugin_readers: Mapping[str, PluginReader] | None = None,
     root: Path | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> Model:
@@ -53,29 +58,31 @@ def load_model(
 
     The other arguments, and the errors, are those of ``load_world``.
     """
-    documents, file = _open(path, root, environment)
-    entry = ModelEntry(name, namespace, pose, file, Place(file))
-    model = _model(entry, documents, layer_bits, devices)
+    documents, file = _open_documents(path, root, environment)
+    entry = ModelPlacement(name, namespace, pose, file, SourceLocation(file))
+    model = _read_model(entry, documents, layer_bits, plugin_readers)
     documents.problems.raise_if_any()
     assert model is not None  # None is noted as a problem
     return model
 
 
-def _open(path: Path, root: Path | None, environment: Mapping[str, str] | None) -> tuple[Documents, Path]:
+def _open_documents(
+    path: Path, root: Path | None, environment: Mapping[str, str] | None
+) -> tuple[WorldDocuments, Path]:
     try:
-        enclosure = Enclosure.around(path) if root is None else Enclosure.of(root)
-        file = enclosure.admit(path)
-    except Unusable as error:
-        raise WorldError([Problem(Place(path), f"cannot read it: {error}")]) from error
-    return Documents(enclosure, environment or {}, Problems()), file
+        allowed_root = AllowedRoot.containing(path) if root is None else AllowedRoot.of_folder(root)
+        file = allowed_root.path_inside(path)
+    except UnusableFile as error:
+        raise WorldError([Problem(SourceLocation(path), f"cannot read it: {error}")]) from error
+    return WorldDocuments(allowed_root, environment or {}, ProblemCollector()), file
 
 
-def _world(
+def _read_world(
     section: Section,
     file: Path,
-    documents: Documents,
-    devices: Mapping[str, DeviceReader] | None,
-    world_devices: Mapping[str, WorldDeviceReader] | None,
+    documents: WorldDocuments,
+    plugin_readers: Mapping[str, PluginReader] | None,
+    world_plugin_readers: Mapping[str, WorldPluginReader] | None,
 ) -> World:
     solver = section.section("properties")
     velocity_iterations = solver.integer("velocity_iterations", 10, minimum=1)
@@ -83,10 +90,10 @@ def _world(
     solver.finish()
     reader = LayerReader(documents)
     layers = reader.read(section.sections("layers"))
-    entries = _model_entries(section.sections("models", ()), documents)
-    models = [_model(entry, documents, reader.bits, devices) for entry in entries]
-    scope = WorldScope(layers, tuple(model for model in models if model is not None), reader.bits)
-    plugins = read_plugins(section.sections("plugins", ()), scope, world_devices)
+    entries = _read_model_entries(section.sections("models", ()), documents)
+    models = [_read_model(entry, documents, reader.layer_bits, plugin_readers) for entry in entries]
+    scope = WorldScope(layers, tuple(model for model in models if model is not None), reader.layer_bits)
+    plugins = read_plugins(section.sections("plugins", ()), scope, world_plugin_readers)
     section.finish()
     return World(
         file=file,
@@ -95,11 +102,11 @@ def _world(
         plugins=plugins,
         velocity_iterations=velocity_iterations,
         position_iterations=position_iterations,
-        layer_bits=reader.bits,
+        layer_bits=reader.layer_bits,
     )
 
 
-def _model_entries(sections: Iterable[Section], documents: Documents) -> Iterator[ModelEntry]:
+def _read_model_entries(sections: Iterable[Section], documents: WorldDocuments) -> Iterator[ModelPlacement]:
     """Where each model of the world stands, and the file that describes it."""
     names: set[str] = set()
     for section in sections:
@@ -107,19 +114,19 @@ def _model_entries(sections: Iterable[Section], documents: Documents) -> Iterato
         if name and name in names:
             section.error(f"a model named {quoted(name)} already exists", "name")
         names.add(name)
-        file = documents.named(section, "model")
+        file = documents.referenced_file(section, "model")
         pose = section.pose("pose", Pose())
         namespace = section.text("namespace", "")
         section.finish()
         if file is not None:
-            yield ModelEntry(name, namespace, pose, file, section.place_of("model"))
+            yield ModelPlacement(name, namespace, pose, file, section.location_of("model"))
 
 
-def _model(
-    entry: ModelEntry,
-    documents: Documents,
+def _read_model(
+    entry: ModelPlacement,
+    documents: WorldDocuments,
     layer_bits: Mapping[str, int],
-    devices: Mapping[str, DeviceReader] | None,
+    plugin_readers: Mapping[str, PluginReader] | None,
 ) -> Model | None:
-    section = documents.section(entry.file, entry.place)
-    return None if section is None else read_model(section, entry, layer_bits, devices)
+    section = documents.section(entry.file, entry.location)
+    return None if section is None else read_model(section, entry, layer_bits, plugin_readers)

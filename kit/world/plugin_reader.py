@@ -10,36 +10,18 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias, TypeVar
 
-from kit.world.problems import Problem, Problems, WorldError, nearest, quoted, suggestion
+from kit.plain_text import quoted, suggestion
 from kit.world.records import ALL_LAYERS, Layer, Model, PluginSpec
 from kit.world.yaml_section import REQUIRED, Required, Section
 
-__all__ = [
-    "REQUIRED",
-    "DeviceReader",
-    "ModelScope",
-    "Problem",
-    "Problems",
-    "Section",
-    "WorldDeviceReader",
-    "WorldError",
-    "WorldScope",
-    "layers_of",
-    "nearest",
-    "quoted",
-    "read_named",
-    "read_plugins",
-    "suggestion",
-]
-
-STANDARD_PLUGINS = "flatland_plugins::"
+FLATLAND_PREFIX = "flatland_plugins::"
 """What may stand before the type of a plugin that comes with Flatland."""
 
 ScopeT = TypeVar("ScopeT")
-NamedT = TypeVar("NamedT", bound="_Named")
+NamedT = TypeVar("NamedT", bound="_HasName")
 
 
-class _Named(Protocol):
+class _HasName(Protocol):
     @property
     def name(self) -> str: ...
 
@@ -71,19 +53,21 @@ def read_plugins(
 
     def read(section: Section) -> PluginSpec:
         name = section.name("name")
-        type_ = section.text("type").removeprefix(STANDARD_PLUGINS)
+        type_ = section.text("type").removeprefix(FLATLAND_PREFIX)
         if readers is None:
-            return PluginSpec(name, type_, section.rest(), section.place)
+            return PluginSpec(name, type_, section.remaining_values(), section.location)
         if type_ in readers:
-            return PluginSpec(name, type_, readers[type_](section, scope), section.place)
+            return PluginSpec(name, type_, readers[type_](section, scope), section.location)
         if type_:
             section.error(f"there is no plugin {quoted(type_)}: {suggestion(type_, readers)}", "type")
-        return PluginSpec(name, type_, section.rest(), section.place)
+        return PluginSpec(name, type_, section.remaining_values(), section.location)
 
     return read_named(sections, "plugin", read)
 
 
-def layers_of(section: Section, key: str, layer_bits: Mapping[str, int]) -> tuple[tuple[str, ...], int]:
+def read_layer_names(
+    section: Section, key: str, layer_bits: Mapping[str, int]
+) -> tuple[tuple[str, ...], int]:
     """Layer names as written (by default ``("all",)``) and their bits.
 
     "all" means every layer only where it stands alone; beside others it is the name of a layer.
@@ -100,7 +84,9 @@ def layers_of(section: Section, key: str, layer_bits: Mapping[str, int]) -> tupl
     return names, bits
 
 
-def _one_of(section: Section, key: str, names: Collection[str], what: str, default: str | Required) -> str:
+def _read_known_name(
+    section: Section, key: str, names: Collection[str], what: str, default: str | Required
+) -> str:
     name = section.text(key, default)
     if section.has(key) and name and name not in names:
         section.error(f"{what} has the name {quoted(name)}: {suggestion(name, names)}", key)
@@ -116,15 +102,17 @@ class ModelScope:
 
     def layers(self, section: Section, key: str = "layers") -> int:
         """The bits of a list of layer names; all of them where the key is missing."""
-        return layers_of(section, key, self.layer_bits)[1]
+        return read_layer_names(section, key, self.layer_bits)[1]
 
     def body(self, section: Section, key: str, default: str | Required = REQUIRED) -> str:
         """The name of a body of the model."""
-        return _one_of(section, key, [body.name for body in self.model.bodies], "no body", default)
+        return _read_known_name(section, key, [body.name for body in self.model.bodies], "no body", default)
 
     def joint(self, section: Section, key: str, default: str | Required = REQUIRED) -> str:
         """The name of a joint of the model."""
-        return _one_of(section, key, [joint.name for joint in self.model.joints], "no joint", default)
+        return _read_known_name(
+            section, key, [joint.name for joint in self.model.joints], "no joint", default
+        )
 
     def bodies(self, section: Section, key: str) -> tuple[str, ...]:
         """A list of names of bodies of the model; empty where the key is missing."""
@@ -146,15 +134,15 @@ class WorldScope:
 
     def layer(self, section: Section, key: str, default: str | Required = REQUIRED) -> str:
         """The name of a layer (any of its names)."""
-        return _one_of(section, key, self.layer_bits, "no layer", default)
+        return _read_known_name(section, key, self.layer_bits, "no layer", default)
 
     def model(self, section: Section, key: str, default: str | Required = REQUIRED) -> str:
         """The name of a model of the world file."""
-        return _one_of(section, key, [model.name for model in self.models], "no model", default)
+        return _read_known_name(section, key, [model.name for model in self.models], "no model", default)
 
 
-DeviceReader: TypeAlias = Callable[[Section, ModelScope], object]
+PluginReader: TypeAlias = Callable[[Section, ModelScope], object]
 """Reads the parameters of one type of model plugin."""
 
-WorldDeviceReader: TypeAlias = Callable[[Section, WorldScope], object]
+WorldPluginReader: TypeAlias = Callable[[Section, WorldScope], object]
 """Reads the parameters of one type of world plugin."""

@@ -27,8 +27,8 @@ Color = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Place:
-    """A place in a file that the user can open: 1-based line and column."""
+class SourceLocation:
+    """A position in a file: 1-based line and column."""
 
     file: Path
     line: int = 1
@@ -46,19 +46,19 @@ class Walls:
     the world.
     """
 
-    local: NDArray[np.float64]
+    local_segments: NDArray[np.float64]
     origin: Pose
     file: Path
     """The map YAML."""
-    source: Path
+    drawing_file: Path
     """The image or .dat file it names."""
 
     @property
     def segments(self) -> NDArray[np.float64]:
         """(n, 4) float64 ``x1 y1 x2 y2`` [m] in world coordinates."""
         cos, sin = np.cos(self.origin.theta), np.sin(self.origin.theta)
-        x, y = self.local[:, 0::2], self.local[:, 1::2]
-        out = np.empty_like(self.local)
+        x, y = self.local_segments[:, 0::2], self.local_segments[:, 1::2]
+        out = np.empty_like(self.local_segments)
         out[:, 0::2] = self.origin.x + cos * x - sin * y
         out[:, 1::2] = self.origin.y + sin * x + cos * y
         return out
@@ -74,7 +74,7 @@ class Layer:
     color: Color
     walls: Walls | None
     properties: Mapping[str, object]
-    place: Place
+    location: SourceLocation
 
     @property
     def name(self) -> str:
@@ -108,7 +108,7 @@ class Footprint:
     """As written: ``("all",)`` or layer names."""
     category: int
     """The bits of its layers; what a laser compares with."""
-    place: Place
+    location: SourceLocation
 
     @property
     def mask(self) -> int:
@@ -129,7 +129,7 @@ class Body:
     linear_damping: float
     angular_damping: float
     footprints: tuple[Footprint, ...]
-    place: Place
+    location: SourceLocation
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,12 +155,13 @@ class Joint:
     """Weld only: Hz, 0 is rigid."""
     damping: float
     """Weld only: damping ratio."""
-    place: Place
+    location: SourceLocation
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
-    """What a laser looks at. A plugin whose ``params`` has an attribute ``sight`` of this type is a laser."""
+class LaserMount:
+    """Where a laser is mounted and which layers it sees. A plugin whose ``params`` has an attribute ``mount`` of this
+    type is a laser."""
 
     body: str
     """The body that carries it."""
@@ -177,7 +178,7 @@ class PluginSpec:
     name: str
     type: str
     params: object
-    place: Place
+    location: SourceLocation
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +191,7 @@ class Model:
     """Enabled bodies only, at least one."""
     joints: tuple[Joint, ...]
     plugins: tuple[PluginSpec, ...]
-    place: Place
+    location: SourceLocation
 
     def topic(self, name: str) -> str:
         """A plugin's topic name, absolute: under the model's namespace unless it starts with ``/``."""

@@ -10,51 +10,51 @@ from typing import TypeVar
 
 import numpy as np
 
-from kit.plain_text import INDENT, WIDTH, blocks, indented, listed, table
-from kit.world.collision_rules import Cause, Laser, Thing, Touch, Touching
+from kit.plain_text import INDENT, WIDTH, grouped_table, indent_lines, join_names, table
+from kit.world.collision_rules import CollisionBody, CollisionRules, ContactKind, LaserPlugin, RuleReason
 from kit.world.records import MAX_LAYERS, Layer, Model, World
 
 T = TypeVar("T")
 
-Row = tuple[str, str, str, str]
+ReportRow = tuple[str, str, str, str]
 """Who, does what, to whom, why."""
 
 
-def summary(world: World) -> str:
+def world_report(world: World) -> str:
     """The world in plain text, 80 columns wide. What behaves alike shares its lines, so many models stay few."""
-    touching = Touching(world)
+    touching = CollisionRules(world)
     # Those that move first: "robot collides with walls" reads better than the other way round.
-    ordered = sorted(touching.things, key=lambda thing: (not thing.dynamic, thing.model is None))
-    groups = _grouped(ordered, lambda thing: (thing.model is None, thing.dynamic, thing.surfaces))
+    ordered = sorted(touching.bodies, key=lambda thing: (not thing.is_dynamic, thing.model is None))
+    groups = _group_by(ordered, lambda thing: (thing.model is None, thing.is_dynamic, thing.filters))
     inner = WIDTH - len(INDENT)
     names, plugins = len(world.layer_bits), [(plugin.name, plugin.type) for plugin in world.plugins]
     sections = (
-        (f"World {world.file}", [f"size: {_size(world)}"]),
-        (f"Layers ({names} of {MAX_LAYERS} names)", table([*map(_layer, world.layers)], inner)),
-        (f"Models ({len(world.models)})", table([*map(_models, _by_file(world))], inner)),
+        (f"World {world.file}", [f"size: {_size_text(world)}"]),
+        (f"Layers ({names} of {MAX_LAYERS} names)", table([*map(_layer_row, world.layers)], inner)),
+        (f"Models ({len(world.models)})", table([*map(_model_row, _models_by_file(world))], inner)),
         (f"Plugins of the world ({len(plugins)})", table(plugins, inner)),
-        ("Who collides with whom", blocks(_merged(_collisions(touching, groups)), inner)),
+        ("Who collides with whom", grouped_table(_merge_rows(_collision_rows(touching, groups)), inner)),
         *(
-            (textwrap.fill(f"Within {listed(models)}", WIDTH), blocks(rows, inner))
-            for models, rows in _within(world, touching)
+            (textwrap.fill(f"Within {join_names(models)}", WIDTH), grouped_table(rows, inner))
+            for models, rows in _rows_within_models(world, touching)
         ),
-        ("Which laser sees whom", blocks(_merged(_views(touching, groups)), inner)),
+        ("Which laser sees whom", grouped_table(_merge_rows(_laser_rows(touching, groups)), inner)),
     )
-    return "\n\n".join("\n".join([title, *indented(lines)]) for title, lines in sections if lines)
+    return "\n\n".join("\n".join([title, *indent_lines(lines)]) for title, lines in sections if lines)
 
 
-def details(world: World) -> dict[str, object]:
+def world_report_data(world: World) -> dict[str, object]:
     """The same as data for a program: every pair by itself. Serialisable as JSON."""
-    touching = Touching(world)
+    touching = CollisionRules(world)
     return {
         "file": str(world.file),
-        "size": _extent(world),
+        "size": _wall_extent(world),
         "layers": [
             {
                 "names": layer.names,
-                "segments": None if layer.walls is None else len(layer.walls.local),
+                "segments": None if layer.walls is None else len(layer.walls.local_segments),
                 "map": None if layer.walls is None else str(layer.walls.file),
-                "source": None if layer.walls is None else str(layer.walls.source),
+                "source": None if layer.walls is None else str(layer.walls.drawing_file),
             }
             for layer in world.layers
         ],
@@ -72,17 +72,17 @@ def details(world: World) -> dict[str, object]:
         ],
         "plugins": [{"name": plugin.name, "type": plugin.type} for plugin in world.plugins],
         "meetings": [
-            {"a": a.name, "b": b.name, "touch": verdict.touch.name.lower(), "why": verdict.why}
-            for a, b, verdict in touching.pairs()
+            {"a": a.name, "b": b.name, "touch": verdict.kind.name.lower(), "why": verdict.explanation}
+            for a, b, verdict in touching.contact_rules()
         ],
         "views": [
-            {"laser": laser.name, "body": thing.name, "sees": seeing.sees, "why": seeing.why}
-            for laser, thing, seeing in touching.views()
+            {"laser": laser.name, "body": thing.name, "sees": seeing.is_visible, "why": seeing.explanation}
+            for laser, thing, seeing in touching.visibilities()
         ],
     }
 
 
-def _extent(world: World) -> tuple[float, float] | None:
+def _wall_extent(world: World) -> tuple[float, float] | None:
     """Width and height [m] of the rectangle around all walls."""
     walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
     points = np.concatenate(walls).reshape(-1, 2) if walls else np.empty((0, 2))
@@ -92,31 +92,33 @@ def _extent(world: World) -> tuple[float, float] | None:
     return float(width), float(height)
 
 
-def _size(world: World) -> str:
-    extent = _extent(world)
+def _size_text(world: World) -> str:
+    extent = _wall_extent(world)
     return "no walls" if extent is None else f"{extent[0]:.2f} m x {extent[1]:.2f} m"
 
 
-def _layer(layer: Layer) -> tuple[str, str, str]:
+def _layer_row(layer: Layer) -> tuple[str, str, str]:
     if layer.walls is None:
         return ", ".join(layer.names), "no walls", ""
-    source = f"{layer.walls.file.name} ({layer.walls.source.name})"
-    return ", ".join(layer.names), _count(len(layer.walls.local), "wall segment"), source
+    source = f"{layer.walls.file.name} ({layer.walls.drawing_file.name})"
+    return ", ".join(layer.names), _counted(len(layer.walls.local_segments), "wall segment"), source
 
 
-def _models(models: Sequence[Model]) -> tuple[str, str, str, str]:
+def _model_row(models: Sequence[Model]) -> tuple[str, str, str, str]:
     model = models[0]
     parts = ", ".join(
-        _count(count, what)
+        _counted(count, what)
         for count, what in ((len(model.bodies), "body"), (len(model.joints), "joint"))
         if count
     )
     types = Counter(plugin.type for plugin in model.plugins)
     plugins = ", ".join(name if count == 1 else f"{count} {name}" for name, count in types.items())
-    return listed([model.name for model in models]), model.file.name, parts, plugins
+    return join_names([model.name for model in models]), model.file.name, parts, plugins
 
 
-def _collisions(touching: Touching, groups: Sequence[Sequence[Thing]]) -> Iterator[Row]:
+def _collision_rows(
+    touching: CollisionRules, groups: Sequence[Sequence[CollisionBody]]
+) -> Iterator[ReportRow]:
     """Between walls and models, and between one model and another."""
     for one, other in combinations_with_replacement(groups, 2):
         pair = next(
@@ -124,52 +126,57 @@ def _collisions(touching: Touching, groups: Sequence[Sequence[Thing]]) -> Iterat
         )
         if pair is None:
             continue
-        verdict = touching.between(*pair)
-        whom = "one another" if one is other else _names(other)
-        if verdict.cause is not Cause.NEITHER_MOVES:
-            yield _names(one), verdict.touch.value, whom, verdict.why
-    resting = [thing.name for group in groups for thing in group if not thing.dynamic]
+        verdict = touching.contact_rule(*pair)
+        whom = "one another" if one is other else _joined_names(other)
+        if verdict.reason is not RuleReason.NEITHER_MOVES:
+            yield _joined_names(one), verdict.kind.value, whom, verdict.explanation
+    resting = [thing.name for group in groups for thing in group if not thing.is_dynamic]
     if len(resting) > 1:
-        yield listed(resting), Touch.PASSES.value, "one another", Cause.NEITHER_MOVES.value
+        yield join_names(resting), ContactKind.PASSES.value, "one another", RuleReason.NEITHER_MOVES.value
 
 
-def _within(world: World, touching: Touching) -> Iterator[tuple[list[str], list[Row]]]:
+def _rows_within_models(
+    world: World, touching: CollisionRules
+) -> Iterator[tuple[list[str], list[ReportRow]]]:
     """For the models of each file: its bodies with one another."""
-    for models in _by_file(world):
-        bodies = [thing for thing in touching.things if thing.model == models[0].name]
-        rows = ((a.body, touching.between(a, b), b.body) for a, b in combinations(bodies, 2))
-        merged = _merged((a, verdict.touch.value, b, verdict.why) for a, verdict, b in rows)
+    for models in _models_by_file(world):
+        bodies = [thing for thing in touching.bodies if thing.model == models[0].name]
+        rows = ((a.body, touching.contact_rule(a, b), b.body) for a, b in combinations(bodies, 2))
+        merged = _merge_rows((a, verdict.kind.value, b, verdict.explanation) for a, verdict, b in rows)
         if merged:
             yield [model.name for model in models], merged
 
 
-def _views(touching: Touching, groups: Sequence[Sequence[Thing]]) -> Iterator[Row]:
-    def rows(laser: Laser) -> tuple[tuple[bool, str, str], ...]:
-        return tuple(_looks(touching, laser, groups))
+def _laser_rows(touching: CollisionRules, groups: Sequence[Sequence[CollisionBody]]) -> Iterator[ReportRow]:
+    def rows(laser: LaserPlugin) -> tuple[tuple[bool, str, str], ...]:
+        return tuple(_visibility_of_groups(touching, laser, groups))
 
-    for lasers in _grouped(touching.lasers, rows):
+    for lasers in _group_by(touching.lasers, rows):
         for sees, whom, why in rows(lasers[0]):
-            yield listed([laser.name for laser in lasers]), "sees" if sees else "does not see", whom, why
+            yield join_names([laser.name for laser in lasers]), "sees" if sees else "does not see", whom, why
 
 
-def _looks(
-    touching: Touching, laser: Laser, groups: Sequence[Sequence[Thing]]
+def _visibility_of_groups(
+    touching: CollisionRules, laser: LaserPlugin, groups: Sequence[Sequence[CollisionBody]]
 ) -> Iterator[tuple[bool, str, str]]:
-    own = (laser.model, laser.sight.body)
+    own = (laser.model, laser.mount.body)
     for group in groups:
         others = [thing for thing in group if (thing.model, thing.body) != own]
         for some, label in (
-            (others, _names(group) if len(others) == len(group) else f"others of {_names(group)}"),
+            (
+                others,
+                _joined_names(group) if len(others) == len(group) else f"others of {_joined_names(group)}",
+            ),
             ([thing for thing in group if thing not in others], "its own body"),
         ):
             if some:
-                seeing = touching.seeing(laser, some[0])
-                yield seeing.sees, label, seeing.why
+                seeing = touching.visibility(laser, some[0])
+                yield seeing.is_visible, label, seeing.explanation
 
 
-def _merged(rows: Iterable[Row]) -> list[Row]:
+def _merge_rows(rows: Iterable[ReportRow]) -> list[ReportRow]:
     """Rows that differ in whom only, as one."""
-    alike = _grouped(rows, lambda row: (row[0], row[1], row[3]))
+    alike = _group_by(rows, lambda row: (row[0], row[1], row[3]))
     return [
         (who, does, ", ".join(row[2] for row in rows), why)
         for rows in alike
@@ -177,11 +184,11 @@ def _merged(rows: Iterable[Row]) -> list[Row]:
     ]
 
 
-def _by_file(world: World) -> list[list[Model]]:
-    return _grouped(world.models, lambda model: model.file)
+def _models_by_file(world: World) -> list[list[Model]]:
+    return _group_by(world.models, lambda model: model.file)
 
 
-def _grouped(items: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]:
+def _group_by(items: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]:
     """The items with equal keys together, in the order of the first of each."""
     groups: dict[Hashable, list[T]] = {}
     for item in items:
@@ -189,10 +196,10 @@ def _grouped(items: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]:
     return list(groups.values())
 
 
-def _names(things: Iterable[Thing]) -> str:
-    return listed([thing.name for thing in things])
+def _joined_names(things: Iterable[CollisionBody]) -> str:
+    return join_names([thing.name for thing in things])
 
 
-def _count(count: int, what: str) -> str:
+def _counted(count: int, what: str) -> str:
     plural = f"{what.removesuffix('y')}ies" if what.endswith("y") else f"{what}s"
     return f"{count} {what if count == 1 else plural}"

@@ -16,18 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from kit.world.files import Unusable, read_bytes
-from kit.world.problems import Problems, quoted
-from kit.world.records import Place
+from kit.plain_text import quoted
+from kit.world.files import UnusableFile, read_bytes
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import MAX_NUMBER
-from kit.world.yaml_tree import as_number
+from kit.world.yaml_tree import parse_number
 
 MAX_IMAGE_BYTES = 32_000_000
 MAX_PIXELS = 4096 * 4096
 MAX_LINES_BYTES = 16_000_000
 MAX_SEGMENTS = 100_000
 """Wall segments of one map; Flatland's largest public map has some 5,000."""
-MAX_BAD_LINES = 10
+MAX_REPORTED_LINES = 10
 """Mistakes reported of one .dat file."""
 
 FORMATS = ("PNG", "JPEG", "BMP", "PPM")
@@ -37,19 +38,19 @@ _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
 _LUMA_SHIFT = 15
 
 
-def image_walls(file: Path, *, resolution: float, occupied_thresh: float) -> NDArray[np.float64]:
+def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> NDArray[np.float64]:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
 
     ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white.
     Raises Unusable.
     """
-    grey = read_grey(file)
+    grey = read_grey_image(file)
     shades = (np.arange(256) * (1 / 255)).astype(np.float32)
     bright = (shades >= np.float32(occupied_thresh)) & (shades <= 1)
-    return trace(~bright[grey], resolution)
+    return trace_edges(~bright[grey], resolution)
 
 
-def read_grey(file: Path) -> NDArray[np.uint8]:
+def read_grey_image(file: Path) -> NDArray[np.uint8]:
     """A picture as (rows, columns) grey levels, the top row first; transparency is ignored. Raises Unusable."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
@@ -58,21 +59,23 @@ def read_grey(file: Path) -> NDArray[np.uint8]:
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             with Image.open(io.BytesIO(content), formats=FORMATS) as image:
                 if image.width * image.height > MAX_PIXELS:
-                    raise Unusable(
+                    raise UnusableFile(
                         f"the picture is {image.width} x {image.height} pixels large, "
                         f"and at most {MAX_PIXELS} are read: make its resolution coarser"
                     )
-                return _grey(image)
-    except Unusable:
+                return _grey_levels(image)
+    except UnusableFile:
         raise
     except Image.DecompressionBombError as error:
-        raise Unusable(f"the picture is too large: at most {MAX_PIXELS} pixels are read") from error
+        raise UnusableFile(f"the picture is too large: at most {MAX_PIXELS} pixels are read") from error
     except Exception as error:  # Pillow's decoders raise whatever a broken file makes of them
         known = ", ".join(FORMATS)
-        raise Unusable(f"it is not a picture that can be read (formats: {known}), or it is broken") from error
+        raise UnusableFile(
+            f"it is not a picture that can be read (formats: {known}), or it is broken"
+        ) from error
 
 
-def _grey(image: Image.Image) -> NDArray[np.uint8]:
+def _grey_levels(image: Image.Image) -> NDArray[np.uint8]:
     if image.mode.startswith("I"):  # 16 bits: the high byte, as OpenCV takes it
         return (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)
     if image.mode in ("1", "L", "LA"):
@@ -86,17 +89,17 @@ def _grey(image: Image.Image) -> NDArray[np.uint8]:
     return grey
 
 
-def trace(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
+def trace_edges(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
     """The edges between the dark and the bright pixels of (rows, columns): (n, 4) ``x1 y1 x2 y2`` [m].
 
     Edges along one grid line are joined. First those along rows, from the top, then those along columns, from
     the left. Linear in the number of pixels. Raises Unusable if there are more than MAX_SEGMENTS.
     """
     rows = len(dark)
-    y, x1, x2 = _runs(dark)
-    x, y1, y2 = _runs(dark.T)
+    y, x1, x2 = _edge_runs(dark)
+    x, y1, y2 = _edge_runs(dark.T)
     if len(y) + len(x) > MAX_SEGMENTS:
-        raise Unusable(
+        raise UnusableFile(
             f"the picture has {len(y) + len(x)} wall segments, and at most {MAX_SEGMENTS} are read: "
             "it is noisy, or its resolution too fine"
         )
@@ -105,7 +108,7 @@ def trace(dark: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
     return np.concatenate([across, upright]) * resolution
 
 
-def _runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+def _edge_runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
     """The maximal runs along which two neighbouring rows differ: the line between them, first and last corner."""
     rows, columns = dark.shape
     padded = np.zeros((rows + 2, columns), dtype=np.bool_)
@@ -116,36 +119,38 @@ def _runs(dark: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], 
     return line[0::2], start_or_end[0::2], start_or_end[1::2]
 
 
-def read_lines(file: Path, scale: float, problems: Problems) -> NDArray[np.float64]:
+def walls_from_lines(file: Path, scale: float, problems: ProblemCollector) -> NDArray[np.float64]:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a .dat file: four numbers a line, times ``scale``.
 
     Lines that are no segment are noted. Raises Unusable if the file cannot be read.
     """
     text = read_bytes(file, MAX_LINES_BYTES).decode("latin-1")
     if text.count("\n") > MAX_SEGMENTS:
-        raise Unusable(f"it has more than {MAX_SEGMENTS} lines")
+        raise UnusableFile(f"it has more than {MAX_SEGMENTS} lines")
     segments: list[tuple[float, ...]] = []
     bad = 0
-    for number, line in enumerate(_lines(text), start=1):
-        segment = _segment(line)
+    for number, line in enumerate(_split_lines(text), start=1):
+        segment = _parse_segment(line)
         if segment is not None:
             segments.append(segment)
             continue
         bad += 1
-        if bad > MAX_BAD_LINES:
+        if bad > MAX_REPORTED_LINES:
             break
-        problems.add(Place(file, number), f"{quoted(line.strip())} is no segment: four numbers x1 y1 x2 y2")
+        problems.add(
+            SourceLocation(file, number), f"{quoted(line.strip())} is no segment: four numbers x1 y1 x2 y2"
+        )
     return np.array(segments, dtype=np.float64).reshape(-1, 4) * scale
 
 
-def _lines(text: str) -> Iterator[str]:
+def _split_lines(text: str) -> Iterator[str]:
     """The lines; a final newline does not begin another one."""
     return iter(text.removesuffix("\n").split("\n") if text else ())
 
 
-def _segment(line: str) -> tuple[float, ...] | None:
+def _parse_segment(line: str) -> tuple[float, ...] | None:
     """The first four numbers of the line; what follows them is not looked at, as in Flatland."""
-    numbers = [as_number(word) for word in line.split(maxsplit=4)[:4]]
+    numbers = [parse_number(word) for word in line.split(maxsplit=4)[:4]]
     if len(numbers) < 4:
         return None
     found = tuple(number for number in numbers if number is not None and abs(number) <= MAX_NUMBER)

@@ -13,14 +13,24 @@ from types import MappingProxyType
 from typing import Final, TypeVar, overload
 
 from kit.geometry import Pose
-from kit.world.problems import Problems, displayable, nearest, quoted, suggestion
-from kit.world.records import Color, Place
-from kit.world.yaml_tree import Leaf, ListNode, MapNode, Node, as_flag, as_integer, as_number, plain_value
+from kit.plain_text import is_printable, nearest_name, quoted, suggestion
+from kit.world.problems import ProblemCollector
+from kit.world.records import Color, SourceLocation
+from kit.world.yaml_tree import (
+    ListNode,
+    MapNode,
+    Node,
+    ScalarNode,
+    parse_bool,
+    parse_integer,
+    parse_number,
+    to_python,
+)
 
 MAX_NUMBER = 1e12
 """No quantity of a flat world is larger, and nothing computed from smaller ones overflows."""
 
-HAIR = 1e-9
+OPEN_BOUND_EPSILON = 1e-9
 """How far above an open bound a number must be, so that nothing divided by it overflows either."""
 
 MAX_INTEGER = 2**31 - 1
@@ -38,17 +48,17 @@ REQUIRED: Final = Required.REQUIRED
 
 
 def _is_broken(node: Node) -> bool:
-    return isinstance(node, Leaf) and node.broken
+    return isinstance(node, ScalarNode) and node.is_broken
 
 
-def _shown(node: Node) -> str:
+def _describe_node(node: Node) -> str:
     """What stands in the file, in a few words, for "expected X, found ..."."""
     if isinstance(node, ListNode):
         return f"a list of {len(node.items)}"
     if isinstance(node, MapNode):
         return "a mapping"
-    if node.shown_as is not None:
-        return node.shown_as
+    if node.display_text is not None:
+        return node.display_text
     return "nothing" if node.is_null else quoted(node.text)
 
 
@@ -59,17 +69,17 @@ class Section:
     values and note nothing.
     """
 
-    def __init__(self, node: MapNode, problems: Problems, *, silent: bool = False) -> None:
+    def __init__(self, node: MapNode, problems: ProblemCollector, *, is_silent: bool = False) -> None:
         self._entries = node.entries
         self._problems = problems
-        self._silent = silent
-        self._asked: set[str] = set()
-        self._missing: set[str] = set()
-        self.place: Place = node.place
+        self._is_silent = is_silent
+        self._requested: set[str] = set()
+        self._missing_required: set[str] = set()
+        self.location: SourceLocation = node.location
 
     def has(self, key: str) -> bool:
         """Whether the key is written in the file. Asking makes it a known key."""
-        self._asked.add(key)
+        self._requested.add(key)
         return key in self._entries
 
     def is_blank(self, key: str) -> bool:
@@ -77,36 +87,36 @@ class Section:
         if not self.has(key):
             return True
         value = self._entries[key].value
-        return isinstance(value, Leaf) and value.plain and value.is_null
+        return isinstance(value, ScalarNode) and value.is_plain and value.is_null
 
     def keys(self) -> tuple[str, ...]:
         """Every key written in the file, in order."""
         return tuple(self._entries)
 
-    def place_of(self, key: str) -> Place:
+    def location_of(self, key: str) -> SourceLocation:
         """Where the key's value stands; where the section stands if the key is missing."""
         entry = self._entries.get(key)
-        return self.place if entry is None else entry.value.place
+        return self.location if entry is None else entry.value.location
 
     def error(self, message: str, key: str | None = None) -> None:
         """Notes a problem at the key's value, or at the section."""
-        self._error(message, self.place if key is None else self.place_of(key))
+        self._report(message, self.location if key is None else self.location_of(key))
 
     def text(
         self, key: str, default: str | Required = REQUIRED, *, choices: Collection[str] | None = None
     ) -> str:
         """A scalar as text, perhaps one of ``choices``."""
-        text = self._written(key, default)
+        text = self._scalar_text(key, default)
         if text is not None and choices is not None and text not in choices:
-            self._not_one_of(key, choices)
+            self._report_unknown_choice(key, choices)
             text = None
-        return _instead(default, next(iter(choices or [""]))) if text is None else text
+        return _fallback(default, next(iter(choices or [""]))) if text is None else text
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
         """A text by which something is called: one line, not empty."""
-        name = self._written(key, default)
+        name = self._scalar_text(key, default)
         if name is None:
-            return _instead(default, "")
+            return _fallback(default, "")
         self._check_name(name, key)
         return name
 
@@ -116,11 +126,11 @@ class Section:
     def choice(self, key: str, options: Mapping[str, T], default: str) -> T: ...
     def choice(self, key: str, options: Mapping[str, T], default: str | Required = REQUIRED) -> T | None:
         """What the text stands for in the table ``options``; None where there is no default and no such text."""
-        text = self._written(key, default)
+        text = self._scalar_text(key, default)
         if text is not None:
             if text in options:
                 return options[text]
-            self._not_one_of(key, options)
+            self._report_unknown_choice(key, options)
         return None if isinstance(default, Required) else options[default]
 
     def number(
@@ -134,12 +144,12 @@ class Section:
         infinite: bool = False,
     ) -> float:
         """A finite number (or, with ``infinite``, also ``.inf``) within the bounds, of which ``above`` is open."""
-        node = self._value(key, default)
-        instead = _instead(default, _within(minimum, above, maximum))
+        node = self._node_of(key, default)
+        instead = _fallback(default, _number_within(minimum, above, maximum))
         number = None if node is None else self._number(node, quoted(key), infinite=infinite)
         if number is None:
             return instead
-        return number if self._bounded(number, key, minimum, above, maximum) else instead
+        return number if self._is_within_bounds(number, key, minimum, above, maximum) else instead
 
     def integer(
         self,
@@ -150,25 +160,25 @@ class Section:
         maximum: int | None = None,
     ) -> int:
         """A whole number within the bounds."""
-        node = self._value(key, default)
-        instead = _instead(default, int(_within(minimum, None, maximum)))
+        node = self._node_of(key, default)
+        instead = _fallback(default, int(_number_within(minimum, None, maximum)))
         if node is None:
             return instead
-        integer = as_integer(node.text) if isinstance(node, Leaf) else None
+        integer = parse_integer(node.text) if isinstance(node, ScalarNode) else None
         if integer is None or abs(integer) > MAX_INTEGER:
-            self._reject(node, f"{quoted(key)} must be a whole number")
+            self._report_mismatch(node, f"{quoted(key)} must be a whole number")
             return instead
-        return integer if self._bounded(integer, key, minimum, None, maximum) else instead
+        return integer if self._is_within_bounds(integer, key, minimum, None, maximum) else instead
 
     def flag(self, key: str, default: bool | Required = REQUIRED) -> bool:
         """true or false."""
-        node = self._value(key, default)
+        node = self._node_of(key, default)
         if node is None:
-            return _instead(default, False)
-        flag = as_flag(node.text) if isinstance(node, Leaf) else None
+            return _fallback(default, False)
+        flag = parse_bool(node.text) if isinstance(node, ScalarNode) else None
         if flag is None:
-            self._reject(node, f"{quoted(key)} must be true or false")
-            return _instead(default, False)
+            self._report_mismatch(node, f"{quoted(key)} must be true or false")
+            return _fallback(default, False)
         return flag
 
     def numbers(
@@ -181,8 +191,8 @@ class Section:
         at_most: int | None = None,
     ) -> tuple[float, ...]:
         """A list of finite numbers, of exactly ``length`` or of ``at_least`` to ``at_most``."""
-        instead = tuple(_instead(default, (0.0,) * (length or at_least or 0)))
-        items = self._items(key, default, length, at_least, at_most)
+        instead = tuple(_fallback(default, (0.0,) * (length or at_least or 0)))
+        items = self._list_items(key, default, length, at_least, at_most)
         if items is None:
             return instead
         numbers = [self._number(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items)]
@@ -193,10 +203,10 @@ class Section:
     ) -> tuple[tuple[float, float], ...]:
         """A list of points ``[x, y]``; without those that are wrong."""
         points = []
-        for i, item in enumerate(self._items(key, REQUIRED, None, at_least, at_most) or ()):
+        for i, item in enumerate(self._list_items(key, REQUIRED, None, at_least, at_most) or ()):
             what = f"{quoted(key)}[{i}]"
             if not isinstance(item, ListNode) or len(item.items) != 2:
-                self._reject(item, f"{what} must be a point [x, y]")
+                self._report_mismatch(item, f"{what} must be a point [x, y]")
                 continue
             x, y = (self._number(coordinate, what) for coordinate in item.items)
             if x is not None and y is not None:
@@ -207,15 +217,15 @@ class Section:
         self, key: str, default: Sequence[str] | Required = REQUIRED, *, at_least: int | None = None
     ) -> tuple[str, ...]:
         """A list of texts."""
-        items = self._items(key, default, None, at_least, None)
+        items = self._list_items(key, default, None, at_least, None)
         if items is None:
-            return tuple(_instead(default, ()))
+            return tuple(_fallback(default, ()))
         texts = [self._text(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items)]
         return tuple(text for text in texts if text is not None)
 
     def names(self, key: str) -> tuple[str, ...]:
         """A name, or a list of at least one."""
-        if isinstance(self._value(key, REQUIRED), ListNode):
+        if isinstance(self._node_of(key, REQUIRED), ListNode):
             names = self.texts(key, at_least=1)
             for name in names:
                 self._check_name(name, key)
@@ -242,9 +252,9 @@ class Section:
     def section(self, key: str, default: None) -> Section | None: ...
     def section(self, key: str, default: Required | None = REQUIRED) -> Section | None:
         """A mapping; None where the key is missing and ``default`` is None."""
-        node = self._value(key, default)
+        node = self._node_of(key, default)
         if node is None:
-            return None if default is None else self._absent(self.place)
+            return None if default is None else self._missing_section(self.location)
         return self._section(node, quoted(key))
 
     def sections(
@@ -256,59 +266,59 @@ class Section:
         at_least: int | None = None,
     ) -> tuple[Section, ...]:
         """A list of mappings."""
-        items = self._items(key, default, length, at_least, None) or ()
+        items = self._list_items(key, default, length, at_least, None) or ()
         return tuple(self._section(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items))
 
-    def rest(self) -> Mapping[str, object]:
+    def remaining_values(self) -> Mapping[str, object]:
         """The keys nobody asked for, as plain immutable values; they count as known from now on."""
-        rest = {key: e.value for key, e in self._entries.items() if key not in self._asked}
-        self._asked.update(rest)
-        return MappingProxyType({key: plain_value(value) for key, value in rest.items()})
+        rest = {key: e.value for key, e in self._entries.items() if key not in self._requested}
+        self._requested.update(rest)
+        return MappingProxyType({key: to_python(value) for key, value in rest.items()})
 
     def finish(self, *, ignore_unknown: bool = False) -> None:
         """Notes every key that nobody asked for; with ``ignore_unknown`` only those that look like a missing one."""
-        absent = self._asked - self._entries.keys()
+        absent = self._requested - self._entries.keys()
         for key, entry in self._entries.items():
-            if key in self._asked:
+            if key in self._requested:
                 continue
             if not ignore_unknown:
-                self._error(
-                    f"unknown key {quoted(key)}: {suggestion(key, absent or self._asked)}", entry.place
+                self._report(
+                    f"unknown key {quoted(key)}: {suggestion(key, absent or self._requested)}", entry.location
                 )
-            elif (meant := nearest(key, self._missing)) is not None:
-                self._error(f"{quoted(key)} is not read here: did you mean {quoted(meant)}?", entry.place)
+            elif (meant := nearest_name(key, self._missing_required)) is not None:
+                self._report(f"{quoted(key)} is not read here: did you mean {quoted(meant)}?", entry.location)
 
     # How the getters take a node apart. Each notes what is wrong and returns None.
 
-    def _error(self, message: str, place: Place) -> None:
-        if not self._silent:
-            self._problems.add(place, message)
+    def _report(self, message: str, location: SourceLocation) -> None:
+        if not self._is_silent:
+            self._problems.add(location, message)
 
-    def _reject(self, node: Node, demand: str) -> None:
+    def _report_mismatch(self, node: Node, demand: str) -> None:
         """Notes that the node is not what is demanded, unless it is broken, which was noted already."""
         if not _is_broken(node):
-            self._error(f"{demand}, not {_shown(node)}", node.place)
+            self._report(f"{demand}, not {_describe_node(node)}", node.location)
 
-    def _value(self, key: str, default: object) -> Node | None:
-        self._asked.add(key)
+    def _node_of(self, key: str, default: object) -> Node | None:
+        self._requested.add(key)
         entry = self._entries.get(key)
         if entry is None and default is REQUIRED:
-            self._missing.add(key)
+            self._missing_required.add(key)
             self.error(f"{quoted(key)} is missing")
         return None if entry is None or _is_broken(entry.value) else entry.value
 
-    def _written(self, key: str, default: object) -> str | None:
-        node = self._value(key, default)
+    def _scalar_text(self, key: str, default: object) -> str | None:
+        node = self._node_of(key, default)
         return None if node is None else self._text(node, quoted(key))
 
-    def _items(
+    def _list_items(
         self, key: str, default: object, length: int | None, at_least: int | None, at_most: int | None
     ) -> tuple[Node, ...] | None:
-        node = self._value(key, default)
+        node = self._node_of(key, default)
         if node is None:
             return None
         if not isinstance(node, ListNode):
-            self._reject(node, f"{quoted(key)} must be a list")
+            self._report_mismatch(node, f"{quoted(key)} must be a list")
             return None
         count = len(node.items)
         for wrong, wanted in (
@@ -322,65 +332,68 @@ class Section:
         return node.items
 
     def _text(self, node: Node, what: str) -> str | None:
-        if not isinstance(node, Leaf) or node.is_null:
-            self._reject(node, f"{what} must be a text")
+        if not isinstance(node, ScalarNode) or node.is_null:
+            self._report_mismatch(node, f"{what} must be a text")
             return None
-        if not displayable(node.text.replace("\n", "")):
-            self._reject(node, f"{what} must be without control characters")
+        if not is_printable(node.text.replace("\n", "")):
+            self._report_mismatch(node, f"{what} must be without control characters")
             return None
         return node.text
 
-    def _not_one_of(self, key: str, choices: Collection[str]) -> None:
+    def _report_unknown_choice(self, key: str, choices: Collection[str]) -> None:
         node = self._entries[key].value
-        hint = suggestion(node.text if isinstance(node, Leaf) else "", choices)
-        self.error(f"{quoted(key)} cannot be {_shown(node)}: {hint}", key)
+        hint = suggestion(node.text if isinstance(node, ScalarNode) else "", choices)
+        self.error(f"{quoted(key)} cannot be {_describe_node(node)}: {hint}", key)
 
     def _check_name(self, name: str, key: str) -> None:
         if not name.strip() or "\n" in name:
             self.error(f"{quoted(key)} must be a name: one line, not empty", key)
 
     def _number(self, node: Node, what: str, *, infinite: bool = False) -> float | None:
-        number = as_number(node.text) if isinstance(node, Leaf) else None
+        number = parse_number(node.text) if isinstance(node, ScalarNode) else None
         if number is None:
-            self._reject(node, f"{what} must be a number")
+            self._report_mismatch(node, f"{what} must be a number")
             return None
         if infinite and math.isinf(number):
             return number
         if not abs(number) <= MAX_NUMBER:  # NaN too
-            self._reject(node, f"{what} must be a number of at most {MAX_NUMBER:g}")
+            self._report_mismatch(node, f"{what} must be a number of at most {MAX_NUMBER:g}")
             return None
         return number
 
-    def _bounded(
+    def _is_within_bounds(
         self, number: float, key: str, minimum: float | None, above: float | None, maximum: float | None
     ) -> bool:
         for wrong, wanted in (
             (minimum is not None and number < minimum, f"at least {minimum}"),
             (above is not None and number <= above, f"greater than {above}"),
-            (above is not None and number < above + HAIR, f"greater than {above} by {HAIR:g} or more"),
+            (
+                above is not None and number < above + OPEN_BOUND_EPSILON,
+                f"greater than {above} by {OPEN_BOUND_EPSILON:g} or more",
+            ),
             (maximum is not None and number > maximum, f"at most {maximum}"),
         ):
             if wrong:
-                self._reject(self._entries[key].value, f"{quoted(key)} must be {wanted}")
+                self._report_mismatch(self._entries[key].value, f"{quoted(key)} must be {wanted}")
                 return False
         return True
 
     def _section(self, node: Node, what: str) -> Section:
         if isinstance(node, MapNode):
-            return Section(node, self._problems, silent=self._silent)
-        self._reject(node, f"{what} must be a mapping")
-        return self._absent(node.place)
+            return Section(node, self._problems, is_silent=self._is_silent)
+        self._report_mismatch(node, f"{what} must be a mapping")
+        return self._missing_section(node.location)
 
-    def _absent(self, place: Place) -> Section:
-        return Section(MapNode(MappingProxyType({}), place, height=1), self._problems, silent=True)
+    def _missing_section(self, location: SourceLocation) -> Section:
+        return Section(MapNode(MappingProxyType({}), location, height=1), self._problems, is_silent=True)
 
 
-def _instead(default: T | Required, otherwise: T) -> T:
+def _fallback(default: T | Required, otherwise: T) -> T:
     """The value to go on with when the file gives none that can be used."""
     return otherwise if isinstance(default, Required) else default
 
 
-def _within(minimum: float | None, above: float | None, maximum: float | None) -> float:
+def _number_within(minimum: float | None, above: float | None, maximum: float | None) -> float:
     """Some number within the bounds."""
     low = minimum if minimum is not None else (0.0 if above is None else above + 1.0)
     return low if maximum is None else min(low, maximum)

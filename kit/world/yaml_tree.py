@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
-from kit.world.records import Place
+from kit.world.records import SourceLocation
 
 _NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?", re.ASCII)
 _INTEGER = re.compile(r"[-+]?[0-9]{1,19}", re.ASCII)
@@ -20,7 +20,7 @@ _RADIX = {"0x": 16, "0o": 8}
 _NULLS = frozenset({"", "~", "null", "Null", "NULL"})
 _INFINITIES = {".inf": 1.0, "+.inf": 1.0, "-.inf": -1.0}
 _NANS = frozenset({".nan", ".NaN", ".NAN"})
-_FLAGS = MappingProxyType(
+_BOOLEANS = MappingProxyType(
     {
         spelling: flag
         for flag, words in ((True, ("true", "yes", "on", "y")), (False, ("false", "no", "off", "n")))
@@ -28,20 +28,20 @@ _FLAGS = MappingProxyType(
         for spelling in (word, word.capitalize(), word.upper())
     }
 )
-_CORE_FLAGS = frozenset({"true", "True", "TRUE", "false", "False", "FALSE"})
+_CORE_BOOLEANS = frozenset({"true", "True", "TRUE", "false", "False", "FALSE"})
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf:
+class ScalarNode:
     """A scalar: its text, and whether it stood in the file without quotes."""
 
     text: str
-    plain: bool
-    place: Place
-    shown_as: str | None = None
+    is_plain: bool
+    location: SourceLocation
+    display_text: str | None = None
     """What messages call it, where its text is not what stands in the file: an environment variable's value
     is used but never shown."""
-    broken: bool = False
+    is_broken: bool = False
     """It stands for something that could not be had, which has been noted: nothing more is said of it."""
 
     @property
@@ -50,37 +50,37 @@ class Leaf:
 
     @property
     def is_null(self) -> bool:
-        return self.plain and self.text in _NULLS
+        return self.is_plain and self.text in _NULLS
 
 
 @dataclass(frozen=True, slots=True)
 class ListNode:
     items: tuple[Node, ...]
-    place: Place
+    location: SourceLocation
     height: int
     """How deep it is nested: 1 for a list of scalars."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapNode:
-    entries: Mapping[str, Entry]
-    place: Place
+    entries: Mapping[str, MapEntry]
+    location: SourceLocation
     height: int
     """As of a list."""
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class MapEntry:
     """One ``key: value`` of a mapping: where the key stands, and the value."""
 
-    place: Place
+    location: SourceLocation
     value: Node
 
 
-Node: TypeAlias = Leaf | ListNode | MapNode
+Node: TypeAlias = ScalarNode | ListNode | MapNode
 
 
-def as_number(text: str) -> float | None:
+def parse_number(text: str) -> float | None:
     """The number that ``text`` spells (perhaps an infinity or NaN), or None."""
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -88,11 +88,11 @@ def as_number(text: str) -> float | None:
         return _INFINITIES[text.lower()] * float("inf")
     if text in _NANS:
         return float("nan")
-    integer = as_integer(text)
+    integer = parse_integer(text)
     return None if integer is None else float(integer)
 
 
-def as_integer(text: str) -> int | None:
+def parse_integer(text: str) -> int | None:
     """The whole number that ``text`` spells, of at most 19 digits, or None."""
     if _INTEGER.fullmatch(text):
         return int(text)
@@ -105,25 +105,25 @@ def as_integer(text: str) -> int | None:
         return None
 
 
-def as_flag(text: str) -> bool | None:
+def parse_bool(text: str) -> bool | None:
     """True or False by any of the words Flatland takes (true, yes, on, y and their opposites), or None."""
-    return _FLAGS.get(text)
+    return _BOOLEANS.get(text)
 
 
-def plain_value(node: Node) -> object:
+def to_python(node: Node) -> object:
     """The node as plain immutable Python: None, bool, int, float, str, tuples and read-only mappings."""
     if isinstance(node, ListNode):
-        return tuple(plain_value(item) for item in node.items)
+        return tuple(to_python(item) for item in node.items)
     if isinstance(node, MapNode):
-        return MappingProxyType({key: plain_value(entry.value) for key, entry in node.entries.items()})
-    if not node.plain:
+        return MappingProxyType({key: to_python(entry.value) for key, entry in node.entries.items()})
+    if not node.is_plain:
         return node.text
     if node.is_null:
         return None
-    if node.text in _CORE_FLAGS:
-        return as_flag(node.text)
-    integer = as_integer(node.text)
+    if node.text in _CORE_BOOLEANS:
+        return parse_bool(node.text)
+    integer = parse_integer(node.text)
     if integer is not None:
         return integer
-    number = as_number(node.text)
+    number = parse_number(node.text)
     return node.text if number is None else number

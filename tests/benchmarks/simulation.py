@@ -21,10 +21,9 @@ import pymunk
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.loading import load, load_model
 from kit.sim.plugins.laser import LaserParams
-from kit.sim.simulation import Simulation
-from kit.world.records import Layer, Model, Place, Polygon, Walls, World
+from kit.sim.simulation import Simulation, load_model, load_world
+from kit.world.records import Layer, Model, Polygon, SourceLocation, Walls, World
 
 ROOT = Path(__file__).parents[2]
 
@@ -49,8 +48,8 @@ def pillars(count: int, size: float = 16.0) -> np.ndarray:
 
 
 def walled(ends: np.ndarray, names: tuple[str, ...], bits: int) -> Layer:
-    walls = Walls(local=ends, origin=Pose(), file=HERE, source=HERE)
-    return Layer(names, bits, (1, 1, 1, 1), walls, MappingProxyType({}), Place(HERE))
+    walls = Walls(local_segments=ends, origin=Pose(), file=HERE, drawing_file=HERE)
+    return Layer(names, bits, (1, 1, 1, 1), walls, MappingProxyType({}), SourceLocation(HERE))
 
 
 def hall(count: int) -> World:
@@ -87,7 +86,7 @@ def per_second(advance: Callable[[int], object], steps: int) -> float:
 
 
 def ours(world: World) -> Callable[[int], object]:
-    simulation = Simulation(world, wanted=lambda topic: topic.endswith("laser"))
+    simulation = Simulation(world, has_subscribers=lambda topic: topic.endswith("laser"))
     simulation.accept("/cmd_vel", Twist(linear=Vector3(x=FORWARD), angular=Vector3(z=TURN)))
     return simulation.step
 
@@ -158,9 +157,9 @@ def real_time_factor(world: World) -> float:
 
 def main() -> None:
     start = time.perf_counter()
-    kernels.warm()
+    kernels.compile_kernels()
     print(f"compiled code ready: {time.perf_counter() - start:.2f} s")
-    maze = load(ROOT / "maps" / "maze" / "world.yaml", root=ROOT / "maps")
+    maze = load_world(ROOT / "maps" / "maze" / "world.yaml", root=ROOT / "maps")
     for name, world, steps in (("maze", maze, 2000), ("5,000 segments", hall(1250), 1000)):
         fast, slow = per_second(ours(scanning(world)), steps), per_second(plain(world), steps // 20)
         print(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kit.kernels import kernels
-from kit.kernels.lidar_index import beams, in_blocks
+from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
 
 FAR = np.float32(0.1)
@@ -93,7 +93,9 @@ def test_limits_of_a_motor(
 def test_a_ray_and_a_segment() -> None:
     def nearness(*ends: float) -> float:
         ax, ay, bx, by = singles(*ends)
-        return kernels.ray_segment(*singles(1, 0), ax, ay, bx, by, np.float32(1) / (ax * by - ay * bx))
+        return kernels.ray_segment_nearness(
+            *singles(1, 0), ax, ay, bx, by, np.float32(1) / (ax * by - ay * bx)
+        )
 
     assert nearness(2, -1, 2, 3) == nearness(2, 3, 2, -1) == 0.5
     assert nearness(-4, -1, -4, 3) == -0.25
@@ -107,9 +109,9 @@ def test_the_nearest_of_some_segments(count: int) -> None:
     ends = np.array([(far, -1.0, far, 1.0) for far in (5.0, 3.0, 11.0, 2.0, 4.0)[:count]]).reshape(-1, 4)
     ranges, walls = (
         np.zeros(9, dtype=np.float32),
-        kernels.Segments(ends, np.array([0, count]), np.zeros((1, 3))),
+        kernels.WallBlocks(ends, np.array([0, count]), np.zeros((1, 3))),
     )
-    kernels.scan((0.5, 0.0, 0.0), beams([0.0] * 9), 10.0, walls, NOTHING, 1, ranges)
+    kernels.scan((0.5, 0.0, 0.0), make_beams([0.0] * 9), 10.0, walls, NOTHING, 1, ranges)
     nearest = min(ends[:, 0], default=math.inf) - 0.5
     assert ranges == pytest.approx(nearest if nearest < 10 else math.nan, nan_ok=True)
 
@@ -123,7 +125,7 @@ def test_no_ray_slips_between_segments_that_share_an_end() -> None:
         left = np.float32(corner[0] - y), np.float32(corner[1] + x)
         right = np.float32(corner[0] + y), np.float32(corner[1] - x)
         found = [
-            kernels.ray_segment(
+            kernels.ray_segment_nearness(
                 *(cos, sin, *one, *other, np.float32(1) / (one[0] * other[1] - one[1] * other[0]))
             )
             for one, other in ((left, corner), (corner, right))
@@ -132,26 +134,26 @@ def test_no_ray_slips_between_segments_that_share_an_end() -> None:
 
 
 def test_a_ray_and_a_circle() -> None:
-    assert kernels.ray_circle(*singles(1, 0, 3, 0, 0.5), FAR) == np.float32(0.4)
-    assert kernels.ray_circle(*singles(0, 1, 0.3, 2, 0.5), FAR) == pytest.approx(1 / 1.6)
+    assert kernels.ray_circle_nearness(*singles(1, 0, 3, 0, 0.5), FAR) == np.float32(0.4)
+    assert kernels.ray_circle_nearness(*singles(0, 1, 0.3, 2, 0.5), FAR) == pytest.approx(1 / 1.6)
     for miss in ((3, 1, 0.5), (-3, 0, 0.5), (0.2, 0, 0.5), (11, 0, 0.5)):  # beside, behind, inside, far
-        assert kernels.ray_circle(*singles(1, 0, *miss), FAR) == FAR
+        assert kernels.ray_circle_nearness(*singles(1, 0, *miss), FAR) == FAR
 
 
 # Distances
 
 
 def test_a_point_and_a_segment() -> None:
-    assert kernels.point_segment(0.5, 2.0, 0.0, 0.0, 1.0, 0.0) == 2
-    assert kernels.point_segment(4.0, 4.0, 0.0, 0.0, 1.0, 0.0) == 5
-    assert kernels.point_segment(3.0, 4.0, 0.0, 0.0, 0.0, 0.0) == 5
+    assert kernels.point_segment_distance(0.5, 2.0, 0.0, 0.0, 1.0, 0.0) == 2
+    assert kernels.point_segment_distance(4.0, 4.0, 0.0, 0.0, 1.0, 0.0) == 5
+    assert kernels.point_segment_distance(3.0, 4.0, 0.0, 0.0, 0.0, 0.0) == 5
 
 
 def test_a_point_and_a_polygon() -> None:
-    assert kernels.point_polygon(0.5, 0.5, SQUARE) == 0
-    assert kernels.point_polygon(1.0, 0.5, SQUARE) == 0
-    assert kernels.point_polygon(3.0, 0.5, SQUARE) == 2
-    assert kernels.point_polygon(4.0, 5.0, SQUARE) == 5
+    assert kernels.point_polygon_distance(0.5, 0.5, SQUARE) == 0
+    assert kernels.point_polygon_distance(1.0, 0.5, SQUARE) == 0
+    assert kernels.point_polygon_distance(3.0, 0.5, SQUARE) == 2
+    assert kernels.point_polygon_distance(4.0, 5.0, SQUARE) == 5
     assert kernels.point_in_polygon(1.0, 1.0, SQUARE)
     assert not kernels.point_in_polygon(1.0001, 1.0, SQUARE)
 
@@ -170,7 +172,7 @@ def test_a_point_and_a_polygon() -> None:
     ],
 )
 def test_a_segment_and_a_polygon(segment: tuple[float, ...], meets: bool) -> None:
-    assert kernels.segment_meets_polygon(*map(float, segment), SQUARE) == meets
+    assert kernels.segment_intersects_polygon(*map(float, segment), SQUARE) == meets
 
 
 def test_a_segment_meets_a_polygon_where_one_of_its_points_does() -> None:
@@ -178,9 +180,9 @@ def test_a_segment_meets_a_polygon_where_one_of_its_points_does() -> None:
     hexagon = np.array([[math.cos(a), math.sin(a)] for a in np.arange(6) * math.pi / 3])
     for ax, ay, bx, by in rng.uniform(-3, 3, (300, 4)):
         points = [(ax + t * (bx - ax), ay + t * (by - ay)) for t in np.linspace(0, 1, 400)]
-        nearest = min(kernels.point_polygon(x, y, hexagon) for x, y in points)
+        nearest = min(kernels.point_polygon_distance(x, y, hexagon) for x, y in points)
         if not 0 < nearest < 0.01:  # between two of the points
-            assert kernels.segment_meets_polygon(ax, ay, bx, by, hexagon) == (nearest == 0)
+            assert kernels.segment_intersects_polygon(ax, ay, bx, by, hexagon) == (nearest == 0)
 
 
 # Noise
@@ -275,7 +277,7 @@ def test_a_scan_is_exact(count: int) -> None:
     ends = walls(count)
     angles = np.linspace(-3, 3, 37)
     ranges = np.empty(37, dtype=np.float32)
-    kernels.scan((0.5, -1.0, 0.7), beams(angles), 6.0, in_blocks(ends), NOTHING, 1, ranges)
+    kernels.scan((0.5, -1.0, 0.7), make_beams(angles), 6.0, make_wall_blocks(ends), NOTHING, 1, ranges)
     expected = [plainly(0.5, -1.0, 0.7 + angle, ends, 6.0) for angle in angles]
     assert ranges == pytest.approx(np.array(expected), abs=1e-5, nan_ok=True)
 
@@ -283,14 +285,14 @@ def test_a_scan_is_exact(count: int) -> None:
 def test_blocks_never_change_what_is_seen() -> None:
     ends = walls(1000, seed=4)
     angles = np.linspace(-math.pi, math.pi, 181)
-    whole = in_blocks(ends, size=1000)
+    whole = make_wall_blocks(ends, size=1000)
     for size in (1, 7, 16, 64):
-        blocks = in_blocks(ends, size)
+        blocks = make_wall_blocks(ends, size)
         assert sorted(map(tuple, blocks.ends)) == sorted(map(tuple, ends))
         for x, y in np.random.default_rng(size).uniform(-9, 9, (50, 2)):
             one, other = np.empty((2, 181), dtype=np.float32)
-            kernels.scan((x, y, 0.1), beams(angles), 20.0, whole, NOTHING, 1, one)
-            kernels.scan((x, y, 0.1), beams(angles), 20.0, blocks, NOTHING, 1, other)
+            kernels.scan((x, y, 0.1), make_beams(angles), 20.0, whole, NOTHING, 1, one)
+            kernels.scan((x, y, 0.1), make_beams(angles), 20.0, blocks, NOTHING, 1, other)
             assert one.tobytes() == other.tobytes()
 
 
@@ -298,9 +300,9 @@ def test_far_from_the_origin_it_is_as_exact() -> None:
     """Single precision would be wrong by centimetres here."""
     ends = walls(50)
     near, far = np.empty((2, 19), dtype=np.float32)
-    rays = beams(np.linspace(-3, 3, 19))
-    kernels.scan((0.0, 0.0, 0.0), rays, 6.0, in_blocks(ends), NOTHING, 1, near)
-    moved = in_blocks(ends + 1e6)
+    rays = make_beams(np.linspace(-3, 3, 19))
+    kernels.scan((0.0, 0.0, 0.0), rays, 6.0, make_wall_blocks(ends), NOTHING, 1, near)
+    moved = make_wall_blocks(ends + 1e6)
     kernels.scan((1e6, 1e6, 0.0), rays, 6.0, moved, NOTHING, 1, far)
     assert far == pytest.approx(near, abs=1e-5, nan_ok=True)
 
@@ -313,11 +315,11 @@ def test_shapes_hide_walls_by_their_layers_but_not_around_the_sensor() -> None:
         np.array([0, 4, 8]),
         np.array([2, 7]),
     )
-    room = in_blocks(np.array([[-5.0, 5, 5, 5], [5, 5, 5, -5]]))
+    room = make_wall_blocks(np.array([[-5.0, 5, 5, 5], [5, 5, 5, -5]]))
     seen = {}
     for bits in (1, 2, 3, 4):
         ranges = np.empty(2, dtype=np.float32)
-        kernels.scan((0.0, 0.0, 0.0), beams([0.0, math.pi / 2]), 10.0, room, shapes, bits, ranges)
+        kernels.scan((0.0, 0.0, 0.0), make_beams([0.0, math.pi / 2]), 10.0, room, shapes, bits, ranges)
         seen[bits] = [round(float(r), 5) for r in ranges]
     assert seen == {1: [1.5, 5.0], 2: [5.0, 2.0], 3: [1.5, 2.0], 4: [5.0, 5.0]}
 
@@ -333,15 +335,15 @@ def test_shapes_go_with_their_bodies() -> None:
     assert world.corners == pytest.approx(SQUARE + 5)
 
 
-def test_warm_compiles_all_that_a_world_calls() -> None:
+def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
     """After it, a run compiles nothing: that would stall the screen for seconds."""
     code = (
-        "from kit.kernels import kernels; kernels.warm();"
+        "from kit.kernels import kernels; kernels.compile_kernels();"
         "jitted = {n: f for n, f in vars(kernels).items() if hasattr(f, 'signatures')};"
         "before = {n: list(f.signatures) for n, f in jitted.items()};"
-        "import sys; from pathlib import Path; from kit.sim.loading import load;"
+        "import sys; from pathlib import Path; from kit.sim.simulation import load_world;"
         "from kit.sim.simulation import Simulation; from kit.msg.geometry_msgs import Twist, Vector3;"
-        "s = Simulation(load(sys.argv[1]), seed=1);"
+        "s = Simulation(load_world(sys.argv[1]), seed=1);"
         "s.accept('/r/cmd_vel', Twist(linear=Vector3(x=1.0)));"
         "s.step(3);"
         "print([n for n, f in jitted.items() if list(f.signatures) != before[n]])"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.kernels import kernels
-from kit.kernels.lidar_index import CELL, beams, in_blocks, views
+from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells, make_wall_blocks
 from kit.learning.environment.batch_map import FEW_WALLS, ground
 from kit.world.catalogue import find_map
 
@@ -28,11 +28,11 @@ AUTHORS = [-3.14159265359 + i * 0.06981317007 for i in range(91)]
     ],
 )
 def test_opposite_rays_share_a_line(directions: list[float], lines: int) -> None:
-    made = beams(directions)
+    made = make_beams(directions)
     assert np.isfinite(made.lines[0]).sum() == lines
     assert made.lines.shape[1] % kernels.LANES == 0
     told = np.full((2, len(directions)), np.nan)
-    for first, end, against, line in made.runs:
+    for first, end, against, line in made.ray_runs:
         told[:, first:end] = (-1) ** against * made.lines[:, line : line + end - first]
     angles = np.array(directions)
     assert told == pytest.approx(np.array([np.cos(angles), np.sin(angles)]), abs=1e-7)
@@ -42,27 +42,30 @@ def test_opposite_rays_share_a_line(directions: list[float], lines: int) -> None
 
 
 def test_a_lidar_without_rays_has_no_lines() -> None:
-    assert beams([]).lines.shape == (2, 0)
+    assert make_beams([]).lines.shape == (2, 0)
 
 
 @pytest.mark.parametrize("name", ["slalom", "hall_curve_180", "hall_two_doors", "turn", "maze"])
 def test_what_a_view_leaves_out_cannot_be_seen(name: str) -> None:
     walls = ground(find_map(name)).walls if name != "maze" else _maze()
-    made, rays = views([None, walls]), beams(np.linspace(-math.pi, math.pi, 720, endpoint=False))
+    made, rays = (
+        make_visibility_cells([None, walls]),
+        make_beams(np.linspace(-math.pi, math.pi, 720, endpoint=False)),
+    )
     nothing = kernels.Shapes(
         *(np.zeros((0, 3)), np.zeros(0, dtype=np.int64), np.zeros((0, 2))),
         *(np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64)),
     )
     points, chance, fewer = walls.reshape(-1, 2), np.random.default_rng(1), 0
     for x, y in chance.uniform(points.min(axis=0), points.max(axis=0), (150, 2)):
-        column, row = (int(v) for v in ((x, y) - made.corners[1]) // CELL)
-        view = made.of_cell[made.grids[1, 0] + row * made.grids[1, 1] + column]
+        column, row = (int(v) for v in ((x, y) - made.map_corners[1]) // CELL_SIZE)
+        view = made.view_of_cell[made.map_grids[1, 0] + row * made.map_grids[1, 1] + column]
         some = made.ends[made.starts[view] : made.starts[view + 1]]
         fewer += len(walls) - len(some)
         seen = []
         for each in (walls, some):
             ranges = np.empty(720, dtype=np.float32)
-            kernels.scan((x, y, 0.1), rays, 50.0, in_blocks(each, FEW_WALLS), nothing, 1, ranges)
+            kernels.scan((x, y, 0.1), rays, 50.0, make_wall_blocks(each, FEW_WALLS), nothing, 1, ranges)
             seen.append(ranges)
         assert seen[0].tobytes() == seen[1].tobytes()
     assert fewer > 0
@@ -77,7 +80,7 @@ def _maze() -> np.ndarray:
 
 
 def test_a_map_may_have_no_views() -> None:
-    made = views([None, np.zeros((0, 4)), np.array([(0.0, 0.0, 1.0, 0.0)])])
-    assert made.grids[:, 2].tolist() == [0, 0, 1]
-    assert made.grids[2].tolist() == [0, 5, 1]
+    made = make_visibility_cells([None, np.zeros((0, 4)), np.array([(0.0, 0.0, 1.0, 0.0)])])
+    assert made.map_grids[:, 2].tolist() == [0, 0, 1]
+    assert made.map_grids[2].tolist() == [0, 5, 1]
     assert made.ends.tolist() == [[0.0, 0.0, 1.0, 0.0]]

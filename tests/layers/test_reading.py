@@ -119,10 +119,10 @@ def test_every_mistake_is_named_at_its_place(tmp_path: Path, text: str, places: 
         read_requirements(path)
     problems = caught.value.problems
     for line, words in places.items():
-        assert any(p.place.line == line and p.place.file == path and words in p.message for p in problems), (
-            problems
-        )
-    assert {p.place.line for p in problems} == places.keys()
+        assert any(
+            p.location.line == line and p.location.file == path and words in p.message for p in problems
+        ), problems
+    assert {p.location.line for p in problems} == places.keys()
 
 
 @pytest.mark.parametrize("name", ["missing.yaml", ".", "no/such/folder.yaml", "nul\0.yaml"])
@@ -137,7 +137,7 @@ def test_a_contradiction_names_both_lines_and_the_smallest_pair(tmp_path: Path) 
     with pytest.raises(WorldError) as caught:
         read_requirements(file(tmp_path, text))
     (problem,) = caught.value.problems
-    assert problem.place.line == 7
+    assert problem.location.line == 7
     assert "d - b" in problem.message
     assert "line 4" in problem.message
 

@@ -118,7 +118,7 @@ def test_every_picture_and_line_file_has_a_plan() -> None:
 @pytest.mark.parametrize("name", PICTURES)
 def test_the_picture_has_the_dissertations_size(name: str) -> None:
     size, resolution, origin = PICTURES[name]
-    with Image.open(walls(name).source) as image:
+    with Image.open(walls(name).drawing_file) as image:
         assert image.size == size
     layer = yaml.safe_load(walls(name).file.read_text(encoding="utf-8"))
     assert layer["resolution"] == resolution
@@ -159,7 +159,7 @@ def test_the_fifteen_cases_of_the_hallway_study() -> None:
         if card.name.startswith("hall_"):
             for case in card.cases:
                 found.setdefault(case.group, []).append(case.name)
-                assert case.any_heading
+                assert case.is_heading_random
                 assert case.target_radius == 0.25
                 assert sorted(case.start_shift) == sorted(case.target_shift) == [0, 0.3]
     assert {group: sorted(names) for group, names in found.items()} == {

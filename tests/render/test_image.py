@@ -34,8 +34,8 @@ def test_things_are_where_they_are() -> None:
     assert near(pixels, camera, 2.4, 0.6, Role.WALL)
     assert near(pixels, camera, 1.9, 0.8, Role.TARGET)
     assert near(pixels, camera, 1.2, 0.3, Role.CONTACT)
-    assert near(pixels, camera, *scene.robots[0].pose.point(-0.1, 0.0), Role.ROBOT)
-    assert near(pixels, camera, *scene.robots[1].pose.point(-0.1, 0.0), Role.ROBOT_2)
+    assert near(pixels, camera, *scene.robots[0].pose.transform_point(-0.1, 0.0), Role.ROBOT)
+    assert near(pixels, camera, *scene.robots[1].pose.transform_point(-0.1, 0.0), Role.ROBOT_2)
     assert tuple(pixels[-1, -1]) == PAPER
 
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from kit.sim.clock import Clock, UpdateTimer
+from kit.sim.clock_and_noise import Clock, UpdateTimer
 
 
 def fired(rate: float, step_size: float, duration: float) -> list[int]:
@@ -15,7 +15,7 @@ def fired(rate: float, step_size: float, duration: float) -> list[int]:
     timer = UpdateTimer(rate, clock)
     ticks = []
     while clock.time_ns < round(duration * 1e9):
-        if timer.due():
+        if timer.is_due():
             ticks.append(clock.tick)
         clock.tick += 1
     return ticks

@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 from kit.msg.std_msgs import String
-from kit.sim.context import Site
-from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.plugins import readers
+from kit.sim.context import PluginContext
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.plugins import plugin_readers
 from kit.sim.simulation import Simulation
 from kit.world.loading import load_world
-from kit.world.plugin_reader import ModelScope, Section
+from kit.world.plugin_reader import ModelScope
 from kit.world.problems import WorldError
+from kit.world.yaml_section import Section
 from tests.sim.workshop import FLATLAND, OURS, Workshop
 
 
@@ -27,18 +28,18 @@ class DummyParams:
     number: float
     count: int
 
-    def build(self, site: Site) -> Plugin:
+    def build(self, site: PluginContext) -> Plugin:
         return Dummy(self, site)
 
 
 class Dummy(Plugin):
-    def __init__(self, params: DummyParams, site: Site) -> None:
+    def __init__(self, params: DummyParams, site: PluginContext) -> None:
         self._params = params
         self._publisher = site.publisher("dummy", String)
         self.endpoints = [self._publisher.endpoint]
 
-    def after_step(self, dt: float) -> Iterable[Outgoing]:
-        return self._publisher.send(lambda: String(data=self._params.text))
+    def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        return self._publisher.publish(lambda: String(data=self._params.text))
 
 
 def read_dummy(section: Section, scope: ModelScope) -> DummyParams:
@@ -48,17 +49,17 @@ def read_dummy(section: Section, scope: ModelScope) -> DummyParams:
     return DummyParams(text, section.number("dummy_param_float"), section.integer("dummy_param_int"))
 
 
-DUMMY = {**readers, "DummyModelPlugin": read_dummy}
+DUMMY = {**plugin_readers, "DummyModelPlugin": read_dummy}
 FOLDER = FLATLAND / "flatland_server" / "test" / "plugin_manager_tests"
 needs_flatland = pytest.mark.skipif(not FOLDER.exists(), reason="Flatland's own worlds are not here")
 
 
 @needs_flatland
 def test_a_device_from_elsewhere() -> None:
-    world = load_world(FOLDER / "load_dummy_test" / "world.yaml", devices=DUMMY)
+    world = load_world(FOLDER / "load_dummy_test" / "world.yaml", plugin_readers=DUMMY)
     [spec] = world.models[0].plugins
     assert spec.params == DummyParams("dummy_test_123456", 0.123456, 123456)
-    assert Simulation(world).step() == [Outgoing("/dummy", String(data="dummy_test_123456"))]
+    assert Simulation(world).step() == [OutgoingMessage("/dummy", String(data="dummy_test_123456"))]
 
 
 @needs_flatland
@@ -73,7 +74,7 @@ def test_a_device_from_elsewhere() -> None:
 )
 def test_what_flatland_refuses(folder: str, words: str) -> None:
     with pytest.raises(WorldError, match=words):
-        load_world(FOLDER / folder / "world.yaml", devices=DUMMY, root=FOLDER)
+        load_world(FOLDER / folder / "world.yaml", plugin_readers=DUMMY, root=FOLDER)
 
 
 @needs_flatland
@@ -100,12 +101,12 @@ def test_what_flatlands_plugins_refuse(workshop: Workshop, folder: str, words: s
 )
 def test_flatlands_worlds_run(path: Path) -> None:
     if "invalid" not in path.parent.name:
-        simulation = Simulation(load_world(path, devices=readers, root=FLATLAND))
+        simulation = Simulation(load_world(path, plugin_readers=plugin_readers, root=FLATLAND))
         simulation.step(20)
         assert simulation.tick == 20
 
 
 def test_a_world_read_without_its_devices_says_what_to_do() -> None:
     world = load_world(OURS / "laser" / "world.yaml")
-    with pytest.raises(TypeError, match=r"robot.model.yaml:\d+:\d+: .*kit.sim.loading.load"):
+    with pytest.raises(TypeError, match=r"robot.model.yaml:\d+:\d+: .*kit.sim.simulation.load_world"):
         Simulation(world)

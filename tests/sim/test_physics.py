@@ -9,7 +9,7 @@ import pytest
 
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.physics import SLOP
+from kit.sim.physics import CONTACT_SLOP
 from kit.sim.simulation import Simulation
 from kit.sim.state import Contact
 from tests.sim.workshop import Workshop
@@ -77,14 +77,14 @@ def test_the_robot_stops_with_its_nose_at_the_wall(workshop: Workshop) -> None:
     for _ in range(400):
         bumped += [out for out in simulation.step() if out.topic == "/collisions" and out.message.collisions]
         assert simulation.pose("serp").x + NOSE < 1.006  # a step's way, until it is noticed
-    assert simulation.pose("serp").x + NOSE == pytest.approx(1, abs=2 * SLOP)
+    assert simulation.pose("serp").x + NOSE == pytest.approx(1, abs=2 * CONTACT_SLOP)
     assert simulation.pose("serp")[1:] == pytest.approx((0, 0), abs=1e-6)
     assert bumped
-    assert simulation.touches("serp")
+    assert simulation.is_touching("serp")
     simulation.accept("/cmd_vel", command(-0.5))
     simulation.step(10)
-    assert simulation.pose("serp").x + NOSE == pytest.approx(0.95, abs=2 * SLOP)  # it does not stick
-    assert not simulation.touches("serp")
+    assert simulation.pose("serp").x + NOSE == pytest.approx(0.95, abs=2 * CONTACT_SLOP)  # it does not stick
+    assert not simulation.is_touching("serp")
 
 
 def test_sliding_along_a_wall_of_many_pieces_does_not_catch(workshop: Workshop) -> None:
@@ -333,7 +333,7 @@ def test_a_soft_weld_swings_with_its_frequency(workshop: Workshop) -> None:
     pair["bodies"][0]["type"] = "static"
     simulation = Simulation(workshop.world({"pair": pair}))
     simulation.set_velocity("pair", (0, 0, 0))
-    disc = simulation._stage.physics.bodies[1]
+    disc = simulation._instance.physics.bodies[1]
     disc.set_velocity(0, 0, 1.0)
     angles = []
     for _ in range(300):
@@ -439,7 +439,7 @@ def test_a_solid_body_on_an_edge_has_points_and_force(workshop: Workshop) -> Non
     assert isinstance(contact, Contact)
     assert len(contact.points) == 1
     simulation.step(100)
-    assert simulation.pose("disc").x == pytest.approx(-0.1, abs=2 * SLOP)  # pushed out
+    assert simulation.pose("disc").x == pytest.approx(-0.1, abs=2 * CONTACT_SLOP)  # pushed out
 
 
 def test_a_move_forgets_contacts(workshop: Workshop) -> None:

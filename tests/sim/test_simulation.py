@@ -13,7 +13,7 @@ import pytest
 
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.plugin import Outgoing
+from kit.sim.plugin import OutgoingMessage
 from kit.sim.simulation import Simulation, SimulationError
 from kit.world.records import World
 from tests.sim.workshop import OURS, Workshop
@@ -25,7 +25,7 @@ def command(forward: float, turn: float = 0.0) -> Twist:
     return Twist(linear=Vector3(x=float(forward)), angular=Vector3(z=float(turn)))
 
 
-def fingerprint(simulation: Simulation, sent: Iterable[Outgoing] = ()) -> str:
+def fingerprint(simulation: Simulation, sent: Iterable[OutgoingMessage] = ()) -> str:
     """Everything that can be seen of a run, to the bit."""
     digest = hashlib.sha256()
     state = simulation.state()
@@ -139,7 +139,10 @@ def test_a_reset_run_is_a_new_run(crowd: World) -> None:
 
 def test_what_is_wanted_changes_nothing(crowd: World) -> None:
     """With fixed commands: whether anybody looks does not move anything."""
-    watched, unwatched = Simulation(crowd, seed=1), Simulation(crowd, seed=1, wanted=lambda topic: False)
+    watched, unwatched = (
+        Simulation(crowd, seed=1),
+        Simulation(crowd, seed=1, has_subscribers=lambda topic: False),
+    )
     for simulation in (watched, unwatched):
         for i in range(5):
             simulation.accept(f"/robot{i}/cmd_vel", command(0.7, 0.5 * i))
@@ -238,13 +241,13 @@ def test_spawn(workshop: Workshop) -> None:
 def test_delete(workshop: Workshop) -> None:
     simulation = Simulation(workshop.serp(BOX))
     simulation.step(1)
-    assert simulation.scan_views()
+    assert simulation.latest_scans()
     simulation.delete_model("serp")
     assert simulation.model_names == ()
     assert simulation.state().bodies == ()
     assert list(simulation.endpoints) == []
     assert simulation.step(3) == []
-    assert simulation.scan_views() == ()
+    assert simulation.latest_scans() == ()
     assert simulation.outlines() == ()
     simulation.accept("/cmd_vel", command(1))  # nobody listens any more
 

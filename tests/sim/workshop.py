@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import yaml
 
-from kit.sim.loading import load
+from kit.sim.simulation import load_world
 from kit.world.records import World
 
 OURS = Path(__file__).parent / "worlds"
@@ -29,11 +29,11 @@ class Workshop:
     def find(self, name: str) -> World:
         """A world of ours, or one of Flatland's own, which is not here everywhere."""
         if not name.startswith("flatland:"):
-            return load(OURS / name)
+            return load_world(OURS / name)
         path = FLATLAND / name.removeprefix("flatland:")
         if not path.exists():
             pytest.skip(f"Flatland's own world is not here: {path.name}")
-        return load(path, root=FLATLAND)
+        return load_world(path, root=FLATLAND)
 
     def file(self, name: str, content: object) -> Path:
         """JSON is YAML."""
@@ -76,7 +76,7 @@ class Workshop:
                     "namespace": (namespaces or {}).get(name, ""),
                 }
             )
-        return load(self.file("world.yaml", described))
+        return load_world(self.file("world.yaml", described))
 
     def serp(
         self, walls: Sequence[Sequence[float]] = (), *, pose: Sequence[float] = (0, 0, 0), **changes: Mapped

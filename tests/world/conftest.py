@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.plugin_reader import DeviceReader, ModelScope, Section, WorldDeviceReader, WorldScope
-from kit.world.records import Sight
+from kit.world.plugin_reader import ModelScope, PluginReader, WorldPluginReader, WorldScope
+from kit.world.records import LaserMount
+from kit.world.yaml_section import Section
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]
 
@@ -52,7 +53,7 @@ def write(tmp_path: Path) -> WriteFiles:
 class Eye:
     """What the tests' laser keeps of its parameters."""
 
-    sight: Sight
+    mount: LaserMount
     range: float
 
 
@@ -65,8 +66,8 @@ class Builder:
 
 
 def _read_eye(section: Section, scope: ModelScope) -> Eye:
-    sight = Sight(scope.body(section, "body"), scope.layers(section), section.pose("origin", Pose()))
-    return Eye(sight, section.number("range", above=0))
+    mount = LaserMount(scope.body(section, "body"), scope.layers(section), section.pose("origin", Pose()))
+    return Eye(mount, section.number("range", above=0))
 
 
 def _read_builder(section: Section, scope: WorldScope) -> Builder:
@@ -74,10 +75,10 @@ def _read_builder(section: Section, scope: WorldScope) -> Builder:
 
 
 @pytest.fixture
-def devices() -> Mapping[str, DeviceReader]:
+def devices() -> Mapping[str, PluginReader]:
     return {"Laser": _read_eye}
 
 
 @pytest.fixture
-def world_devices() -> Mapping[str, WorldDeviceReader]:
+def world_devices() -> Mapping[str, WorldPluginReader]:
     return {"RandomWall": _read_builder}

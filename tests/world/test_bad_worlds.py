@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from kit.world.loading import load_world
-from kit.world.plugin_reader import DeviceReader
+from kit.world.plugin_reader import PluginReader
 from kit.world.problems import Problem, WorldError
 
 FOLDER = Path(__file__).parent / "bad_worlds"
@@ -17,10 +17,10 @@ NAMES = sorted(path.parent.name for path in FOLDER.glob("*/expected.yaml"))
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_refused_for_these_causes_only(name: str, devices: Mapping[str, DeviceReader]) -> None:
+def test_refused_for_these_causes_only(name: str, devices: Mapping[str, PluginReader]) -> None:
     folder = FOLDER / name
     with pytest.raises(WorldError) as caught:
-        load_world(folder / "world.yaml", devices=devices)
+        load_world(folder / "world.yaml", plugin_readers=devices)
     unexplained = list(caught.value.problems)
     for file, line, *words in yaml.safe_load((folder / "expected.yaml").read_text()):
         found = [p for p in unexplained if _is(p, folder / file, line, [str(word) for word in words])]
@@ -31,8 +31,8 @@ def test_refused_for_these_causes_only(name: str, devices: Mapping[str, DeviceRe
 
 def _is(problem: Problem, file: Path, line: int, words: list[str]) -> bool:
     return (
-        problem.place.file == file
-        and problem.place.line == line
+        problem.location.file == file
+        and problem.location.line == line
         and all(word in problem.message for word in words)
     )
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.catalogue import UnknownMap, all_maps, find_map, map_names, maps_folder, root_of
+from kit.world.catalogue import UnknownMap, all_maps, allowed_root_of, find_map, map_names, maps_folder
 from kit.world.loading import load_world
 from kit.world.problems import WorldError
 
@@ -42,7 +42,7 @@ def test_a_card_and_its_defaults(tmp_path: Path) -> None:
         (1, 2),
         0.2,
     )
-    assert (case.start_shift, case.target_shift, case.any_heading) == ((0, 0), (0, 0), False)
+    assert (case.start_shift, case.target_shift, case.is_heading_random) == ((0, 0), (0, 0), False)
     assert (case.group, case.partner_start) == ("", None)
 
 
@@ -58,7 +58,7 @@ def test_a_card_with_every_key(tmp_path: Path) -> None:
     assert (found.robot, found.partner) == ("left", "right")
     case = found.cases[1]
     assert (case.target_radius, case.start_shift, case.target_shift) == (0.3, (0.3, 0), (0, 0.3))
-    assert (case.any_heading, case.group, case.partner_start) == (True, "turns", Pose(1, 1, 0))
+    assert (case.is_heading_random, case.group, case.partner_start) == (True, "turns", Pose(1, 1, 0))
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_a_wrong_card_says_where(tmp_path: Path, old: str, new: str, words: list
     with pytest.raises(WorldError) as caught:
         find_map("hall", tmp_path)
     assert all(word in str(caught.value) for word in words), caught.value
-    assert caught.value.problems[0].place.file == tmp_path / "hall" / "about.yaml"
+    assert caught.value.problems[0].location.file == tmp_path / "hall" / "about.yaml"
 
 
 def test_folders_without_a_card_are_no_maps(tmp_path: Path) -> None:
@@ -102,10 +102,10 @@ def test_the_nearest_name_is_offered() -> None:
 def test_the_kits_own_maps_are_found_and_may_share_their_robots() -> None:
     maze = find_map("maze")
     assert maze.root == maps_folder()
-    assert root_of(maze.world_file) == maps_folder()
+    assert allowed_root_of(maze.world_file) == maps_folder()
     assert load_world(maze.world_file, root=maze.root).models[0].name == maze.robot
     assert maze.name in map_names()
 
 
 def test_other_worlds_keep_to_their_own_folder(tmp_path: Path) -> None:
-    assert root_of(tmp_path / "world.yaml") is None
+    assert allowed_root_of(tmp_path / "world.yaml") is None

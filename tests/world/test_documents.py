@@ -77,8 +77,8 @@ def test_an_include_is_put_in_relative_to_the_file_that_names_it(write: WriteFil
     walls = loaded.layers[0].walls
     assert walls is not None
     assert walls.file == world.parent / "parts" / "map.yaml"
-    assert walls.source == world.parent / "lines.dat"
-    assert walls.local.max() == 8
+    assert walls.drawing_file == world.parent / "lines.dat"
+    assert walls.local_segments.max() == 8
 
 
 def test_a_list_takes_every_document_of_an_include(write: WriteFiles) -> None:

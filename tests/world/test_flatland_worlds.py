@@ -14,12 +14,13 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
 from kit.world.loading import load_world
-from kit.world.plugin_reader import DeviceReader, ModelScope, Section
-from kit.world.problems import Problems, WorldError
-from kit.world.records import Place, World
+from kit.world.plugin_reader import ModelScope, PluginReader
+from kit.world.problems import ProblemCollector, WorldError
+from kit.world.records import SourceLocation, World
+from kit.world.yaml_section import Section
 
 FLATLAND = Path(__file__).resolve().parents[3] / "shared" / "flatland_worlds" / "avidbots-flatland"
 LOAD = "flatland_server/test/load_world_tests"
@@ -117,11 +118,11 @@ BAD: dict[str, tuple[str, int, tuple[str, ...]]] = {
 
 
 @pytest.fixture
-def all_devices() -> Mapping[str, DeviceReader]:
+def all_devices() -> Mapping[str, PluginReader]:
     """The kit's own plugins, and the one that only Flatland's tests have."""
-    from kit.sim.plugins import readers
+    from kit.sim.plugins import plugin_readers
 
-    return {**readers, "DummyModelPlugin": _read_dummy}
+    return {**plugin_readers, "DummyModelPlugin": _read_dummy}
 
 
 def _read_dummy(section: Section, scope: ModelScope) -> str:
@@ -132,15 +133,16 @@ def _read_dummy(section: Section, scope: ModelScope) -> str:
 
 
 @pytest.mark.parametrize("world", GOOD)
-def test_good_world_has_its_known_numbers(world: str, all_devices: Mapping[str, DeviceReader]) -> None:
-    loaded = load_world(FLATLAND / world, root=FLATLAND, devices=all_devices)
+def test_good_world_has_its_known_numbers(world: str, all_devices: Mapping[str, PluginReader]) -> None:
+    loaded = load_world(FLATLAND / world, root=FLATLAND, plugin_readers=all_devices)
     assert _numbers(loaded) == GOOD[world]
 
 
 def _numbers(world: World) -> Numbers:
     return Numbers(
         tuple(
-            (layer.names, None if layer.walls is None else len(layer.walls.local)) for layer in world.layers
+            (layer.names, None if layer.walls is None else len(layer.walls.local_segments))
+            for layer in world.layers
         ),
         tuple(
             (model.name, len(model.bodies), len(model.joints), tuple(plugin.type for plugin in model.plugins))
@@ -150,12 +152,16 @@ def _numbers(world: World) -> Numbers:
 
 
 @pytest.mark.parametrize("world", BAD)
-def test_bad_world_is_refused_for_its_cause(world: str, all_devices: Mapping[str, DeviceReader]) -> None:
+def test_bad_world_is_refused_for_its_cause(world: str, all_devices: Mapping[str, PluginReader]) -> None:
     file, line, words = BAD[world]
     folder = FLATLAND / world
     with pytest.raises(WorldError) as caught:
-        load_world(folder / "world.yaml", root=FLATLAND, devices=all_devices)
-    here = [p.message for p in caught.value.problems if (p.place.file, p.place.line) == (folder / file, line)]
+        load_world(folder / "world.yaml", root=FLATLAND, plugin_readers=all_devices)
+    here = [
+        p.message
+        for p in caught.value.problems
+        if (p.location.file, p.location.line) == (folder / file, line)
+    ]
     assert any(all(word in message for word in words) for message in here), str(caught.value)
 
 
@@ -240,7 +246,7 @@ def test_the_walls_and_footprints_that_flatlands_test_lists() -> None:
 def _walls(world: World, layer: int) -> set[tuple[float, ...]]:
     walls = world.layers[layer].walls
     assert walls is not None
-    return {tuple(float(number) for number in wall) for wall in walls.local.round(9)}
+    return {tuple(float(number) for number in wall) for wall in walls.local_segments.round(9)}
 
 
 PREPROCESSOR = "flatland_server/test/yaml_preprocessor/yaml"
@@ -267,13 +273,15 @@ def test_variables_give_what_flatlands_test_expects(tmp_path: Path) -> None:
 def test_code_is_refused_where_it_stands() -> None:
     with pytest.raises(WorldError) as caught:
         _read(FLATLAND / PREPROCESSOR / "eval.strings.yaml")
-    lines = {problem.place.line for problem in caught.value.problems}
+    lines = {problem.location.line for problem in caught.value.problems}
     assert lines == {1, 2, 3, 4, 6, 9, 11, *range(28, 37)}
 
 
 def _read(file: Path, environment: Mapping[str, str] | None = None) -> Mapping[str, object]:
-    problems = Problems()
-    section = Documents(Enclosure.around(file), environment or {}, problems).section(file, Place(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.containing(file), environment or {}, problems).section(
+        file, SourceLocation(file)
+    )
     problems.raise_if_any()
     assert section is not None
-    return section.rest()
+    return section.remaining_values()

@@ -13,9 +13,9 @@ from PIL import Image
 
 from kit.geometry import Pose
 from kit.world.loading import load_model, load_world
-from kit.world.plugin_reader import DeviceReader, WorldDeviceReader
+from kit.world.plugin_reader import PluginReader, WorldPluginReader
 from kit.world.problems import WorldError
-from kit.world.records import ALL_LAYERS, Anchor, Circle, Place, Polygon, Sight
+from kit.world.records import ALL_LAYERS, Anchor, Circle, LaserMount, Polygon, SourceLocation
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]
 
@@ -49,7 +49,7 @@ def test_every_default(write: WriteFiles) -> None:
         True,
     )
     assert (footprint.layers, footprint.category, footprint.mask) == (("all",), ALL_LAYERS, ALL_LAYERS)
-    assert footprint.place == Place(model.file, 4, 9)
+    assert footprint.location == SourceLocation(model.file, 4, 9)
 
 
 EVERY_KEY = {
@@ -155,11 +155,11 @@ def test_layers_with_every_key(full: Path) -> None:
     assert (names.name, names.names, names.walls) == ("3d", ("3d", "4d"), None)
     assert picture.walls is not None
     assert floor.walls is not None
-    assert (len(picture.walls.local), picture.walls.origin) == (4, Pose(0.05, -0.05, 1.57))
-    assert (picture.walls.file.name, picture.walls.source.name) == ("picture.yaml", "picture.png")
+    assert (len(picture.walls.local_segments), picture.walls.origin) == (4, Pose(0.05, -0.05, 1.57))
+    assert (picture.walls.file.name, picture.walls.drawing_file.name) == ("picture.yaml", "picture.png")
     assert floor.walls.origin == Pose(-1.2, -5, 1.23)
-    assert np.allclose(floor.walls.local, [[0.1, 0.2, 0.3, 0.4], [-0.1, -0.2, -0.3, -0.4]])
-    x, y = Pose(-1.2, -5, 1.23).point(0.1, 0.2)
+    assert np.allclose(floor.walls.local_segments, [[0.1, 0.2, 0.3, 0.4], [-0.1, -0.2, -0.3, -0.4]])
+    x, y = Pose(-1.2, -5, 1.23).transform_point(0.1, 0.2)
     assert np.allclose(floor.walls.segments[0, :2], [x, y])
 
 
@@ -195,17 +195,17 @@ def test_joints_with_every_key(full: Path) -> None:
 
 
 def test_plugins_get_what_their_readers_make_of_their_keys(
-    full: Path, devices: Mapping[str, DeviceReader], world_devices: Mapping[str, WorldDeviceReader]
+    full: Path, devices: Mapping[str, PluginReader], world_devices: Mapping[str, WorldPluginReader]
 ) -> None:
-    world = load_world(full, devices=devices, world_devices=world_devices)
+    world = load_world(full, plugin_readers=devices, world_plugin_readers=world_devices)
     eye, other = world.models[0].plugins
     assert [(plugin.name, plugin.type) for plugin in (eye, other)] == [
         ("eye", "Laser"),
         ("other eye", "Laser"),
     ]
-    assert getattr(eye.params, "sight", None) == Sight("base", 8, Pose(1, 0, 0))
-    assert getattr(other.params, "sight", None) == Sight("wheel", ALL_LAYERS)
-    assert eye.place == Place(full.parent / "robot.model.yaml", 47, 5)
+    assert getattr(eye.params, "mount", None) == LaserMount("base", 8, Pose(1, 0, 0))
+    assert getattr(other.params, "mount", None) == LaserMount("wheel", ALL_LAYERS)
+    assert eye.location == SourceLocation(full.parent / "robot.model.yaml", 47, 5)
     (builder,) = world.plugins
     assert (builder.type, getattr(builder.params, "model", None)) == ("RandomWall", "robot2")
 
@@ -222,14 +222,14 @@ def test_without_readers_parameters_stay_as_they_are_written(full: Path) -> None
 
 
 def test_a_world_plugin_may_only_name_what_there_is(
-    write: WriteFiles, world_devices: Mapping[str, WorldDeviceReader]
+    write: WriteFiles, world_devices: Mapping[str, WorldPluginReader]
 ) -> None:
     world = write({})
     world.write_text(
         world.read_text() + "plugins: [{name: b, type: RandomWall, layer: wals, robot_name: robto, x: 1}]\n"
     )
     with pytest.raises(WorldError) as caught:
-        load_world(world, world_devices=world_devices)
+        load_world(world, world_plugin_readers=world_devices)
     assert len(caught.value.problems) == 3
     assert all(word in str(caught.value) for word in ('"walls"', '"robot"', '"x"'))
 
@@ -264,14 +264,14 @@ def test_walls_cannot_be_changed(write: WriteFiles) -> None:
     walls = load_world(write({})).layers[0].walls
     assert walls is not None
     with pytest.raises(ValueError, match="read-only"):
-        walls.local[0, 0] = 1
+        walls.local_segments[0, 0] = 1
 
 
-def test_one_model_is_loaded_for_a_running_world(full: Path, devices: Mapping[str, DeviceReader]) -> None:
+def test_one_model_is_loaded_for_a_running_world(full: Path, devices: Mapping[str, PluginReader]) -> None:
     bits = load_world(full).layer_bits
     file = full.parent / "robot.model.yaml"
     model = load_model(
-        file, name="new", namespace="ns", pose=Pose(1, 2, math.pi), layer_bits=bits, devices=devices
+        file, name="new", namespace="ns", pose=Pose(1, 2, math.pi), layer_bits=bits, plugin_readers=devices
     )
     assert (model.name, model.namespace, model.pose, model.file) == ("new", "ns", Pose(1, 2, math.pi), file)
     assert model.bodies[0].footprints[0].category == 0b1100
@@ -301,4 +301,4 @@ def test_a_large_world_loads_well_under_a_second(write: WriteFiles) -> None:
     start = time.perf_counter()
     loaded = load_world(world)
     assert time.perf_counter() - start < 1.0
-    assert sum(len(layer.walls.local) for layer in loaded.layers if layer.walls) > 5000 * 16
+    assert sum(len(layer.walls.local_segments) for layer in loaded.layers if layer.walls) > 5000 * 16

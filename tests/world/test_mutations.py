@@ -18,9 +18,9 @@ import yaml
 from PIL import Image
 
 from kit.world.loading import load_world
-from kit.world.plugin_reader import DeviceReader
+from kit.world.plugin_reader import PluginReader
 from kit.world.problems import WorldError
-from kit.world.report import details, summary
+from kit.world.report import world_report, world_report_data
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
@@ -244,22 +244,22 @@ def mutated(seed: int) -> Files:
     return files
 
 
-def refusal(folder: Path, files: Files, devices: Mapping[str, DeviceReader]) -> WorldError | None:
+def refusal(folder: Path, files: Files, devices: Mapping[str, PluginReader]) -> WorldError | None:
     """Why the world is refused; None if it is not, and then it can also be described."""
     for name, content in files.items():
         (folder / name).write_bytes(content)
     try:
-        world = load_world(folder / "world.yaml", devices=devices)
+        world = load_world(folder / "world.yaml", plugin_readers=devices)
     except WorldError as error:
         return error
-    assert summary(world)
-    assert details(world)
+    assert world_report(world)
+    assert world_report_data(world)
     return None
 
 
 @pytest.mark.parametrize("batch", range(BATCHES))
 def test_a_damaged_world_is_read_or_refused(
-    batch: int, tmp_path: Path, devices: Mapping[str, DeviceReader]
+    batch: int, tmp_path: Path, devices: Mapping[str, PluginReader]
 ) -> None:
     refused = 0
     seeds = range(batch, WORLDS, BATCHES)
@@ -271,13 +271,13 @@ def test_a_damaged_world_is_read_or_refused(
         if error is not None:
             refused += 1
             assert error.problems, seed
-            assert all(problem.place.file.is_relative_to(tmp_path) for problem in error.problems), seed
+            assert all(problem.location.file.is_relative_to(tmp_path) for problem in error.problems), seed
             assert str(error).encode(), seed
     assert 0.5 < refused / len(seeds) < 1
 
 
-def test_the_world_that_is_damaged_is_sound(tmp_path: Path, devices: Mapping[str, DeviceReader]) -> None:
+def test_the_world_that_is_damaged_is_sound(tmp_path: Path, devices: Mapping[str, PluginReader]) -> None:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     Image.new("L", (6, 5), 255).save(tmp_path / "picture.png")
-    assert len(load_world(tmp_path / "world.yaml", devices=devices).models) == 4
+    assert len(load_world(tmp_path / "world.yaml", plugin_readers=devices).models) == 4

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.geometry import Pose
-from kit.world.records import Model, Place
+from kit.world.records import Model, SourceLocation
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,7 @@ from kit.world.records import Model, Place
 )
 def test_names_are_prefixed_by_the_namespace(namespace: str, name: str, topic: str, frame: str) -> None:
     file = Path("m.yaml")
-    model = Model("m", namespace, Pose(), file, (), (), (), Place(file))
+    model = Model("m", namespace, Pose(), file, (), (), (), SourceLocation(file))
     assert (model.topic(name), model.frame(name)) == (topic, frame)
 
 
@@ -37,8 +37,8 @@ def test_names_are_prefixed_by_the_namespace(namespace: str, name: str, topic: s
 def test_points_are_carried_into_a_frame(
     frame: Pose, point: tuple[float, float], expected: tuple[float, float]
 ) -> None:
-    assert frame.point(*point) == pytest.approx(expected, abs=1e-5)
+    assert frame.transform_point(*point) == pytest.approx(expected, abs=1e-5)
 
 
 def test_places_are_written_as_editors_read_them() -> None:
-    assert str(Place(Path("worlds/a.yaml"), 3, 7)) == "worlds/a.yaml:3:7"
+    assert str(SourceLocation(Path("worlds/a.yaml"), 3, 7)) == "worlds/a.yaml:3:7"

@@ -10,10 +10,10 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.plain_text import WIDTH, blocks, listed, table
+from kit.plain_text import WIDTH, grouped_table, join_names, table
 from kit.world.loading import load_world
-from kit.world.plugin_reader import DeviceReader
-from kit.world.report import details, summary
+from kit.world.plugin_reader import PluginReader
+from kit.world.report import world_report, world_report_data
 
 WriteFiles = Callable[[Mapping[str, str | bytes]], Path]
 
@@ -37,9 +37,9 @@ def many(write: WriteFiles, count: int) -> Path:
 
 
 def test_it_tells_what_is_there_and_who_meets_whom(
-    write: WriteFiles, devices: Mapping[str, DeviceReader]
+    write: WriteFiles, devices: Mapping[str, PluginReader]
 ) -> None:
-    text = summary(load_world(many(write, 2), devices=devices))
+    text = world_report(load_world(many(write, 2), plugin_readers=devices))
     words = " ".join(text.split())
     for fact in (
         "4.00 m x 3.00 m",
@@ -54,26 +54,26 @@ def test_it_tells_what_is_there_and_who_meets_whom(
         assert fact in words, f"{fact} in\n{text}"
 
 
-def test_fifty_models_are_as_readable_as_two(write: WriteFiles, devices: Mapping[str, DeviceReader]) -> None:
-    few = summary(load_world(many(write, 3), devices=devices))
-    world = load_world(many(write, 50), devices=devices)
+def test_fifty_models_are_as_readable_as_two(write: WriteFiles, devices: Mapping[str, PluginReader]) -> None:
+    few = world_report(load_world(many(write, 3), plugin_readers=devices))
+    world = load_world(many(write, 50), plugin_readers=devices)
     start = time.perf_counter()
-    text = summary(world)
+    text = world_report(world)
     assert time.perf_counter() - start < 1.0
     assert len(text.splitlines()) <= len(few.splitlines()) + 5
     assert "robot49" not in text
     assert "47 more" in text
 
 
-def test_no_line_is_wider_than_a_terminal(write: WriteFiles, devices: Mapping[str, DeviceReader]) -> None:
+def test_no_line_is_wider_than_a_terminal(write: WriteFiles, devices: Mapping[str, PluginReader]) -> None:
     world = many(write, 50)
     world.write_text(world.read_text().replace("robot", "r" * 60).replace("r" * 60 + ".model", "robot.model"))
-    lines = summary(load_world(world, devices=devices)).splitlines()
+    lines = world_report(load_world(world, plugin_readers=devices)).splitlines()
     assert all(len(line) <= WIDTH or str(world) in line for line in lines)
 
 
-def test_details_are_data(write: WriteFiles, devices: Mapping[str, DeviceReader]) -> None:
-    data = json.loads(json.dumps(details(load_world(many(write, 2), devices=devices))))
+def test_details_are_data(write: WriteFiles, devices: Mapping[str, PluginReader]) -> None:
+    data = json.loads(json.dumps(world_report_data(load_world(many(write, 2), plugin_readers=devices))))
     assert data["size"] == [4, 3]
     assert [layer["segments"] for layer in data["layers"]] == [2, None]
     assert [model["name"] for model in data["models"]] == ["robot00", "robot01"]
@@ -92,8 +92,8 @@ def test_details_are_data(write: WriteFiles, devices: Mapping[str, DeviceReader]
 
 def test_an_empty_world_has_little_to_say(write: WriteFiles) -> None:
     world = load_world(write({"world.yaml": "properties: {}\nlayers: []\n"}))
-    assert "no walls" in summary(world)
-    assert details(world)["size"] is None
+    assert "no walls" in world_report(world)
+    assert world_report_data(world)["size"] is None
 
 
 words = st.text("abc de", max_size=60)
@@ -112,12 +112,12 @@ def test_tables_keep_every_word_and_their_width(rows: list[list[str]]) -> None:
 
 @given(st.lists(st.tuples(words, words, words)))
 def test_blocks_keep_their_width(rows: list[tuple[str, str, str]]) -> None:
-    assert all(len(line) <= 60 for line in blocks(rows, 60))
+    assert all(len(line) <= 60 for line in grouped_table(rows, 60))
 
 
 def test_columns_are_aligned() -> None:
     assert table([("a", "b"), ("long", "c")]) == ["a     b", "long  c"]
-    assert blocks([("who", "a", "b"), ("he", "c", "d"), ("who", "long", "e")]) == [
+    assert grouped_table([("who", "a", "b"), ("he", "c", "d"), ("who", "long", "e")]) == [
         "who",
         "  a     b",
         "  long  e",
@@ -127,5 +127,5 @@ def test_columns_are_aligned() -> None:
 
 
 def test_many_names_are_cut() -> None:
-    assert listed(["a", "b"]) == "a, b"
-    assert listed([str(i) for i in range(10)], at_most=3) == "0, 1 and 8 more"
+    assert join_names(["a", "b"]) == "a, b"
+    assert join_names([str(i) for i in range(10)], at_most=3) == "0, 1 and 8 more"

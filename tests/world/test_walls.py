@@ -15,16 +15,16 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 from PIL import Image
 
-from kit.world.files import Unusable
-from kit.world.problems import Problems, WorldError
+from kit.world.files import UnusableFile
+from kit.world.problems import ProblemCollector, WorldError
 from kit.world.walls import (
     MAX_IMAGE_BYTES,
     MAX_PIXELS,
     MAX_SEGMENTS,
-    image_walls,
-    read_grey,
-    read_lines,
-    trace,
+    read_grey_image,
+    trace_edges,
+    walls_from_image,
+    walls_from_lines,
 )
 
 Segments = set[tuple[float, ...]]
@@ -40,7 +40,7 @@ def dark(*rows: str) -> NDArray[np.bool_]:
 
 
 def test_a_pixel_within_has_four_sides() -> None:
-    assert segments(trace(dark("...", ".#.", "..."), 0.5)) == {
+    assert segments(trace_edges(dark("...", ".#.", "..."), 0.5)) == {
         (0.5, 1.0, 1.0, 1.0),
         (0.5, 0.5, 1.0, 0.5),
         (0.5, 0.5, 0.5, 1.0),
@@ -49,17 +49,17 @@ def test_a_pixel_within_has_four_sides() -> None:
 
 
 def test_the_rim_is_walled_where_it_is_dark_and_open_where_it_is_bright() -> None:
-    assert segments(trace(dark("#."), 1)) == {(0, 1, 1, 1), (0, 0, 1, 0), (0, 0, 0, 1), (1, 0, 1, 1)}
-    assert len(trace(dark("..", ".."), 1)) == 0
+    assert segments(trace_edges(dark("#."), 1)) == {(0, 1, 1, 1), (0, 0, 1, 0), (0, 0, 0, 1), (1, 0, 1, 1)}
+    assert len(trace_edges(dark("..", ".."), 1)) == 0
 
 
 def test_a_line_one_pixel_wide_is_two_walls_and_runs_are_joined() -> None:
-    walls = segments(trace(dark(".....", "#####", "....."), 1))
+    walls = segments(trace_edges(dark(".....", "#####", "....."), 1))
     assert walls == {(0, 2, 5, 2), (0, 1, 5, 1), (0, 1, 0, 2), (5, 1, 5, 2)}
 
 
 def test_walls_that_meet_at_a_corner_only_are_not_joined_round_it() -> None:
-    walls = segments(trace(dark("#.", ".#"), 1))
+    walls = segments(trace_edges(dark("#.", ".#"), 1))
     assert {
         (0, 1, 2, 1),
         (1, 0, 1, 2),
@@ -72,7 +72,7 @@ def test_flatlands_own_picture_of_rings(tmp_path: Path) -> None:
     bright = np.full((5, 5), 255, dtype=np.uint8)
     bright[0, :] = bright[-1, :] = bright[:, 0] = bright[:, -1] = bright[2, 2] = 0
     Image.fromarray(bright).save(tmp_path / "rings.png")
-    walls = image_walls(tmp_path / "rings.png", resolution=0.05, occupied_thresh=0.65)
+    walls = walls_from_image(tmp_path / "rings.png", resolution=0.05, occupied_thresh=0.65)
     lying = [
         (0.25, 0, 0.25),
         (0.2, 0.05, 0.2),
@@ -107,14 +107,14 @@ def naive(picture: NDArray[np.bool_]) -> Segments:
 
 @given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=9)))
 def test_every_picture_gives_the_walls_of_the_rule(picture: NDArray[np.bool_]) -> None:
-    walls = trace(picture, 1.0)
+    walls = trace_edges(picture, 1.0)
     assert segments(walls) == naive(picture)
     assert len(walls) == len(segments(walls))
 
 
 @given(arrays(np.bool_, array_shapes(min_dims=2, max_dims=2, max_side=9)))
 def test_every_wall_around_dark_pixels_closes(picture: NDArray[np.bool_]) -> None:
-    walls = trace(picture, 1.0)
+    walls = trace_edges(picture, 1.0)
     edges = ((picture[:, 1:] != picture[:, :-1]).sum(), (picture[1:] != picture[:-1]).sum())
     rim = picture[0].sum() + picture[-1].sum() + picture[:, 0].sum() + picture[:, -1].sum()
     assert np.abs(walls[:, 2:] - walls[:, :2]).sum() == sum(edges) + rim
@@ -127,7 +127,7 @@ def test_every_wall_around_dark_pixels_closes(picture: NDArray[np.bool_]) -> Non
 def test_a_pixel_is_dark_below_the_threshold(tmp_path: Path, threshold: float, darkest_bright: int) -> None:
     file = tmp_path / "ramp.png"
     Image.fromarray(np.repeat(np.arange(256, dtype=np.uint8), 2).reshape(256, 2)).save(file)
-    walls = image_walls(file, resolution=1, occupied_thresh=threshold)
+    walls = walls_from_image(file, resolution=1, occupied_thresh=threshold)
     assert {float(y) for x1, y, x2, y2 in walls if y == y2} == (
         {256.0, 256.0 - darkest_bright} if darkest_bright else set()
     )
@@ -135,7 +135,7 @@ def test_a_pixel_is_dark_below_the_threshold(tmp_path: Path, threshold: float, d
 
 def test_a_threshold_no_pixel_reaches_leaves_all_dark(tmp_path: Path) -> None:
     Image.new("L", (2, 2), 255).save(tmp_path / "white.png")
-    assert len(image_walls(tmp_path / "white.png", resolution=1, occupied_thresh=1.5)) == 4
+    assert len(walls_from_image(tmp_path / "white.png", resolution=1, occupied_thresh=1.5)) == 4
 
 
 COLORS: list[tuple[str, object, str, int]] = [
@@ -163,7 +163,7 @@ def test_every_kind_of_picture_becomes_grey(
 ) -> None:
     file = tmp_path / "picture"
     Image.new(mode, (3, 2), pixel).save(file, format_)
-    assert read_grey(file).tolist() == [[grey] * 3] * 2
+    assert read_grey_image(file).tolist() == [[grey] * 3] * 2
 
 
 def test_a_palette_is_looked_up_and_its_transparency_ignored(tmp_path: Path) -> None:
@@ -171,7 +171,7 @@ def test_a_palette_is_looked_up_and_its_transparency_ignored(tmp_path: Path) -> 
     picture.putpalette([0, 0, 0, 255, 255, 255])
     picture.putpixel((1, 0), 1)
     picture.save(tmp_path / "palette.png", transparency=1)
-    assert read_grey(tmp_path / "palette.png").tolist() == [[0, 255]]
+    assert read_grey_image(tmp_path / "palette.png").tolist() == [[0, 255]]
 
 
 def test_a_large_map_is_quick(tmp_path: Path) -> None:
@@ -180,21 +180,21 @@ def test_a_large_map_is_quick(tmp_path: Path) -> None:
         picture[i : i + 10, i : i + 10, :3] = 0
     Image.fromarray(picture).save(tmp_path / "large.png")
     start = time.perf_counter()
-    walls = image_walls(tmp_path / "large.png", resolution=0.05, occupied_thresh=0.65)
+    walls = walls_from_image(tmp_path / "large.png", resolution=0.05, occupied_thresh=0.65)
     assert time.perf_counter() - start < 1.0
     assert len(walls) == 200
 
 
 def test_a_large_map_in_memory_is_traced_quickly() -> None:
     start = time.perf_counter()
-    assert len(trace(np.zeros((1000, 1000), dtype=np.bool_), 0.05)) == 0
+    assert len(trace_edges(np.zeros((1000, 1000), dtype=np.bool_), 0.05)) == 0
     assert time.perf_counter() - start < 0.5
 
 
 def test_a_noisy_picture_is_refused() -> None:
     noise = np.random.default_rng(1).random((600, 600)) < 0.5
-    with pytest.raises(Unusable, match=str(MAX_SEGMENTS)):
-        trace(noise, 1.0)
+    with pytest.raises(UnusableFile, match=str(MAX_SEGMENTS)):
+        trace_edges(noise, 1.0)
 
 
 def png(width: int, height: int) -> bytes:
@@ -214,8 +214,8 @@ def test_a_picture_that_would_unpack_to_too_many_pixels_is_refused(
     tmp_path: Path, width: int, height: int
 ) -> None:
     (tmp_path / "bomb.png").write_bytes(png(width, height))
-    with pytest.raises(Unusable, match=str(MAX_PIXELS)):
-        read_grey(tmp_path / "bomb.png")
+    with pytest.raises(UnusableFile, match=str(MAX_PIXELS)):
+        read_grey_image(tmp_path / "bomb.png")
 
 
 BROKEN = {
@@ -232,8 +232,8 @@ BROKEN = {
 @pytest.mark.parametrize("content", BROKEN.values(), ids=BROKEN.keys())
 def test_a_broken_picture_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "broken.png").write_bytes(content)
-    with pytest.raises(Unusable):
-        read_grey(tmp_path / "broken.png")
+    with pytest.raises(UnusableFile):
+        read_grey_image(tmp_path / "broken.png")
 
 
 @given(st.data())
@@ -250,8 +250,8 @@ def test_a_damaged_picture_is_read_or_refused(
     file = tmp_path_factory.mktemp("damaged") / "picture"
     file.write_bytes(damaged[: data.draw(st.integers(0, len(damaged)))])
     try:
-        grey = read_grey(file)
-    except Unusable:
+        grey = read_grey_image(file)
+    except UnusableFile:
         return
     assert grey.dtype == np.uint8
     assert grey.ndim == 2
@@ -261,15 +261,15 @@ def test_a_huge_picture_file_is_not_read(tmp_path: Path) -> None:
     with (tmp_path / "huge.png").open("wb") as file:
         file.write(png(10, 10))
         file.truncate(1 << 30)
-    with pytest.raises(Unusable, match=f"{MAX_IMAGE_BYTES // 1_000_000} MB"):
-        read_grey(tmp_path / "huge.png")
+    with pytest.raises(UnusableFile, match=f"{MAX_IMAGE_BYTES // 1_000_000} MB"):
+        read_grey_image(tmp_path / "huge.png")
 
 
 def lines(tmp_path: Path, text: str, scale: float = 1.0) -> NDArray[np.float64]:
     file = tmp_path / "lines.dat"
     file.write_text(text)
-    problems = Problems()
-    walls = read_lines(file, scale, problems)
+    problems = ProblemCollector()
+    walls = walls_from_lines(file, scale, problems)
     problems.raise_if_any()
     return walls
 
@@ -295,11 +295,11 @@ def test_what_is_no_segment_is_noted(tmp_path: Path, text: str) -> None:
 def test_of_many_bad_lines_some_are_noted(tmp_path: Path) -> None:
     with pytest.raises(WorldError) as caught:
         lines(tmp_path, "x\n" * 50_000)
-    assert [problem.place.line for problem in caught.value.problems] == list(range(1, 11))
+    assert [problem.location.line for problem in caught.value.problems] == list(range(1, 11))
 
 
 def test_too_many_lines_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(Unusable, match=str(MAX_SEGMENTS)):
+    with pytest.raises(UnusableFile, match=str(MAX_SEGMENTS)):
         lines(tmp_path, "0 0 0 0\n" * (MAX_SEGMENTS + 1))
 
 

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from kit.geometry import Pose
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import MAX_PROBLEMS, Problem, Problems, WorldError
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import MAX_PROBLEMS, Problem, ProblemCollector, WorldError
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 
@@ -21,9 +21,9 @@ class Reading:
     """A section made from a text, and the problems it has noted."""
 
     def __init__(self, file: Path) -> None:
-        self._problems = Problems()
-        section = Documents(Enclosure.around(file), {"SECRET": "hunter2"}, self._problems).section(
-            file, Place(file)
+        self._problems = ProblemCollector()
+        section = WorldDocuments(AllowedRoot.containing(file), {"SECRET": "hunter2"}, self._problems).section(
+            file, SourceLocation(file)
         )
         assert section is not None
         self.section = section
@@ -87,7 +87,7 @@ GOOD: list[tuple[str, Get, object]] = [
     ("b: 1", lambda s: s.section("a", None), None),
     ("a: [{b: 1}, {b: 2}]", lambda s: [x.integer("b") for x in s.sections("a")], [1, 2]),
     ("b: 1", lambda s: s.sections("a", ()), ()),
-    ("a: {b: [1, no, {c: ~}]}", lambda s: s.rest(), {"a": {"b": (1, "no", {"c": None})}}),
+    ("a: {b: [1, no, {c: ~}]}", lambda s: s.remaining_values(), {"a": {"b": (1, "no", {"c": None})}}),
     ("a: 1\nb: 2", lambda s: s.keys(), ("a", "b")),
 ]
 
@@ -146,7 +146,7 @@ def test_a_wrong_value_is_noted_once_where_it_stands(
     reading = read(text)
     assert get(reading.section) == value
     (problem,) = reading.problems
-    assert (problem.place.line, problem.place.column) == (1, column)
+    assert (problem.location.line, problem.location.column) == (1, column)
     assert all(word in problem.message for word in words), problem.message
 
 
@@ -156,7 +156,7 @@ def test_finish_notes_every_unknown_key_with_the_nearest_right_one(read: Read) -
     reading.section.color("color", (1, 1, 1, 1))
     reading.section.has("layers")
     reading.section.finish()
-    assert [problem.place.line for problem in reading.problems] == [2, 3, 4]
+    assert [problem.location.line for problem in reading.problems] == [2, 3, 4]
     assert "color" in reading.problems[1].message
     assert all(word in reading.problems[2].message for word in ("xyz", "color", "layers"))
 
@@ -165,7 +165,7 @@ def test_where_unknown_keys_are_no_mistake_one_like_a_missing_key_is_still_point
     reading = read("origins: [0, 0, 0]\nnegate: 0\n")
     reading.section.pose("origin")
     reading.section.finish(ignore_unknown=True)
-    assert [(problem.place.line, "origin" in problem.message) for problem in reading.problems] == [
+    assert [(problem.location.line, "origin" in problem.message) for problem in reading.problems] == [
         (1, True),
         (1, True),
     ]
@@ -180,7 +180,7 @@ def test_problems_of_ones_own_stand_at_the_key_or_at_the_section(read: Read) -> 
     reading.section.error("one", "b")
     reading.section.error("two")
     reading.section.error("three", "missing")
-    assert [(str(problem.place.line), problem.place.column) for problem in reading.problems] == [
+    assert [(str(problem.location.line), problem.location.column) for problem in reading.problems] == [
         ("1", 1),
         ("1", 1),
         ("2", 6),
@@ -206,15 +206,15 @@ def test_a_value_that_could_not_be_had_is_reported_once(read: Read) -> None:
     assert reading.section.names("a") == ("",)
     reading.section.numbers("b")
     reading.section.sections("b")
-    assert [problem.place.line for problem in reading.problems] == [1, 2]
+    assert [problem.location.line for problem in reading.problems] == [1, 2]
 
 
 def test_problems_are_not_collected_without_end() -> None:
-    problems = Problems()
+    problems = ProblemCollector()
 
     def add_all() -> None:
         for line in range(1, 10 * MAX_PROBLEMS):
-            problems.add(Place(Path("a"), line), "wrong")
+            problems.add(SourceLocation(Path("a"), line), "wrong")
 
     with pytest.raises(WorldError) as caught:
         add_all()
@@ -222,7 +222,7 @@ def test_problems_are_not_collected_without_end() -> None:
 
 
 def test_the_error_says_all_sorted_by_place() -> None:
-    a, b = Place(Path("a.yaml"), 10, 2), Place(Path("a.yaml"), 9, 1)
+    a, b = SourceLocation(Path("a.yaml"), 10, 2), SourceLocation(Path("a.yaml"), 9, 1)
     error = WorldError([Problem(a, "late"), Problem(b, "early"), Problem(a, "late")])
     assert str(error) == "a.yaml:9:1: early\na.yaml:10:2: late"
 

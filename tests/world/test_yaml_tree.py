@@ -9,10 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.world.records import Place
-from kit.world.yaml_tree import Entry, Leaf, ListNode, MapNode, as_flag, as_integer, as_number, plain_value
+from kit.world.records import SourceLocation
+from kit.world.yaml_tree import (
+    ListNode,
+    MapEntry,
+    MapNode,
+    ScalarNode,
+    parse_bool,
+    parse_integer,
+    parse_number,
+    to_python,
+)
 
-PLACE = Place(Path("a.yaml"))
+PLACE = SourceLocation(Path("a.yaml"))
 
 
 @pytest.mark.parametrize(
@@ -47,39 +56,39 @@ PLACE = Place(Path("a.yaml"))
     ],
 )
 def test_plain_scalars_follow_yaml_1_2(text: str, value: object) -> None:
-    found = plain_value(Leaf(text, True, PLACE))
+    found = to_python(ScalarNode(text, True, PLACE))
     assert found == value
     assert type(found) is type(value)
 
 
 @pytest.mark.parametrize("text", ["1", "true", "~", ""])
 def test_a_quoted_scalar_is_text(text: str) -> None:
-    assert plain_value(Leaf(text, False, PLACE)) == text
+    assert to_python(ScalarNode(text, False, PLACE)) == text
 
 
 @given(st.floats(allow_nan=False))
 def test_every_float_is_read_as_it_is_written(number: float) -> None:
     text = repr(number) if math.isfinite(number) else f"{'-' * (number < 0)}.inf"
-    assert as_number(text) == number
+    assert parse_number(text) == number
 
 
 @given(st.integers(-(10**18), 10**18))
 def test_every_integer_is_read_as_it_is_written(number: int) -> None:
-    assert as_integer(str(number)) == number
-    assert as_number(str(number)) == float(number)
+    assert parse_integer(str(number)) == number
+    assert parse_number(str(number)) == float(number)
 
 
 @given(st.text(max_size=12))
 def test_any_text_is_a_number_or_is_not(text: str) -> None:
-    number = as_number(text)
+    number = parse_number(text)
     assert number is None or isinstance(number, float)
-    assert as_integer(text) is None or number == as_integer(text)
+    assert parse_integer(text) is None or number == parse_integer(text)
 
 
 def test_a_number_of_any_length_is_no_trouble() -> None:
-    assert as_integer("9" * 10_000) is None
-    assert as_number("9" * 10_000) == math.inf
-    assert as_number("1" + "0" * 400_000 + "x") is None
+    assert parse_integer("9" * 10_000) is None
+    assert parse_number("9" * 10_000) == math.inf
+    assert parse_number("1" + "0" * 400_000 + "x") is None
 
 
 @pytest.mark.parametrize(
@@ -91,12 +100,12 @@ def test_a_number_of_any_length_is_no_trouble() -> None:
     ],
 )
 def test_flags_take_flatlands_words(words: list[str], flag: bool | None) -> None:
-    assert [as_flag(word) for word in words] == [flag] * len(words)
+    assert [parse_bool(word) for word in words] == [flag] * len(words)
 
 
 def test_plain_values_cannot_be_changed() -> None:
-    entry = Entry(PLACE, ListNode((Leaf("1", True, PLACE),), PLACE, 1))
-    value = plain_value(MapNode({"a": entry}, PLACE, 2))
+    entry = MapEntry(PLACE, ListNode((ScalarNode("1", True, PLACE),), PLACE, 1))
+    value = to_python(MapNode({"a": entry}, PLACE, 2))
     assert value == {"a": (1,)}
     with pytest.raises(TypeError):
         value["b"] = 2

@@ -25,11 +25,10 @@ from kit.geometry import Pose
 from kit.msg.message import type_name
 from kit.render.scene import Body, Disc, FloatArray, Scene
 from kit.render.world_text import plain_rows
-from kit.sim.loading import load
 from kit.sim.plugins.laser import LaserParams
-from kit.sim.simulation import Simulation, SimulationError
+from kit.sim.simulation import Simulation, SimulationError, load_world
 from kit.world import records
-from kit.world.collision_rules import Thing, Touch, Touching
+from kit.world.collision_rules import CollisionBody, CollisionRules, ContactKind
 from kit.world.problems import WorldError
 from kit.world.records import Circle, Layer, World
 
@@ -40,7 +39,7 @@ COLUMNS, ROWS = 60, 16
 def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
     """The world's facts, and the world itself if it can be read."""
     try:
-        world = load(file)
+        world = load_world(file)
         simulation = Simulation(world)
     except WorldError as error:
         return WorldFacts(tuple(_without_place(str(each), file.parent) for each in error.problems)), None
@@ -56,10 +55,10 @@ def _without_place(problem: str, folder: Path) -> str:
 
 
 def _facts(world: World, simulation: Simulation) -> WorldFacts:
-    touching = Touching(world)
+    touching = CollisionRules(world)
     maps = {layer.name: _map(layer) for layer in world.layers if layer.walls is not None}
 
-    def called(thing: Thing) -> tuple[str, str]:
+    def called(thing: CollisionBody) -> tuple[str, str]:
         return ("", maps[thing.body]) if thing.model is None else (thing.model, thing.body)
 
     return WorldFacts(
@@ -67,17 +66,17 @@ def _facts(world: World, simulation: Simulation) -> WorldFacts:
         walls=tuple(_walls(layer) for layer in world.layers if layer.walls is not None),
         models=tuple(map(_model, world.models)),
         collisions=tuple(
-            CollisionFacts(called(a), called(b), verdict.touch is Touch.COLLIDES, verdict.why)
-            for a, b, verdict in touching.pairs()
+            CollisionFacts(called(a), called(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation)
+            for a, b, verdict in touching.contact_rules()
         ),
         sights=tuple(
-            SightFacts(laser.name, called(thing), seeing.sees, seeing.why)
-            for laser, thing, seeing in touching.views()
+            SightFacts(laser.name, called(thing), seeing.is_visible, seeing.explanation)
+            for laser, thing, seeing in touching.visibilities()
         ),
         endpoints=tuple(
             EndpointFacts(model.name, end.topic, type_name(end.type), end.direction == "publish")
             for model in world.models
-            for end in simulation.endpoints_of(model.name)
+            for end in simulation.model_endpoints(model.name)
         ),
         picture=picture(world, simulation),
     )
@@ -95,7 +94,9 @@ def _walls(layer: Layer) -> WallFacts:
     if len(points):
         (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         box = left, bottom, right, top
-    return WallFacts(_map(layer), layer.walls.source.name, layer.names, box, len(layer.walls.local))
+    return WallFacts(
+        _map(layer), layer.walls.drawing_file.name, layer.names, box, len(layer.walls.local_segments)
+    )
 
 
 def _model(model: records.Model) -> ModelFacts:
@@ -130,7 +131,7 @@ def _joint(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
         joint.name,
         joint.kind,
         (one.body, other.body),
-        (poses[one.body].point(*one.point), poses[other.body].point(*other.point)),
+        (poses[one.body].transform_point(*one.point), poses[other.body].transform_point(*other.point)),
     )
 
 
@@ -139,7 +140,7 @@ def _device(plugin: records.PluginSpec) -> PluginFacts:
     if isinstance(params, LaserParams):
         rays = params.directions
         return PluginFacts(
-            plugin.name, plugin.type, params.sight.body, len(rays), rays[0], rays[-1], params.reach
+            plugin.name, plugin.type, params.mount.body, len(rays), rays[0], rays[-1], params.max_range
         )
     return PluginFacts(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
 
@@ -177,7 +178,7 @@ def _bodies(simulation: Simulation) -> Iterator[Body]:
             simulation.pose(name),
             tuple(np.array(each.points) for each in own if not each.radius),
             tuple(Disc(*each.points[0], each.radius) for each in own if each.radius),
-            robot=any(end.direction == "subscribe" for end in simulation.endpoints_of(name)),
+            robot=any(end.direction == "subscribe" for end in simulation.model_endpoints(name)),
         )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
 from grader.evidence.world.path_search import search_path
 from grader.evidence.world.world_reading import all_wall_segments, picture
+from kit.geometry import convex_hull
 from kit.host.failure import GuestError
 from kit.host.node_process import Guest
 from kit.msg.message import Message
@@ -26,8 +27,7 @@ from kit.run.metrics import MetricsRecorder
 from kit.run.runner import Runner
 from kit.run.scenario import Place
 from kit.sim.simulation import Simulation
-from kit.world.catalogue import Case
-from kit.world.hull import convex_hull
+from kit.world.catalogue import MapCase
 from kit.world.records import Circle, Model, World
 
 STEP: Final = 0.01
@@ -100,7 +100,9 @@ class PathRecorder(Observer):
         poses = {(body.model, body.body): body.pose for body in simulation.state().bodies}
         for model in self._world.models:
             for joint in model.joints:
-                one, other = (poses[model.name, end.body].point(*end.point) for end in joint.anchors)
+                one, other = (
+                    poses[model.name, end.body].transform_point(*end.point) for end in joint.anchors
+                )
                 if (apart := math.dist(one, other)) > self.joint_gap:
                     self.joint_gap, self.widest_joint = apart, joint.name
 
@@ -115,7 +117,7 @@ def run_world(world: World, order: WorldRunSpec) -> RunFacts:
     model = next((each for each in world.models if each.name == wanted), None)
     case = None
     if order.target is not None and model is not None:
-        case = Case("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
+        case = MapCase("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
     scenario = Place(str(world.file), "", world, None if model is None else model.name, case)
     metrics, eye, ear = (
         MetricsRecorder.for_scenario(scenario),
@@ -185,7 +187,7 @@ def model_width(model: Model) -> float:
                 continue
             shape = footprint.shape
             corners = shape.points if not isinstance(shape, Circle) else _rim(shape)
-            points += [body.pose.point(*corner) for corner in corners]
+            points += [body.pose.transform_point(*corner) for corner in corners]
     hull = np.array(convex_hull(tuple(points))).reshape(-1, 2) if len(points) > 2 else np.empty((0, 2))
     if len(hull) < 3:
         return 0.0

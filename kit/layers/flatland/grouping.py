@@ -15,7 +15,7 @@ from typing import Final, TypeVar
 from kit.layers.flatland.layer_lists import LaserSlot, Slot, Slots, Spot
 from kit.layers.requirements import Relation, Sighting
 from kit.world.problems import Problem, WorldError
-from kit.world.records import Sight as View
+from kit.world.records import LaserMount as View
 
 T = TypeVar("T", Relation, Sighting)
 L = TypeVar("L", str, Spot)

@@ -16,10 +16,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from kit.world.collision_rules import Surface, Thing, Touch, Touching, contains
+from kit.world.collision_rules import (
+    CollisionBody,
+    CollisionFilter,
+    CollisionRules,
+    ContactKind,
+    footprint_contains,
+)
 from kit.world.loading import load_world
-from kit.world.plugin_reader import DeviceReader, ModelScope
-from kit.world.records import Footprint, Model, Place, Sight, World
+from kit.world.plugin_reader import ModelScope, PluginReader
+from kit.world.records import Footprint, LaserMount, Model, SourceLocation, World
 from kit.world.yaml_section import REQUIRED, Section
 
 REFLECTANCE: Final = "reflectance"
@@ -30,7 +36,7 @@ REFLECTANCE: Final = "reflectance"
 class Spot:
     """A footprint of a model instance, or the walls of an entry of ``layers``."""
 
-    thing: Thing
+    thing: CollisionBody
     """The body with this footprint alone, as if everything were in one layer."""
     category: int
     """The layers it is in today, as bits."""
@@ -51,7 +57,7 @@ class Spot:
 class Slot:
     """One list of layer names in a file."""
 
-    place: Place
+    place: SourceLocation
     """Of the mapping that holds the list."""
     written: tuple[str, ...]
     """As it stands there, or ``("all",)`` where nothing does."""
@@ -67,10 +73,10 @@ class Slot:
 class LaserSlot:
     """The list of a laser: which plugin of which model instances, and what each looks at."""
 
-    place: Place
+    place: SourceLocation
     written: tuple[str, ...]
     plugin: str
-    uses: tuple[tuple[str, Sight], ...]
+    uses: tuple[tuple[str, LaserMount], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +84,7 @@ class _LaserParams:
     """What the planner reads of a laser."""
 
     layers: tuple[str, ...]
-    sight: Sight
+    sight: LaserMount
 
 
 @dataclass(frozen=True)
@@ -90,30 +96,30 @@ class Slots:
     bodies: tuple[Slot, ...]
     lasers: tuple[LaserSlot, ...]
     one_model_never_collides: bool = False
-    _touching: Touching = field(init=False, repr=False)
+    _touching: CollisionRules = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_touching", Touching(self.world))
+        object.__setattr__(self, "_touching", CollisionRules(self.world))
 
     def can_meet(self, a: Spot, b: Spot) -> bool:
         """Whether anything happens between two spots that share a layer."""
         if self.one_model_never_collides and a.model and a.model == b.model:
             return False
-        return self._touching.between(a.thing, b.thing).touch is not Touch.PASSES
+        return self._touching.contact_rule(a.thing, b.thing).kind is not ContactKind.PASSES
 
     def why_not(self, a: Spot, b: Spot) -> str:
         """Why nothing happens between two spots that cannot meet, in words."""
         if self.one_model_never_collides and a.model and a.model == b.model:
             return "bodies of one model never collide, as you say"
-        return self._touching.between(a.thing, b.thing).why
+        return self._touching.contact_rule(a.thing, b.thing).explanation
 
-    def can_see(self, use: tuple[str, Sight], spot: Spot) -> bool:
+    def can_see(self, use: tuple[str, LaserMount], spot: Spot) -> bool:
         """Whether a laser that watches one of the spot's layers can see it."""
         model, sight = use
         if spot.footprint is None:
             return True
         own = spot.model == model and spot.thing.body == sight.body
-        return not spot.footprint.sensor and not (own and contains(spot.footprint, sight.origin))
+        return not spot.footprint.sensor and not (own and footprint_contains(spot.footprint, sight.origin))
 
     @property
     def kept(self) -> tuple[str, ...]:
@@ -133,46 +139,53 @@ def read_world(
     Raises WorldError with all that is wrong. ``root`` is the folder the world may not leave, by default its own;
     ``environment`` the variables that ``env()`` in its files may read, by default none.
     """
-    return load_world(path, devices=_Devices(), root=root, environment=environment)
+    return load_world(path, plugin_readers=_Devices(), root=root, environment=environment)
 
 
 def slots_of(world: World, *, one_model_never_collides: bool = False) -> Slots:
     """The slots of a world that ``read_world`` has read."""
     maps = tuple(
         Slot(
-            layer.place,
+            layer.location,
             layer.names,
-            (Spot(Thing(None, layer.name, False, frozenset({Surface(1, 1, False)})), layer.bits, None, 0),),
+            (
+                Spot(
+                    CollisionBody(None, layer.name, False, frozenset({CollisionFilter(1, 1, False)})),
+                    layer.bits,
+                    None,
+                    0,
+                ),
+            ),
         )
         for layer in world.layers
         if layer.walls is not None
     )
-    bodies: dict[Place, Slot] = {}
-    lasers: dict[Place, LaserSlot] = {}
+    bodies: dict[SourceLocation, Slot] = {}
+    lasers: dict[SourceLocation, LaserSlot] = {}
     for model in world.models:
         for place, written, spot in _spots(model):
             old = bodies.get(place, Slot(place, written))
             bodies[place] = Slot(place, written, (*old.spots, spot))
         for plugin in model.plugins:
             if isinstance(params := plugin.params, _LaserParams):
-                uses = lasers[plugin.place].uses if plugin.place in lasers else ()
+                uses = lasers[plugin.location].uses if plugin.location in lasers else ()
                 use = (model.name, params.sight)
-                lasers[plugin.place] = LaserSlot(plugin.place, params.layers, plugin.name, (*uses, use))
+                lasers[plugin.location] = LaserSlot(plugin.location, params.layers, plugin.name, (*uses, use))
     return Slots(world, maps, tuple(bodies.values()), tuple(lasers.values()), one_model_never_collides)
 
 
-def _spots(model: Model) -> Iterator[tuple[Place, tuple[str, ...], Spot]]:
+def _spots(model: Model) -> Iterator[tuple[SourceLocation, tuple[str, ...], Spot]]:
     for body in model.bodies:
         for number, footprint in enumerate(body.footprints):
-            surface = Surface(1, 1 if footprint.collision else 0, footprint.sensor)
-            thing = Thing(model.name, body.name, body.kind == "dynamic", frozenset({surface}))
-            yield footprint.place, footprint.layers, Spot(thing, footprint.category, footprint, number)
+            surface = CollisionFilter(1, 1 if footprint.collision else 0, footprint.sensor)
+            thing = CollisionBody(model.name, body.name, body.kind == "dynamic", frozenset({surface}))
+            yield footprint.location, footprint.layers, Spot(thing, footprint.category, footprint, number)
 
 
-class _Devices(Mapping[str, DeviceReader]):
+class _Devices(Mapping[str, PluginReader]):
     """Readers for every type of plugin there may be: of lasers what matters here, of all others nothing."""
 
-    def __getitem__(self, type_: str) -> DeviceReader:
+    def __getitem__(self, type_: str) -> PluginReader:
         return _read_laser if type_ == "Laser" else _read_other
 
     def __contains__(self, type_: object) -> bool:
@@ -187,11 +200,11 @@ class _Devices(Mapping[str, DeviceReader]):
 
 def _read_laser(section: Section, scope: ModelScope) -> object:
     body = scope.body(section, "body", REQUIRED)
-    sight = Sight(body, scope.layers(section), section.pose("origin", Sight(body, 0).origin))
+    sight = LaserMount(body, scope.layers(section), section.pose("origin", LaserMount(body, 0).origin))
     params = _LaserParams(section.texts("layers", ("all",)), sight)
-    section.rest()
+    section.remaining_values()
     return params
 
 
 def _read_other(section: Section, scope: ModelScope) -> object:
-    return section.rest()
+    return section.remaining_values()

@@ -15,14 +15,15 @@ from kit.layers.flatland.layer_lists import LaserSlot, Slots, Spot
 from kit.layers.flatland.world_case import WorldCase, case_of
 from kit.layers.reading import Requirements
 from kit.layers.requirements import Case, Contact, Relation, Sighting
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
-from kit.world.records import Sight as View
+from kit.plain_text import quoted, suggestion
+from kit.world.problems import ProblemCollector
+from kit.world.records import LaserMount as View
+from kit.world.records import SourceLocation
 
 
 def bind(requirements: Requirements, slots: Slots) -> WorldCase:
     """The case that the requirements are for this world. Raises WorldError where they do not fit it."""
-    problems = Problems()
+    problems = ProblemCollector()
     binding = _Binding(requirements, slots, problems)
     problems.raise_if_any()
     binding.check_possible()
@@ -33,12 +34,12 @@ def bind(requirements: Requirements, slots: Slots) -> WorldCase:
 class _Binding:
     """Which entity of the case every spot of the world is, and which of its lasers every laser."""
 
-    def __init__(self, requirements: Requirements, slots: Slots, problems: Problems) -> None:
+    def __init__(self, requirements: Requirements, slots: Slots, problems: ProblemCollector) -> None:
         self._requirements, self._slots, self._problems = requirements, slots, problems
         self._case: Case = requirements.case
         self._spots = [spot for slot in (*slots.maps, *slots.bodies) for spot in slot.spots]
         self._entity: Mapping[str, str] = dict(self._found_entities())
-        self._laser: Mapping[tuple[Place, str], str] = dict(self._found_lasers())
+        self._laser: Mapping[tuple[SourceLocation, str], str] = dict(self._found_lasers())
         models = {name for names in requirements.copies.values() for name in names}
         for spot in self._spots:
             if spot.address not in self._entity and spot.model in models:
@@ -66,7 +67,7 @@ class _Binding:
             pairs = [(a, b) for a, b in product(spots[contact.a], spots[contact.b]) if a != b]
             if not any(self._slots.can_meet(a, b) for a, b in pairs):
                 why = self._slots.why_not(*pairs[0]) if pairs else "there is only one"
-                place = self._requirements.places.get(contact, Place(self._requirements.file))
+                place = self._requirements.places.get(contact, SourceLocation(self._requirements.file))
                 self._problems.add(
                     place, f"{contact.a} and {contact.b} can never collide in this world: {why}"
                 )
@@ -125,10 +126,10 @@ class _Binding:
                 if not wanted or spot.thing.body in wanted or f"{spot.thing.body}.{spot.number}" in wanted:
                     yield spot.address, entity
 
-    def _found_lasers(self) -> Iterator[tuple[tuple[Place, str], str]]:
+    def _found_lasers(self) -> Iterator[tuple[tuple[SourceLocation, str], str]]:
         uses = [(slot, model) for slot in self._slots.lasers for model, _ in slot.uses]
         plugins = Counter(slot.plugin for slot in self._slots.lasers)
-        called: dict[str, list[tuple[Place, str]]] = {}
+        called: dict[str, list[tuple[SourceLocation, str]]] = {}
         for slot, model in uses:
             names = [
                 f"{key}.{slot.plugin}" for key, names in self._requirements.copies.items() if model in names
@@ -149,4 +150,4 @@ class _Binding:
                 )
 
     def _problem(self, message: str) -> None:
-        self._problems.add(Place(self._requirements.file), message)
+        self._problems.add(SourceLocation(self._requirements.file), message)

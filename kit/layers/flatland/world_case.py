@@ -17,7 +17,7 @@ from kit.layers.flatland.layer_lists import LaserSlot, Slot, Slots, Spot
 from kit.layers.reading import Requirements
 from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sight
 from kit.world.problems import Problem, WorldError
-from kit.world.records import ALL_LAYERS, Place
+from kit.world.records import ALL_LAYERS, SourceLocation
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def case_of(
     try:
         case = _case(slots, table, everything, title)
     except CaseError as error:
-        raise WorldError([Problem(Place(slots.world.file), str(error))]) from error
+        raise WorldError([Problem(SourceLocation(slots.world.file), str(error))]) from error
     entities = {name: tuple(table.rows[i] for i in group) for name, group in everything}
     lasers = dict(zip((laser.name for laser in case.lasers), slots.lasers, strict=True))
     wrong = _wrong(slots, asked, table, everything, list(lasers))

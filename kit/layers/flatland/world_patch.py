@@ -23,11 +23,11 @@ from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.flatland.yaml_edits import AddItem, Change, DropItem, SetList, Unsafe, edited, flow
 from kit.layers.reading import Requirements
 from kit.workspace import write_atomically
-from kit.world.collision_rules import Touching
+from kit.world.collision_rules import CollisionRules
 from kit.world.documents import MAX_YAML_BYTES
-from kit.world.files import Unusable, read_bytes
+from kit.world.files import UnusableFile, read_bytes
 from kit.world.problems import WorldError
-from kit.world.records import Place, World
+from kit.world.records import SourceLocation, World
 
 _ALL: Final = ("all",)
 _MAX_NEIGHBOURS: Final = 2000
@@ -69,7 +69,7 @@ class Patch:
 class _Wanted:
     """One change, where it belongs, what to do in words, and why the planner cannot do it, if it cannot."""
 
-    place: Place
+    place: SourceLocation
     change: Change
     words: str
     objection: str = ""
@@ -135,17 +135,17 @@ def apply(patch: Patch, wrong: Callable[[], Sequence[str]]) -> None:
 def differences(before: World, after: World, *, one_model_never_collides: bool = False) -> list[str]:
     """In what two states of a world differ: who touches whom, which laser sees whom, which walls there are."""
     found = []
-    old, new = Touching(before), Touching(after)
-    if [thing.name for thing in old.things] != [thing.name for thing in new.things]:
+    old, new = CollisionRules(before), CollisionRules(after)
+    if [thing.name for thing in old.bodies] != [thing.name for thing in new.bodies]:
         return ["the bodies and walls are no longer the same"]
-    for (a, b, was), (_, _, now) in zip(old.pairs(), new.pairs(), strict=True):
+    for (a, b, was), (_, _, now) in zip(old.contact_rules(), new.contact_rules(), strict=True):
         if one_model_never_collides and a.model is not None and a.model == b.model:
             continue
-        if was.touch != now.touch:
-            found.append(f"{a.name} {was.touch.value} {b.name} before, and {now.touch.value} it after")
-    for (laser, thing, saw), (_, _, sees) in zip(old.views(), new.views(), strict=True):
-        if saw.sees != sees.sees:
-            found.append(f"{laser.name} {'sees' if sees.sees else 'no longer sees'} {thing.name}")
+        if was.kind != now.kind:
+            found.append(f"{a.name} {was.kind.value} {b.name} before, and {now.kind.value} it after")
+    for (laser, thing, saw), (_, _, sees) in zip(old.visibilities(), new.visibilities(), strict=True):
+        if saw.is_visible != sees.is_visible:
+            found.append(f"{laser.name} {'sees' if sees.is_visible else 'no longer sees'} {thing.name}")
     return found
 
 
@@ -189,7 +189,7 @@ def _wanted(plan: WorldPlan) -> Iterator[_Wanted]:
 
 
 def _set_list(
-    place: Place, key: str, written: tuple[str, ...], names: tuple[str, ...], every: frozenset[str]
+    place: SourceLocation, key: str, written: tuple[str, ...], names: tuple[str, ...], every: frozenset[str]
 ) -> Iterator[_Wanted]:
     means = every if written == _ALL and key == "layers" else frozenset(written)
     if means == frozenset(names) and (names or written != _ALL):
@@ -214,7 +214,7 @@ def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:
     for entry in entries:
         names = tuple(name for name in entry.names if name in free) + fresh
         fresh = ()
-        place = entry.place
+        place = entry.location
         if not names:
             yield _Wanted(
                 place, DropItem((place.line, place.column)), f"{place}: remove this entry of layers"
@@ -223,7 +223,9 @@ def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:
             yield from _set_list(place, "name", entry.names, names, frozenset())
     if fresh:
         yield _Wanted(
-            Place(world.file), AddItem("layers", fresh), f"{world.file}: add to layers: - name: {flow(fresh)}"
+            SourceLocation(world.file),
+            AddItem("layers", fresh),
+            f"{world.file}: add to layers: - name: {flow(fresh)}",
         )
 
 
@@ -246,7 +248,7 @@ def _file_patch(path: Path, changes: Sequence[Change]) -> FilePatch:
 def _content(path: Path) -> bytes:
     try:
         return read_bytes(path, MAX_YAML_BYTES)
-    except Unusable as error:
+    except UnusableFile as error:
         raise Unsafe(str(error)) from error
 
 
@@ -277,7 +279,7 @@ def _other_users(path: Path, world: World, root: Path | None) -> list[Path]:
         if file not in own:
             try:
                 text = read_bytes(file, MAX_YAML_BYTES)
-            except Unusable:
+            except UnusableFile:
                 continue
             if named.search(text) and b"models:" in text:
                 found.append(file)

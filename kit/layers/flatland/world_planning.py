@@ -11,7 +11,7 @@ from kit.layers.flatland.world_case import WorldCase
 from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
 from kit.layers.requirements import Contact
 from kit.world.problems import Problem, WorldError
-from kit.world.records import Place
+from kit.world.records import SourceLocation
 
 FREE: Final = ""
 """Stands for the map of layers without one."""
@@ -89,7 +89,7 @@ def plan_world(world_case: WorldCase, *, time_limit: float = DEFAULT_TIME_LIMIT)
     assignment = as_much_as_today(world_case, assignment)
     if found := breaches(case, assignment):  # only what is kept can be the reason
         raise WorldError(
-            [Problem(Place(world_case.slots.world.file), f"{found[0]}: this layer is kept as it is")]
+            [Problem(SourceLocation(world_case.slots.world.file), f"{found[0]}: this layer is kept as it is")]
         )
     return WorldPlan(world_case, plan, assignment)
 

@@ -14,7 +14,7 @@ from kit.learning.environment.observations import FAR_TARGET, RAYS
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
 from kit.learning.environment.tasks import Task
 from kit.learning.environment.transition import Array, Transition, bearing, distance
-from kit.world.catalogue import Case, MapCard
+from kit.world.catalogue import MapCard, MapCase
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -133,7 +133,7 @@ class BatchEnv:
     ) -> None:
         self.task = task
         self.n = n
-        self.cases: tuple[Case, ...] = tuple(case for _, case in task.courses())
+        self.cases: tuple[MapCase, ...] = tuple(case for _, case in task.courses())
         self.observation_space = task.observation.space(task.robots)
         self.action_space = task.actions.space(task.robots)
         self._reward: RewardFunction = task.reward if reward is None else reward
@@ -242,7 +242,7 @@ class BatchEnv:
         pose, free, hit = old.pose.copy(), old.free.copy(), np.zeros(old.free.shape, dtype=np.bool_)
         maps, dt = courses.map_of[old.case], task.step_time / task.checks
         for _ in range(task.checks):
-            kernels.drive_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
+            kernels.step_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
         turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
         self._state = new = State(
             episode=old.episode,
@@ -290,7 +290,7 @@ class BatchEnv:
     def _arrived(self, poses: Floats, targets: Floats) -> Flags:
         """(m, robots): who is in the target."""
         task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
-        kernels.arrivals(
+        kernels.find_arrivals(
             self._courses.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
         )
         return inside
@@ -305,7 +305,7 @@ class BatchEnv:
         ranges = np.empty((*poses.shape[:2], ROOM), dtype=np.float32)
         sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE) + state.step[which] * ranges.shape[1]
-        kernels.look_worlds(
+        kernels.scan_worlds(
             *(courses.fleet, maps, poses, self._keys[which], drawn),
             *(seen.clip, self._single, self._sectors, ranges, sensed),
         )

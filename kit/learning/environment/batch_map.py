@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.kernels.lidar_index import beams, in_blocks, views
+from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
 from kit.learning.environment.wall_culling import within_reach
-from kit.sim.keys import SpeedLimits
-from kit.sim.loading import load
+from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
+from kit.sim.simulation import load_world
 from kit.world.catalogue import MapCard
-from kit.world.collision_rules import contains
+from kit.world.collision_rules import footprint_contains
 from kit.world.records import Body, Layer, Model, Polygon, World
 
 FEW_WALLS = 64
@@ -62,7 +62,7 @@ class Ground:
 @cache
 def ground(card: MapCard) -> Ground:
     """The map's ground. Raises Unsupported, and WorldError if its files are wrong."""
-    return ground_of(load(card.world_file, root=card.root), card.name, (card.robot, card.partner))
+    return ground_of(load_world(card.world_file, root=card.root), card.name, (card.robot, card.partner))
 
 
 def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
@@ -71,15 +71,15 @@ def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
     if len(driving) not in (1, 2):
         raise Unsupported(f"{name}: the batch engine drives one robot or two, not {len(driving)}")
     for plugin in world.plugins:
-        raise Unsupported(f"{plugin.place}: the batch engine has no {plugin.type} of the whole world")
+        raise Unsupported(f"{plugin.location}: the batch engine has no {plugin.type} of the whole world")
     for model in world.models:
         if model not in driving:
             _check_scenery(model)
     made = [_robot(model, watcher) for model, watcher in zip(driving, reversed(driving), strict=True)]
     if made[1:] and made[0] != made[1]:
-        raise Unsupported(f"{driving[1].place}: the batch engine wants two robots alike")
+        raise Unsupported(f"{driving[1].location}: the batch engine wants two robots alike")
     touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
-    seen = [_walls(world, _laser(model).sight.bits) for model in driving]
+    seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
             raise Unsupported(f"{world.file}: the batch engine wants walls that every robot touches and sees")
@@ -92,7 +92,7 @@ def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
     return Ground(name, walls, made[0], starts)
 
 
-def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.Fleet:
+def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.BatchGeometry:
     """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
 
     Raises Unsupported if the robots differ.
@@ -103,25 +103,29 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.F
             raise Unsupported(
                 f"the batch engine wants robots alike: those of {first.name} and {other.name} differ"
             )
-    parts = [in_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in grounds]
+    parts = [
+        make_wall_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in grounds
+    ]
     offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
     starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
     hulls, robot_of = _hulls(first.robot, len(first.starts))
-    return kernels.Fleet(
-        walls=kernels.Segments(
+    return kernels.BatchGeometry(
+        walls=kernels.WallBlocks(
             np.concatenate([part.ends for part in parts]),
             np.concatenate([*starts, offsets[-1:]]).astype(np.int64),
             np.concatenate([part.discs for part in parts]),
         ),
-        blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
-        views=views(each.walls if len(each.walls) <= FEW_WALLS else None for each in grounds),
+        map_blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
+        visibility=make_visibility_cells(
+            each.walls if len(each.walls) <= FEW_WALLS else None for each in grounds
+        ),
         hulls=hulls,
-        sight=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
-        robot_of=robot_of,
-        radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
-        beams=beams(first.robot.directions),
-        reach=first.robot.reach,
-        noise=first.robot.noise if noise is None else noise,
+        lidar_bits=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
+        corner_robot=robot_of,
+        hull_radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
+        beams=make_beams(first.robot.directions),
+        max_range=first.robot.reach,
+        noise_std=first.robot.noise if noise is None else noise,
     )
 
 
@@ -144,60 +148,66 @@ def _check_scenery(model: Model) -> None:
     """What neither moves nor touches may stand about: a beacon."""
     for body in model.bodies:
         if body.kind != "static":
-            raise Unsupported(f"{body.place}: the batch engine moves robots only, not the body {body.name}")
+            raise Unsupported(
+                f"{body.location}: the batch engine moves robots only, not the body {body.name}"
+            )
         for footprint in body.footprints:
             if footprint.category:
                 raise Unsupported(
-                    f"{footprint.place}: the batch engine knows walls and robots, no {body.name}"
+                    f"{footprint.location}: the batch engine knows walls and robots, no {body.name}"
                 )
 
 
 def _body(model: Model) -> Body:
     if len(model.bodies) != 1 or model.joints:
         what = model.joints[0] if model.joints else model.bodies[1]
-        raise Unsupported(f"{what.place}: the batch engine has no joints, and one body to a robot")
+        raise Unsupported(f"{what.location}: the batch engine has no joints, and one body to a robot")
     return model.bodies[0]
 
 
 def _laser(model: Model) -> LaserParams:
     lasers = [plugin.params for plugin in model.plugins if isinstance(plugin.params, LaserParams)]
     if len(lasers) != 1:
-        raise Unsupported(f"{model.place}: the batch engine wants a robot with one Laser, not {len(lasers)}")
+        raise Unsupported(
+            f"{model.location}: the batch engine wants a robot with one Laser, not {len(lasers)}"
+        )
     return lasers[0]
 
 
 def _robot(model: Model, watcher: Model) -> Robot:
     """``watcher``: whose lidar may see it."""
     body, laser = _body(model), _laser(model)
-    if body.kind != "dynamic" or body.pose != Pose() or laser.sight.origin != Pose():
-        raise Unsupported(f"{body.place}: the batch engine wants a dynamic body with its lidar at the origin")
+    if body.kind != "dynamic" or body.pose != Pose() or laser.mount.origin != Pose():
+        raise Unsupported(
+            f"{body.location}: the batch engine wants a dynamic body with its lidar at the origin"
+        )
     # A lidar does not see the hull in which it stands.
-    watched = (footprint for footprint in body.footprints if footprint.category & laser.sight.bits)
-    if not all(contains(footprint, laser.sight.origin) for footprint in watched):
-        raise Unsupported(f"{body.place}: the batch engine wants a robot whose lidar does not see itself")
+    watched = (footprint for footprint in body.footprints if footprint.category & laser.mount.bits)
+    if not all(footprint_contains(footprint, laser.mount.origin) for footprint in watched):
+        raise Unsupported(f"{body.location}: the batch engine wants a robot whose lidar does not see itself")
     drives = [plugin for plugin in model.plugins if isinstance(plugin.params, DiffDriveParams)]
     for plugin in model.plugins:
         if not isinstance(plugin.params, LaserParams | DiffDriveParams | BumperParams):
-            raise Unsupported(f"{plugin.place}: the batch engine has no {plugin.type}")
+            raise Unsupported(f"{plugin.location}: the batch engine has no {plugin.type}")
     if len(drives) != 1:
         raise Unsupported(
-            f"{model.place}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
+            f"{model.location}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
         )
     params = drives[0].params
     assert isinstance(params, DiffDriveParams)
     if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
-        raise Unsupported(f"{drives[0].place}: the batch engine's motors have no limits")
-    sight = _laser(watcher).sight.bits
+        raise Unsupported(f"{drives[0].location}: the batch engine's motors have no limits")
+    sight = _laser(watcher).mount.bits
     seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
-    return Robot(tuple(_polygons(body)), seen, laser.directions, laser.reach, laser.noise)
+    return Robot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
 
 
 def _polygons(body: Body) -> Iterator[Corners]:
     for footprint in body.footprints:
         if footprint.sensor or not footprint.mask:
-            raise Unsupported(f"{footprint.place}: the batch engine wants all footprints colliding")
+            raise Unsupported(f"{footprint.location}: the batch engine wants all footprints colliding")
         if not isinstance(footprint.shape, Polygon):
-            raise Unsupported(f"{footprint.place}: the batch engine has no round footprints")
+            raise Unsupported(f"{footprint.location}: the batch engine has no round footprints")
         yield footprint.shape.points
 
 
@@ -207,7 +217,7 @@ def _walls(world: World, bits: int) -> tuple[Layer, ...]:
 
 def _check_pair(one: Model, other: Model) -> None:
     """Every part of one touches every part of the other, and it sees some of it."""
-    mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).sight.bits
+    mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).mount.bits
     touch = all(each.mask & part.mask for each in mine for part in theirs)
     if not touch or not any(sees & part.category for part in theirs):
-        raise Unsupported(f"{one.place}: the batch engine wants robots that touch and see each other")
+        raise Unsupported(f"{one.location}: the batch engine wants robots that touch and see each other")

@@ -21,7 +21,10 @@ def scene_of(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -
         Body(
             name,
             pose,
-            tuple(np.array([pose.point(*corner) for corner in corners]) for corners in ground.robot.hull),
+            tuple(
+                np.array([pose.transform_point(*corner) for corner in corners])
+                for corners in ground.robot.hull
+            ),
             robot=True,
         )
         for name, pose in zip(names, poses, strict=True)

@@ -13,7 +13,7 @@ from kit.learning.environment.batch_map import Unsupported, fleet_of, ground
 from kit.learning.environment.distance_field import CELL, ways
 from kit.learning.environment.observations import RAYS
 from kit.learning.environment.tasks import Task
-from kit.world.catalogue import Case
+from kit.world.catalogue import MapCase
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -59,7 +59,7 @@ class Courses:
         shifted = task.start.shifted
         self._start_shift = np.array([case.start_shift for case in cases]) * shifted
         self._target_shift = np.array([case.target_shift for case in cases]) * shifted
-        self._any_heading = np.array([case.any_heading and shifted for case in cases])
+        self._any_heading = np.array([case.is_heading_random and shifted for case in cases])
         tables = [ways(grounds[number], case.target) for number, case in zip(self.map_of, cases, strict=True)]
         self._corners = np.array([table.corner for table in tables])
         rows, columns = (max(table.values.shape[axis] for table in tables) for axis in (0, 1))
@@ -72,7 +72,7 @@ class Courses:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
         robots = self.task.robots
         drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots))
-        kernels.uniforms(keys, first, drawn)
+        kernels.fill_uniform(keys, first, drawn)
         drawn = 2.0 * drawn - 1.0
         poses = self._starts[cases]
         poses[:, :, :2] += (drawn[:, 0:2] * self._start_shift[cases])[:, None, :]
@@ -85,11 +85,11 @@ class Courses:
     def to_go(self, cases: Numbers, poses: Floats) -> Floats:
         """(m, robots): the way to the targets' usual places [m], from ``poses`` (m, robots, 3)."""
         found = np.empty(poses.shape[:2])
-        kernels.look_up(self._to_go, self._corners, CELL, cases, poses, found)
+        kernels.interpolate_tables(self._to_go, self._corners, CELL, cases, poses, found)
         return np.maximum(found, self.task.path_end)
 
 
-def _starts(case: Case, task: Task) -> list[tuple[float, float, float]]:
+def _starts(case: MapCase, task: Task) -> list[tuple[float, float, float]]:
     """Where the case's robots start, as far apart as the task wants."""
     if task.robots == 1:
         return [(case.start.x, case.start.y, case.start.theta)]

@@ -13,10 +13,10 @@ from kit.learning.environment.batch_scene import scene_of
 from kit.learning.environment.episode_stats import Outcome
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Task, UnknownTask
+from kit.plain_text import quoted, suggestion
 from kit.render.image import draw, image_camera
 from kit.render.trail import Trail
 from kit.render.world_text import plain_rows, report
-from kit.world.problems import quoted, suggestion
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""

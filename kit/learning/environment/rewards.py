@@ -16,7 +16,7 @@ import numpy as np
 
 from kit.learning.environment.actions import Move
 from kit.learning.environment.transition import Array, Transition
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 Term: TypeAlias = Callable[[Transition], Array]
 """(...) what a transition earns by one rule, before it is weighed."""

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from kit.learning.environment.rewards import REWARDS, SCALE
 from kit.learning.environment.tasks import Task, UnknownTask, find_task
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)

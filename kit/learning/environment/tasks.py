@@ -20,8 +20,8 @@ from kit.learning.environment.rewards import (
     SIDE_BY_SIDE,
     Reward,
 )
-from kit.world.catalogue import Case, MapCard, find_map
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
+from kit.world.catalogue import MapCard, MapCase, find_map
 
 
 class UnknownTask(LookupError):
@@ -75,7 +75,7 @@ class Task:
     """Whether running out of time ends an episode as if that were the world's doing. It is wrong (the agent cannot
     see the clock), and what the seed does; kept so that its harm can be shown."""
 
-    def courses(self) -> tuple[tuple[MapCard, Case], ...]:
+    def courses(self) -> tuple[tuple[MapCard, MapCase], ...]:
         """Every case with its map, in order. UnknownTask if one of ``cases`` is none of them."""
         found = tuple(_courses(self.maps))
         if not self.cases:
@@ -100,7 +100,7 @@ class Task:
         return replace(self, cases=chosen)
 
 
-def _courses(maps: tuple[str, ...]) -> Iterator[tuple[MapCard, Case]]:
+def _courses(maps: tuple[str, ...]) -> Iterator[tuple[MapCard, MapCase]]:
     for name in maps:
         card = find_map(name)
         for case in card.cases:

@@ -14,7 +14,7 @@ from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import Task
 from kit.learning.policies.confidence_intervals import Interval, wilson
 from kit.learning.policies.policies import Policy
-from kit.world.catalogue import Case
+from kit.world.catalogue import MapCase
 
 AT_ONCE = 1024
 """About so many worlds side by side: more is not faster."""
@@ -200,7 +200,7 @@ class _Sums:
         self.reward += episode.reward
         self.adjacency += episode.adjacency
 
-    def result(self, case: Case, pair: bool) -> CaseResult:
+    def result(self, case: MapCase, pair: bool) -> CaseResult:
         reached, collided, timed_out = self.outcomes.values()
         episodes = reached + collided + timed_out
         return CaseResult(

@@ -14,7 +14,7 @@ from kit.learning.environment.tasks import Task
 from kit.learning.policies.evaluation import seed_for
 from kit.learning.policies.policies import Policy
 from kit.render.scene import Disc, Mark, Path, Scene
-from kit.world.catalogue import Case, MapCard
+from kit.world.catalogue import MapCard, MapCase
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +54,7 @@ def drive(policy: Policy, task: Task, episodes: int, seed: int, *, greedy: bool 
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 
-def scene_of(card: MapCard, case: Case, ways: tuple[Way, ...], radius: float) -> Scene:
+def scene_of(card: MapCard, case: MapCase, ways: tuple[Way, ...], radius: float) -> Scene:
     """The ways of one case over its map: solid where the target was reached, dotted where not. ``radius`` [m]: of
     the target."""
     mine = [way for way in ways if way.case == case.name]

@@ -12,7 +12,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Literal
 
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 Family = Literal["rollouts", "replay", "search", "table"]
 """How it learns: from what its present policy just did; from a memory of all it did; by trying changed networks

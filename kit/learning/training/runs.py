@@ -22,8 +22,8 @@ from typing import IO, Any, Literal, get_args
 from kit.learning.environment.task_spec import TaskChoice
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.events import Ended, Event, EventReader, Examined, Progress, Started
+from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
-from kit.world.problems import quoted, suggestion
 
 Order = Literal["go", "pause", "stop"]
 """What a face may ask of a learner."""

@@ -21,7 +21,7 @@ import numpy as np
 
 from kit.host.student_functions import StudentFunctions
 from kit.learning.environment.transition import FACTS, Array, Transition
-from kit.world.problems import quoted, suggestion
+from kit.plain_text import quoted, suggestion
 
 FUNCTION = "reward"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import shutil
 from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kit.plain_text import nearest_name
 from kit.ros.launch.errors import SubstitutionFailure
 from kit.ros.packages import PackageError, share_folder
 
@@ -86,8 +86,8 @@ class LaunchConfiguration(Substitution):
             return context.launch_configurations[name]
         if self.default is not None:
             return perform(context, self.default)
-        near = get_close_matches(name, context.launch_configurations, 1)
-        hint = f"did you mean '{near[0]}'?" if near else "DeclareLaunchArgument comes before its use"
+        near = nearest_name(name, context.launch_configurations)
+        hint = f"did you mean '{near}'?" if near else "DeclareLaunchArgument comes before its use"
         raise SubstitutionFailure(f"launch configuration '{name}' does not exist; {hint}")
 
     def describe(self) -> str:

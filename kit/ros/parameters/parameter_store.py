@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from difflib import get_close_matches
 from typing import Any
 
 from kit.msg.rcl_interfaces import ParameterDescriptor, ParameterEvent, SetParametersResult
+from kit.plain_text import nearest_name
 from kit.ros.exceptions import (
     InvalidParameterTypeException,
     InvalidParameterValueException,
@@ -149,8 +149,8 @@ class ParameterStore:
         """Raises ParameterNotDeclaredException, naming the nearest one."""
         missing = [name for name in names if name not in self.values]
         if missing:
-            near = get_close_matches(missing[0], self.values, 1)
-            raise ParameterNotDeclaredException(missing, near[0] if near else "")
+            near = nearest_name(missing[0], self.values)
+            raise ParameterNotDeclaredException(missing, near or "")
 
 
 def _outside(value: float, low: float, high: float, step: float) -> str:

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Place, find_place
 from kit.school.lessons.reading import lessons_folder
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, WorldError, quoted, suggestion
-from kit.world.records import Place as At
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector, WorldError
+from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section
 
 FILE: Final = "levels.yaml"
@@ -47,8 +48,8 @@ class Level:
 def all_levels(folder: Path | None = None) -> tuple[Level, ...]:
     """Every level in order. Raises WorldError with all mistakes of the file."""
     file = (lessons_folder() if folder is None else folder) / FILE
-    problems = Problems()
-    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, At(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     levels = tuple(_levels(section))

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
+from kit.plain_text import quoted, suggestion
 from kit.school.lessons.markup import MarkupError, parsed, rows
 from kit.school.lessons.records import Command, Exercise, How, Lesson, Option, Scene, Step, StepKind
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 SHEET: Final = "lesson.yaml"
@@ -62,7 +63,7 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
 
 def read(folder: Path) -> Lesson:
     """The lesson in ``folder``. Raises WorldError with all its mistakes."""
-    problems = Problems()
+    problems = ProblemCollector()
     section = _opened(folder / SHEET, problems)
     lesson = Lesson(
         name=folder.name,
@@ -86,7 +87,7 @@ def read(folder: Path) -> Lesson:
 def outcomes(folder: Path | None = None) -> Mapping[str, str]:
     """The outcomes and practical concepts that lessons carry, by id. Raises WorldError."""
     file = (lessons_folder() if folder is None else folder) / OUTCOMES
-    problems = Problems()
+    problems = ProblemCollector()
     section = _opened(file, problems)
     found = {key: section.text(key) for key in tuple(section.keys())}
     section.finish()
@@ -102,8 +103,10 @@ def _data(installed: str, checkout: str) -> Path:
     raise FileNotFoundError(f"{installed} are missing: neither in {package / 'data'} nor beside {package}")
 
 
-def _opened(file: Path, problems: Problems) -> Section:
-    section = Documents(Enclosure.of(file.parent), {}, problems).section(file, Place(file))
+def _opened(file: Path, problems: ProblemCollector) -> Section:
+    section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
+        file, SourceLocation(file)
+    )
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     return section

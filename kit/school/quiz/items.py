@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
-from kit.world.problems import quoted, suggestion
-from kit.world.records import Place
+from kit.plain_text import quoted, suggestion
+from kit.world.records import SourceLocation
 
 OPTIONS: Final = 3
 """As many as there are observed misconceptions for; more would be fillers (Rodriguez 2005)."""
@@ -73,7 +73,7 @@ class Item:
     """A command that lets one see it; may be empty."""
     derived: str
     """By which derivation of the tests its answer is found anew; empty: it cannot be derived."""
-    place: Place
+    place: SourceLocation
 
     @property
     def right(self) -> int:

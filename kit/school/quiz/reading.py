@@ -7,12 +7,13 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Final
 
+from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import IDEAS, OPTIONS, Bank, Item, Option, Topic, bank_of
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 SHEET: Final = "quiz.yaml"
@@ -29,16 +30,16 @@ def read_bank(folder: Path | None = None) -> Bank:
     folder = lessons_folder() if folder is None else folder
     sheets = sorted(folder.glob(f"[0-9]*-*/{SHEET}"))
     lessons = [sheet.parent.name for sheet in sheets]
-    problems = Problems()
+    problems = ProblemCollector()
     items = [item for sheet in sheets for item in _sheet(sheet, lessons, problems)]
     _check_unique(items, problems)
     problems.raise_if_any()
     return bank_of(items)
 
 
-def _sheet(sheet: Path, lessons: Collection[str], problems: Problems) -> list[Item]:
-    documents = Documents(Enclosure.of(sheet.parent), {}, problems)
-    section = documents.section(sheet, Place(sheet))
+def _sheet(sheet: Path, lessons: Collection[str], problems: ProblemCollector) -> list[Item]:
+    documents = WorldDocuments(AllowedRoot.of_folder(sheet.parent), {}, problems)
+    section = documents.section(sheet, SourceLocation(sheet))
     if section is None:
         return []
     items = list(_items(section, sheet.parent.name, lessons))
@@ -60,7 +61,7 @@ def _items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[
             see=_see(each, lesson, lessons),
             attempt=_attempt(each),
             derived=each.name("derived") if each.has("derived") else "",
-            place=each.place,
+            place=each.location,
         )
         each.finish()
         yield item
@@ -111,7 +112,7 @@ def _attempt(section: Section) -> str:
     return command
 
 
-def _check_unique(items: list[Item], problems: Problems) -> None:
+def _check_unique(items: list[Item], problems: ProblemCollector) -> None:
     seen: dict[str | int, Item] = {}
     for item in items:
         for key, words in (

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from kit.plain_text import is_printable
 from kit.school.report.document import (
     Bars,
     Block,
@@ -24,7 +25,6 @@ from kit.school.report.document import (
     Text,
     written,
 )
-from kit.world.problems import displayable
 
 WIDTH: Final = 79
 GAP: Final = "  "
@@ -86,7 +86,7 @@ def block_rows(block: Block, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
 
 def clean(text: str) -> str:
     """Without what a terminal would obey; lines become one."""
-    return "".join(c if displayable(c) else " " if c.isspace() else "?" for c in text)
+    return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 
 
 def table_rows(table: Table) -> Iterator[str]:

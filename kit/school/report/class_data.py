@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.school.progress import Event
 from kit.school.quiz.answers import Occasion, answer_of
 from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
@@ -69,7 +69,7 @@ def gather(roll: Roll, form: Form, known: Mapping[str, Item] | None = None) -> C
 
 
 def _ratings(form: Form, answers: Sequence[Answers]) -> Ratings:
-    values: dict[tuple[Phase, str], Floats] = {}
+    values: dict[tuple[Phase, str], Float64Array] = {}
     for question in form.questions:
         if question.shape is Shape.SCALE:
             for phase in question.phases:

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Flags, Floats
+from kit.kernels.arrays import BoolArray, Float64Array
 from kit.school.report.inference import present
 from kit.school.report.measures import Group, Measure
 
@@ -23,7 +23,7 @@ SMALL: Final = 5
 """A group of fewer says little of anybody else."""
 
 
-def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Floats | None:
+def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Float64Array | None:
     """(n,) each student's score; NaN for who left one of the six topics blank. None where nobody rated one.
 
     ``topics``: of each measure, by its id.
@@ -37,12 +37,12 @@ def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Floats | None
     return np.asarray(_score({**{topic: found[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64)
 
 
-def _score(of: Mapping[str, Floats]) -> Floats:
+def _score(of: Mapping[str, Float64Array]) -> Float64Array:
     """Algorithm 4; ``ros`` is the greater of ROS 1's and ROS 2's rating."""
     overall = sum((of[topic] for topic in TOPICS), np.zeros(())) / len(TOPICS)
     robotics_ros = (of["ros"] + of["robotics"]) / 2
     parts = (of["robotics"], of["ros2"], of["flatland"], of["rl"], of["ros"], robotics_ros, overall)
-    score: Floats = sum(parts, np.zeros(())) / len(parts)
+    score: Float64Array = sum(parts, np.zeros(())) / len(parts)
     return score
 
 
@@ -75,7 +75,7 @@ class Division:
         return self.beginners, self.experts
 
 
-def divide(score: Floats, way: str) -> Division | None:
+def divide(score: Float64Array, way: str) -> Division | None:
     """The class divided in one of the ``WAYS``; None where fewer than two students have a score, or one group
     would be empty."""
     if len(present(score)) < 2:
@@ -95,19 +95,19 @@ def divide(score: Floats, way: str) -> Division | None:
     )
 
 
-def _at(cut: float, score: Floats) -> tuple[float, Flags]:
+def _at(cut: float, score: Float64Array) -> tuple[float, BoolArray]:
     return cut, np.nan_to_num(score, nan=-np.inf) >= cut
 
 
-def _at_half_of_scale(score: Floats) -> tuple[float, Flags]:
+def _at_half_of_scale(score: Float64Array) -> tuple[float, BoolArray]:
     return _at(HALF_OF_SCALE, score)
 
 
-def _at_mean(score: Floats) -> tuple[float, Flags]:
+def _at_mean(score: Float64Array) -> tuple[float, BoolArray]:
     return _at(float(present(score).mean()), score)
 
 
-def _into_halves(score: Floats) -> tuple[float, Flags]:
+def _into_halves(score: Float64Array) -> tuple[float, BoolArray]:
     """The upper half are experts; with an odd number the one in the middle is a beginner. Of equal scores the
     students who come first in the class are experts."""
     order = np.argsort(-np.nan_to_num(score, nan=-np.inf), kind="stable")
@@ -117,7 +117,7 @@ def _into_halves(score: Floats) -> tuple[float, Flags]:
     return float(score[chosen].min()), experts
 
 
-WAYS: Final[Mapping[str, tuple[str, Callable[[Floats], tuple[float, Flags]]]]] = MappingProxyType(
+WAYS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[float, BoolArray]]]]] = MappingProxyType(
     {
         "scale": ("at 3.5, half of the scale", _at_half_of_scale),
         "half": ("into two halves", _into_halves),
@@ -127,7 +127,7 @@ WAYS: Final[Mapping[str, tuple[str, Callable[[Floats], tuple[float, Flags]]]]] =
 """By the word the user knows them by; the dissertation used ``mean``."""
 
 
-def _cautions(score: Floats, beginners: Flags, experts: Flags) -> list[str]:
+def _cautions(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:
     found = []
     gap = float(score[experts].min() - score[beginners].max())
     if gap <= 1e-9:

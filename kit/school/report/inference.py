@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import Interval
 
 SHUFFLES: Final = 20_000
@@ -62,13 +62,13 @@ class Chance(NamedTuple):
 NO_TEST: Final = Chance(math.nan, 0, exact=True)
 
 
-def present(values: Floats) -> Floats:
+def present(values: Float64Array) -> Float64Array:
     """Without the blanks, which are NaN."""
-    kept: Floats = values[~np.isnan(values)]
+    kept: Float64Array = values[~np.isnan(values)]
     return kept
 
 
-def summary(values: Floats) -> Summary:
+def summary(values: Float64Array) -> Summary:
     """Of the values that are there."""
     kept = present(values)
     n = len(kept)
@@ -120,7 +120,7 @@ def _beta_share(x: float, a: float, b: float) -> float:
 
 
 def difference_test(
-    first: Floats, second: Floats, rng: np.random.Generator, shuffles: int = SHUFFLES
+    first: Float64Array, second: Float64Array, rng: np.random.Generator, shuffles: int = SHUFFLES
 ) -> Chance:
     """Whether two groups' means differ by more than a division by chance makes likely.
 
@@ -147,7 +147,7 @@ def difference_test(
     return _by_chance(np.abs(_shuffled(pooled, weights, rng, shuffles) - expected) >= seen)
 
 
-def paired_test(differences: Floats, rng: np.random.Generator) -> Chance:
+def paired_test(differences: Float64Array, rng: np.random.Generator) -> Chance:
     """Whether differences within pairs are farther from 0 on the whole than with signs drawn by chance."""
     there = present(differences)
     if not len(there):
@@ -168,7 +168,9 @@ def paired_test(differences: Floats, rng: np.random.Generator) -> Chance:
     return _by_chance(np.abs(signs @ sizes) >= seen)
 
 
-def _shuffled(values: Floats, weights: Floats, rng: np.random.Generator, times: int) -> Floats:
+def _shuffled(
+    values: Float64Array, weights: Float64Array, rng: np.random.Generator, times: int
+) -> Float64Array:
     """(times,) the weighted sum of the values in so many random orders."""
     rows = max(1, AT_ONCE // len(values))
     parts = [
@@ -178,14 +180,14 @@ def _shuffled(values: Floats, weights: Floats, rng: np.random.Generator, times: 
     return np.concatenate(parts)
 
 
-def _countable(whole: Floats, k: int) -> bool:
+def _countable(whole: Float64Array, k: int) -> bool:
     """Whether the sums of all splits can be counted in a moment, within what a float holds."""
     small = min(k, len(whole) - k)
     unit = max(1, int(np.gcd.reduce(whole.astype(np.int64))))
     return len(whole) <= MOST_COUNTED and len(whole) * small * small * float(whole.max()) / unit <= MOST_WORK
 
 
-def _as_integers(values: Floats) -> Floats | None:
+def _as_integers(values: Float64Array) -> Float64Array | None:
     """The values as whole multiples of their common fraction; None if they have none of a small denominator."""
     fractions = [Fraction(float(value)).limit_denominator(FINEST) for value in values]
     unit = math.lcm(*(each.denominator for each in fractions))
@@ -196,7 +198,7 @@ def _as_integers(values: Floats) -> Floats | None:
     return whole if close and whole.sum() and np.all(whole >= 0) and whole.sum() < 1_000_000 else None
 
 
-def _subset_sums(whole: Floats, k: int) -> tuple[Floats, Floats]:
+def _subset_sums(whole: Float64Array, k: int) -> tuple[Float64Array, Float64Array]:
     """Every sum that ``k`` of the numbers can have, and how many choices have it."""
     small = min(k, len(whole) - k)
     numbers = whole.astype(np.int64)
@@ -209,12 +211,12 @@ def _subset_sums(whole: Floats, k: int) -> tuple[Floats, Floats]:
         for taken in range(small, 0, -1):
             counts[taken, number:] += counts[taken - 1, : counts.shape[1] - number]
     sums = np.flatnonzero(counts[small])
-    kept: Floats = counts[small][sums]
+    kept: Float64Array = counts[small][sums]
     chosen = sums if small == k else int(numbers.sum()) - sums
     return np.asarray(chosen * common, dtype=np.float64), kept
 
 
-def correlation(x: Floats, y: Floats) -> float:
+def correlation(x: Float64Array, y: Float64Array) -> float:
     """Pearson's r of the pairs in which neither is blank; NaN where one does not vary."""
     x, y = _pairs(x, y)
     if len(x) < 3:
@@ -224,13 +226,13 @@ def correlation(x: Floats, y: Floats) -> float:
     return float(x @ y) / scale if scale > _SAME else math.nan
 
 
-def rank_correlation(x: Floats, y: Floats) -> float:
+def rank_correlation(x: Float64Array, y: Float64Array) -> float:
     """Spearman's rho."""
     x, y = _pairs(x, y)
     return correlation(ranks(x), ranks(y)) if len(x) else math.nan
 
 
-def ranks(values: Floats) -> Floats:
+def ranks(values: Float64Array) -> Float64Array:
     """From 1; equal values share the mean of their places."""
     _, place, count = np.unique(values, return_inverse=True, return_counts=True)
     last = np.cumsum(count)
@@ -238,8 +240,8 @@ def ranks(values: Floats) -> Floats:
 
 
 def correlation_test(
-    x: Floats,
-    y: Floats,
+    x: Float64Array,
+    y: Float64Array,
     rng: np.random.Generator,
     shuffles: int = SHUFFLES,
 ) -> Chance:
@@ -266,13 +268,13 @@ def correlation_interval(r: float, n: int) -> Interval:
     return Interval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
 
 
-def trend(x: Floats, y: Floats, degree: int = 1) -> Floats | None:
+def trend(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:
     """The polynomial of least squares, highest power first; None for too few different places."""
     x, y = _pairs(x, y)
     return np.polyfit(x, y, degree) if len(np.unique(x)) > degree else None
 
 
-def _pairs(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+def _pairs(x: Float64Array, y: Float64Array) -> tuple[Float64Array, Float64Array]:
     kept = ~(np.isnan(x) | np.isnan(y))
     return x[kept], y[kept]
 

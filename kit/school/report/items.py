@@ -11,7 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Final
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import Interval, wilson
 from kit.school.quiz.answers import Outcome
 from kit.school.report.inference import correlation, present
@@ -86,7 +86,7 @@ def kr20(quiz: Quiz) -> float:
     k = len(columns)
     if k < 2 or len(columns[0]) < 2:
         return math.nan
-    totals: Floats = sum(columns[1:], columns[0])
+    totals: Float64Array = sum(columns[1:], columns[0])
     spread = float(totals.var())
     if spread <= 0:
         return math.nan

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kit.kernels.arrays import Flags, Floats
+from kit.kernels.arrays import BoolArray, Float64Array
 from kit.school.quiz.answers import Outcome
 from kit.school.report.inference import present
 from kit.school.survey.questions import Phase, Purpose, Question
@@ -45,7 +45,7 @@ class Quiz:
     replies: Mapping[str, tuple[Reply | None, ...]]
     """By item, in the order of the students; None: this student did not take the quiz."""
 
-    def right(self, item: Item) -> Floats:
+    def right(self, item: Item) -> Float64Array:
         """(n,) 1 for right, 0 for anything else, NaN for who did not take the quiz."""
         return np.array(
             [
@@ -54,12 +54,12 @@ class Quiz:
             ]
         )
 
-    def share(self, items: Sequence[Item]) -> Floats:
+    def share(self, items: Sequence[Item]) -> Float64Array:
         """(n,) of these items answered rightly."""
         return row_means([self.right(item) for item in items])
 
     @property
-    def score(self) -> Floats:
+    def score(self) -> Float64Array:
         """(n,) of all items."""
         return self.share(self.items)
 
@@ -75,7 +75,7 @@ class Quiz:
         """The same items, taken by nobody."""
         return Quiz(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
 
-    def count(self, outcome: Outcome) -> Floats:
+    def count(self, outcome: Outcome) -> Float64Array:
         """(n,) items with that outcome, by student."""
         taken = [self.replies[item.id] for item in self.items]
         return np.array(
@@ -97,7 +97,7 @@ class Measure:
 
     id: str
     label: str
-    values: Floats
+    values: Float64Array
     """(n,), NaN where blank."""
 
 
@@ -106,7 +106,7 @@ class Ratings:
     """The answers on scales of a class."""
 
     questions: tuple[Question, ...]
-    values: Mapping[tuple[Phase, str], Floats]
+    values: Mapping[tuple[Phase, str], Float64Array]
     """By phase and question: (n,) of 1 to 7, NaN where blank."""
 
     def measures(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
@@ -121,7 +121,7 @@ class Ratings:
 
     def by_topic(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
         """For each topic, each student's mean over its questions."""
-        topics: dict[str, list[Floats]] = {}
+        topics: dict[str, list[Float64Array]] = {}
         for measure in self.measures(purpose, phase):
             topics.setdefault(self._topic(measure), []).append(measure.values)
         return tuple(Measure(topic, topic, row_means(rows)) for topic, rows in topics.items())
@@ -132,7 +132,7 @@ class Ratings:
     def topics(self, purpose: Purpose, phase: Phase) -> tuple[str, ...]:
         return tuple(dict.fromkeys(self._topic(each) for each in self.measures(purpose, phase)))
 
-    def overall(self, purpose: Purpose, phase: Phase) -> Floats | None:
+    def overall(self, purpose: Purpose, phase: Phase) -> Float64Array | None:
         """Each student's mean over the topics' means, so that a topic of many questions counts no more than
         another; None where nobody answered."""
         topics = self.by_topic(purpose, phase)
@@ -142,7 +142,7 @@ class Ratings:
         return next(each.topic for each in self.questions if each.id == measure.id)
 
 
-def row_means(rows: Iterable[Floats]) -> Floats:
+def row_means(rows: Iterable[Float64Array]) -> Float64Array:
     """(n,) the mean of what is there of each student; NaN where nothing is."""
     table = np.stack(list(rows))
     there = ~np.isnan(table)
@@ -156,5 +156,5 @@ class Group:
     """Some of the students."""
 
     name: str
-    members: Flags
+    members: BoolArray
     """(n,)"""

@@ -11,13 +11,13 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 
 FEWEST: Final = 4
 MOST: Final = 5000
 
 
-def shapiro_wilk(values: Floats) -> tuple[float, float]:
+def shapiro_wilk(values: Float64Array) -> tuple[float, float]:
     """The statistic W and its p; NaN for too few or too many numbers, or all the same."""
     x = np.sort(values[~np.isnan(values)])
     n = len(x)
@@ -39,7 +39,7 @@ def shapiro_wilk(values: Floats) -> tuple[float, float]:
     return w, 1 - NormalDist().cdf((y - mean) / sd)
 
 
-def _weights(n: int) -> Floats:
+def _weights(n: int) -> Float64Array:
     """(n,) of the order statistics, nearly those of least variance."""
     normal = NormalDist()
     m = np.array([normal.inv_cdf((i - 0.375) / (n + 0.25)) for i in range(1, n + 1)])

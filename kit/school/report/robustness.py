@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Flags, Floats
+from kit.kernels.arrays import BoolArray, Float64Array
 from kit.school.report.expertise import Division
 from kit.school.report.inference import (
     NO_TEST,
@@ -63,37 +63,37 @@ class Sensitivity:
         )
 
 
-def of_difference(values: Floats, division: Division, seed: int) -> Sensitivity | None:
+def of_difference(values: Float64Array, division: Division, seed: int) -> Sensitivity | None:
     """Experts' mean minus beginners'. The groups stay as they are. None where a group has nobody to spare."""
     first, second = division.experts.members, division.beginners.members
     counted = ~np.isnan(values)
     if min((first & counted).sum(), (second & counted).sum()) < 2:
         return None
 
-    def gap(kept: Flags) -> float:
+    def gap(kept: BoolArray) -> float:
         return float(values[first & kept].mean() - values[second & kept].mean())
 
-    def test(kept: Flags, shuffles: int) -> Chance:
+    def test(kept: BoolArray, shuffles: int) -> Chance:
         rng = np.random.default_rng(seed)
         return difference_test(values[first & kept], values[second & kept], rng, shuffles)
 
     return _leave_out(counted & (first | second), gap, test)
 
 
-def of_correlation(x: Floats, y: Floats, seed: int) -> Sensitivity | None:
+def of_correlation(x: Float64Array, y: Float64Array, seed: int) -> Sensitivity | None:
     """Of Pearson's r; None below four pairs, or where one quantity does not vary."""
     both = ~(np.isnan(x) | np.isnan(y))
     if both.sum() < FEWEST or math.isnan(correlation(x, y)):
         return None
 
-    def test(kept: Flags, shuffles: int) -> Chance:
+    def test(kept: BoolArray, shuffles: int) -> Chance:
         return correlation_test(x[kept], y[kept], np.random.default_rng(seed), shuffles)
 
     return _leave_out(both, lambda kept: correlation(x[kept], y[kept]), test)
 
 
 def _leave_out(
-    members: Flags, value: Callable[[Flags], float], test: Callable[[Flags, int], Chance]
+    members: BoolArray, value: Callable[[BoolArray], float], test: Callable[[BoolArray, int], Chance]
 ) -> Sensitivity:
     # Fewer in a large class, where this is asked as often as it has students.
     shuffles = max(1000, 100_000 // int(members.sum()))

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from kit.plain_text import is_printable
 from kit.school.progress import Event, Kind, ProgressError, read_export
-from kit.world.problems import displayable
 
 LARGEST: Final = 100_000_000
 """Bytes of one file: a year of a student's work is a hundredth of it."""
@@ -131,7 +131,7 @@ def _name(events: Iterable[Event]) -> str:
     value = last.content.get("value") if last is not None else None
     if not isinstance(value, str):
         return ""
-    return "".join(c if displayable(c) else " " for c in value).strip()[:LONGEST_NAME]
+    return "".join(c if is_printable(c) else " " for c in value).strip()[:LONGEST_NAME]
 
 
 def _namesakes(found: Sequence[_Found]) -> Iterator[str]:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from kit.plain_text import is_printable
 from kit.school.progress import Event, Kind
 from kit.school.survey.questions import HIGHEST, LOWEST, Form, Phase, Question, Shape, Value
-from kit.world.problems import displayable
 
 LONGEST_TEXT: Final = 4000
 """Characters of one free answer."""
@@ -105,7 +105,7 @@ def _yes_no(question: Question, text: str) -> bool:
 def _text(question: Question, text: str) -> str:
     if len(text) > LONGEST_TEXT:
         raise NotAnAnswer(f"That is {len(text)} characters; {LONGEST_TEXT} fit. Say it in fewer.")
-    if "\ufffd" in text or not displayable(text):
+    if "\ufffd" in text or not is_printable(text):
         raise NotAnAnswer("Some of that was no text, such as a key's code. Type it again.")
     return text
 

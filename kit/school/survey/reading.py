@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from kit.plain_text import quoted, suggestion
 from kit.school.survey.questions import HIGHEST, LOWEST, Form, Phase, Purpose, Question, Rule, Shape
-from kit.world.documents import Documents
-from kit.world.files import Enclosure
-from kit.world.problems import Problems, quoted, suggestion
-from kit.world.records import Place
+from kit.world.documents import WorldDocuments
+from kit.world.files import AllowedRoot
+from kit.world.problems import ProblemCollector
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 FILE: Final = "form.yaml"
@@ -32,8 +33,8 @@ def form_file() -> Path:
 def read_form(file: Path | None = None) -> Form:
     """The form in a file, by default the kit's. Raises WorldError with all its mistakes, and FileNotFoundError."""
     file = form_file() if file is None else file
-    problems = Problems()
-    section = Documents(Enclosure.around(file), {}, problems).section(file, Place(file))
+    problems = ProblemCollector()
+    section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     title = section.name("title")

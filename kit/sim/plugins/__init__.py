@@ -10,18 +10,23 @@ import pkgutil
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from kit.sim.context import Device, WorldDevice
-from kit.world.plugin_reader import DeviceReader, WorldDeviceReader
+from kit.sim.context import PluginType, WorldPluginType
+from kit.world.plugin_reader import PluginReader, WorldPluginReader
 
-_FOUND = [
-    importlib.import_module(f"{__name__}.{module.name}").DEVICE for module in pkgutil.iter_modules(__path__)
+_PLUGIN_TYPES = [
+    importlib.import_module(f"{__name__}.{module.name}").PLUGIN_TYPE
+    for module in pkgutil.iter_modules(__path__)
 ]
 
-devices: Mapping[str, Device] = MappingProxyType({d.type: d for d in _FOUND if isinstance(d, Device)})
-world_devices: Mapping[str, WorldDevice] = MappingProxyType(
-    {d.type: d for d in _FOUND if isinstance(d, WorldDevice)}
+plugin_types: Mapping[str, PluginType] = MappingProxyType(
+    {d.type: d for d in _PLUGIN_TYPES if isinstance(d, PluginType)}
 )
-readers: Mapping[str, DeviceReader] = MappingProxyType({name: d.read for name, d in devices.items()})
-world_readers: Mapping[str, WorldDeviceReader] = MappingProxyType(
-    {name: d.read for name, d in world_devices.items()}
+world_plugin_types: Mapping[str, WorldPluginType] = MappingProxyType(
+    {d.type: d for d in _PLUGIN_TYPES if isinstance(d, WorldPluginType)}
+)
+plugin_readers: Mapping[str, PluginReader] = MappingProxyType(
+    {name: d.read_params for name, d in plugin_types.items()}
+)
+world_plugin_readers: Mapping[str, WorldPluginReader] = MappingProxyType(
+    {name: d.read_params for name, d in world_plugin_types.items()}
 )

@@ -6,11 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.std_msgs import Bool
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate, read_topic
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.clock_and_noise import UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import read_rate, read_topic
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,11 +20,11 @@ class BoolSensorParams:
     topic: str
     rate: float
 
-    def build(self, site: Site) -> BoolSensor:
-        return BoolSensor(self, site)
+    def build(self, context: PluginContext) -> BoolSensor:
+        return BoolSensor(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> BoolSensorParams:
+def read_params(section: Section, scope: ModelScope) -> BoolSensorParams:
     first = scope.model.bodies[0].name if scope.model.bodies else ""
     return BoolSensorParams(
         body=scope.body(section, "body", first),
@@ -45,22 +46,22 @@ class BoolSensor(Plugin):
     twice; here once, like every other.
     """
 
-    def __init__(self, params: BoolSensorParams, site: Site) -> None:
-        self._physics = site.physics
-        self._body = site.bodies[params.body]
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._bool = site.publisher(params.topic, Bool)
-        self.endpoints = [self._bool.endpoint]
+    def __init__(self, params: BoolSensorParams, context: PluginContext) -> None:
+        self._physics = context.physics
+        self._body = context.bodies[params.body]
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._publisher = context.publisher(params.topic, Bool)
+        self.endpoints = [self._publisher.endpoint]
 
     def reset(self, seed: int) -> None:
-        self._touched = False
+        self._has_touched = False
 
-    def after_step(self, dt: float) -> Iterable[Outgoing]:
-        self._touched = self._touched or self._physics.is_touching(self._body)
-        if not self._timer.due():
+    def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        self._has_touched = self._has_touched or self._physics.is_touching(self._body)
+        if not self._timer.is_due():
             return ()
-        touched, self._touched = self._touched, False
-        return self._bool.send(lambda: Bool(data=touched))
+        touched, self._has_touched = self._has_touched, False
+        return self._publisher.publish(lambda: Bool(data=touched))
 
 
-DEVICE = Device("BoolSensor", read, example="")
+PLUGIN_TYPE = PluginType("BoolSensor", read_params, example="")

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 from kit.msg.flatland_msgs import Collision, Collisions, Vector2
 from kit.msg.std_msgs import Header
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate, read_topic
-from kit.sim.plugin import Outgoing, Plugin
+from kit.sim.clock_and_noise import UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import read_rate, read_topic
 from kit.sim.state import Contact
-from kit.world.plugin_reader import ModelScope, Section
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +25,11 @@ class BumperParams:
     publish_all: bool
     exclude: frozenset[str]
 
-    def build(self, site: Site) -> Bumper:
-        return Bumper(self, site)
+    def build(self, context: PluginContext) -> Bumper:
+        return Bumper(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> BumperParams:
+def read_params(section: Section, scope: ModelScope) -> BumperParams:
     return BumperParams(
         topic=read_topic(section, "topic", "collisions"),
         frame=section.name("world_frame_id", "map"),
@@ -54,26 +55,26 @@ class Bumper(Plugin):
     the contact over the step's length.
     """
 
-    def __init__(self, params: BumperParams, site: Site) -> None:
+    def __init__(self, params: BumperParams, context: PluginContext) -> None:
         self._params = params
-        self._site = site
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._collisions = site.publisher(params.topic, Collisions)
-        self.endpoints = [self._collisions.endpoint]
+        self._context = context
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._publisher = context.publisher(params.topic, Collisions)
+        self.endpoints = [self._publisher.endpoint]
 
-    def after_step(self, dt: float) -> Iterable[Outgoing]:
-        due = self._timer.due()
-        if not (due or self._params.publish_all) or not self._collisions.wanted:
+    def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        due = self._timer.is_due()
+        if not (due or self._params.publish_all) or not self._publisher.has_subscribers:
             return ()
-        found = list(self._found())
+        found = list(self._own_collisions())
         if not due and not found:
             return ()
-        header = Header(stamp=self._site.clock.stamp, frame_id=self._params.frame)
-        return self._collisions.send(lambda: Collisions(header=header, collisions=found))
+        header = Header(stamp=self._context.clock.stamp, frame_id=self._params.frame)
+        return self._publisher.publish(lambda: Collisions(header=header, collisions=found))
 
-    def _found(self) -> Iterator[Collision]:
-        own = self._site.model.name
-        for contact in self._site.physics.contacts():
+    def _own_collisions(self) -> Iterator[Collision]:
+        own = self._context.model.name
+        for contact in self._context.physics.contacts():
             if contact.entity_a == own:
                 if contact.body_a not in self._params.exclude:
                     yield _collision(contact)
@@ -94,4 +95,4 @@ def _collision(contact: Contact) -> Collision:
     )
 
 
-DEVICE = Device("Bumper", read, example="")
+PLUGIN_TYPE = PluginType("Bumper", read_params, example="")

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from kit.msg.geometry_msgs import Twist
-from kit.sim.context import Device, Site
-from kit.sim.keys import SpeedLimits, read_limits, read_topic
-from kit.sim.odometry import Odometry, OdometryParams, read_odometry
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.motors import SpeedLimits, read_speed_limits
+from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import read_topic
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,17 +25,17 @@ class DiffDriveParams:
     angular: SpeedLimits
     odometry: OdometryParams
 
-    def build(self, site: Site) -> DiffDrive:
-        return DiffDrive(self, site)
+    def build(self, context: PluginContext) -> DiffDrive:
+        return DiffDrive(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> DiffDriveParams:
+def read_params(section: Section, scope: ModelScope) -> DiffDriveParams:
     return DiffDriveParams(
         body=scope.body(section, "body"),
         topic=read_topic(section, "twist_sub", "cmd_vel"),
-        linear=read_limits(section, "linear_dynamics"),
-        angular=read_limits(section, "angular_dynamics"),
-        odometry=read_odometry(section),
+        linear=read_speed_limits(section, "linear_dynamics"),
+        angular=read_speed_limits(section, "angular_dynamics"),
+        odometry=read_odometry_params(section),
     )
 
 
@@ -62,29 +64,29 @@ class DiffDrive(Plugin):
     ======================== ==================================================================
     """
 
-    def __init__(self, params: DiffDriveParams, site: Site) -> None:
+    def __init__(self, params: DiffDriveParams, context: PluginContext) -> None:
         self._params = params
-        self._body = site.bodies[params.body]
-        self._odometry = Odometry(params.odometry, site, self._body)
-        self.endpoints = [site.subscription(params.topic, Twist), *self._odometry.endpoints]
+        self._body = context.bodies[params.body]
+        self._odometry = Odometry(params.odometry, context, self._body)
+        self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
 
     def reset(self, seed: int) -> None:
-        self._wanted = self._moving = (0.0, 0.0)
+        self._command = self._velocity = (0.0, 0.0)
         self._odometry.reset(seed)
 
     def accept(self, topic: str, message: Any) -> None:
         command = (message.linear.x, message.angular.z)
         # A controller that divides by zero stops its robot; nan would spread through the whole world.
-        self._wanted = command if all(map(math.isfinite, command)) else (0.0, 0.0)
+        self._command = command if all(map(math.isfinite, command)) else (0.0, 0.0)
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
-        forward, turn = self._moving = (
-            self._params.linear.limited(self._moving[0], self._wanted[0], dt),
-            self._params.angular.limited(self._moving[1], self._wanted[1], dt),
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        forward, turn = self._velocity = (
+            self._params.linear.limited_speed(self._velocity[0], self._command[0], dt),
+            self._params.angular.limited_speed(self._velocity[1], self._command[1], dt),
         )
         sent = self._odometry.step((forward, 0.0, turn), dt)
         self._body.drive(forward, 0.0, turn)
         return sent
 
 
-DEVICE = Device("DiffDrive", read, example="body: base")
+PLUGIN_TYPE = PluginType("DiffDrive", read_params, example="body: base")

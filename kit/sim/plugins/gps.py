@@ -10,14 +10,14 @@ from kit.geometry import Pose
 from kit.msg.sensor_msgs import NavSatFix
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate, read_topic
-from kit.sim.messages import TF_TOPIC, transform, transforms
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.clock_and_noise import UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
-EQUATOR = 6378137.0
+SEMI_MAJOR_AXIS = 6378137.0
 """WGS 84's semi-major axis [m] ..."""
 FLATTENING = 1.0 / 298.257223563
 """... and flattening."""
@@ -34,11 +34,11 @@ class GpsParams:
     longitude: float
     origin: Pose
 
-    def build(self, site: Site) -> Gps:
-        return Gps(self, site)
+    def build(self, context: PluginContext) -> Gps:
+        return Gps(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> GpsParams:
+def read_params(section: Section, scope: ModelScope) -> GpsParams:
     return GpsParams(
         body=scope.body(section, "body"),
         topic=read_topic(section, "topic", "gps/fix"),
@@ -63,35 +63,41 @@ class Gps(Plugin):
     ================= =======================================================================
     """
 
-    def __init__(self, params: GpsParams, site: Site) -> None:
+    def __init__(self, params: GpsParams, context: PluginContext) -> None:
         self._params = params
-        self._site = site
-        self._body = site.bodies[params.body]
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._frame = site.model.frame(params.frame or site.name)
-        self._fix = site.publisher(params.topic, NavSatFix)
-        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self._context = context
+        self._body = context.bodies[params.body]
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._frame = context.model.frame(params.frame or context.name)
+        self._fix = context.publisher(params.topic, NavSatFix)
+        self._tf = context.publisher(TF_TOPIC, TFMessage)
         self.endpoints = [self._fix.endpoint, *([self._tf.endpoint] if params.broadcast_tf else [])]
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
-        if not self._timer.due():
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        if not self._timer.is_due():
             return ()
-        return self._fix.send(self._message) + (
-            self._tf.send(self._transform) if self._params.broadcast_tf else []
+        return self._fix.publish(self._message) + (
+            self._tf.publish(self._transform) if self._params.broadcast_tf else []
         )
 
     def _message(self) -> NavSatFix:
         place = self._body.pose.compose(self._params.origin)
-        latitude, longitude = on_earth(place.x, place.y, self._params.latitude, self._params.longitude)
-        header = Header(stamp=self._site.clock.stamp, frame_id=self._frame)
+        latitude, longitude = geodetic_position(
+            place.x, place.y, self._params.latitude, self._params.longitude
+        )
+        header = Header(stamp=self._context.clock.stamp, frame_id=self._frame)
         return NavSatFix(header=header, latitude=latitude, longitude=longitude)
 
     def _transform(self) -> TFMessage:
-        parent = self._site.model.frame(self._body.name)
-        return transforms(transform(self._site.clock.stamp, parent, self._frame, self._params.origin))
+        parent = self._context.model.frame(self._body.name)
+        return tf_message(
+            transform_message(self._context.clock.stamp, parent, self._frame, self._params.origin)
+        )
 
 
-def on_earth(east: float, north: float, ref_latitude: float, ref_longitude: float) -> tuple[float, float]:
+def geodetic_position(
+    east: float, north: float, ref_latitude: float, ref_longitude: float
+) -> tuple[float, float]:
     """Latitude and longitude [degrees] of a point on the plane that touches WGS 84 at the reference [degrees].
 
     By way of earth-centred coordinates; back to the ellipsoid with Bowring's formula (1976), whose error near
@@ -99,23 +105,23 @@ def on_earth(east: float, north: float, ref_latitude: float, ref_longitude: floa
     """
     latitude, longitude = math.radians(ref_latitude), math.radians(ref_longitude)
     eccentricity2 = FLATTENING * (2.0 - FLATTENING)
-    normal = EQUATOR / math.sqrt(1.0 - eccentricity2 * math.sin(latitude) ** 2)
+    normal = SEMI_MAJOR_AXIS / math.sqrt(1.0 - eccentricity2 * math.sin(latitude) ** 2)
     outward = (
         normal * math.cos(latitude) - math.sin(latitude) * north
     )  # away from the axis, at the reference's side
     axial = normal * (1.0 - eccentricity2) * math.sin(latitude) + math.cos(latitude) * north
     radius = math.hypot(outward, east)
-    pole = EQUATOR * (1.0 - FLATTENING)
-    reduced = math.atan2(axial * EQUATOR, radius * pole)
+    pole = SEMI_MAJOR_AXIS * (1.0 - FLATTENING)
+    reduced = math.atan2(axial * SEMI_MAJOR_AXIS, radius * pole)
     return (
         math.degrees(
             math.atan2(
                 axial + eccentricity2 / (1.0 - eccentricity2) * pole * math.sin(reduced) ** 3,
-                radius - eccentricity2 * EQUATOR * math.cos(reduced) ** 3,
+                radius - eccentricity2 * SEMI_MAJOR_AXIS * math.cos(reduced) ** 3,
             )
         ),
         math.degrees(longitude + math.atan2(east, outward)),
     )
 
 
-DEVICE = Device("Gps", read, example="body: base")
+PLUGIN_TYPE = PluginType("Gps", read_params, example="body: base")

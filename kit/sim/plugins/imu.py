@@ -13,17 +13,24 @@ from kit.msg import sensor_msgs
 from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate, read_topic, read_variances
-from kit.sim.messages import TF_TOPIC, quaternion, transform, transforms
-from kit.sim.noise import Noise
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.clock_and_noise import RandomStream, UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import (
+    TF_TOPIC,
+    read_rate,
+    read_topic,
+    read_variances,
+    tf_message,
+    transform_message,
+    yaw_quaternion,
+)
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
-class Channel:
+class ImuChannel:
     """Three components of one quantity: the variances of their noise, and the covariance given with them."""
 
     noise: tuple[float, ...]
@@ -38,38 +45,38 @@ class ImuParams:
     frame: str
     topic: str
     ground_truth_topic: str
-    orientation: Channel
-    angular_velocity: Channel
-    linear_acceleration: Channel
+    orientation: ImuChannel
+    angular_velocity: ImuChannel
+    linear_acceleration: ImuChannel
     rate: float
     broadcast_tf: bool
 
-    def build(self, site: Site) -> Imu:
-        return Imu(self, site)
+    def build(self, context: PluginContext) -> Imu:
+        return Imu(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> ImuParams:
+def read_params(section: Section, scope: ModelScope) -> ImuParams:
     return ImuParams(
         body=scope.body(section, "body"),
         enabled=section.flag("enable_imu_pub", True),
         frame=section.name("imu_frame_id", "imu"),
         topic=read_topic(section, "imu_pub", "imu/filtered"),
         ground_truth_topic=read_topic(section, "ground_truth_pub", "imu/ground_truth"),
-        orientation=_channel(section, "orientation"),
-        angular_velocity=_channel(section, "angular_velocity"),
-        linear_acceleration=_channel(section, "linear_acceleration"),
+        orientation=_read_channel(section, "orientation"),
+        angular_velocity=_read_channel(section, "angular_velocity"),
+        linear_acceleration=_read_channel(section, "linear_acceleration"),
         rate=read_rate(section, "pub_rate"),
         broadcast_tf=section.flag("broadcast_tf", True),
     )
 
 
-def _channel(section: Section, quantity: str) -> Channel:
+def _read_channel(section: Section, quantity: str) -> ImuChannel:
     noise = read_variances(section, f"{quantity}_noise")
     diagonal = [float(value) for value in np.diag(noise).ravel()]
-    return Channel(noise, section.numbers(f"{quantity}_covariance", diagonal, length=9))
+    return ImuChannel(noise, section.numbers(f"{quantity}_covariance", diagonal, length=9))
 
 
-_EXACT = Channel((0.0, 0.0, 0.0), (0.0,) * 9)
+_NO_NOISE = ImuChannel((0.0, 0.0, 0.0), (0.0,) * 9)
 
 
 class Imu(Plugin):
@@ -92,15 +99,15 @@ class Imu(Plugin):
     There is no gravity in a flat world.
     """
 
-    def __init__(self, params: ImuParams, site: Site) -> None:
+    def __init__(self, params: ImuParams, context: PluginContext) -> None:
         self._params = params
-        self._site = site
-        self._body = site.bodies[params.body]
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._frame = site.model.frame(params.frame)
-        self._imu = site.publisher(params.topic, sensor_msgs.Imu)
-        self._truth = site.publisher(params.ground_truth_topic, sensor_msgs.Imu)
-        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self._context = context
+        self._body = context.bodies[params.body]
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._frame = context.model.frame(params.frame)
+        self._imu = context.publisher(params.topic, sensor_msgs.Imu)
+        self._truth = context.publisher(params.ground_truth_topic, sensor_msgs.Imu)
+        self._tf = context.publisher(TF_TOPIC, TFMessage)
         self.endpoints = [self._truth.endpoint]
         if params.enabled:
             self.endpoints.append(self._imu.endpoint)
@@ -108,28 +115,28 @@ class Imu(Plugin):
             self.endpoints.append(self._tf.endpoint)
 
     def reset(self, seed: int) -> None:
-        self._noise = Noise(seed)
+        self._noise = RandomStream(seed)
         self._before = self._body.velocity
 
-    def after_step(self, dt: float) -> Iterable[Outgoing]:
+    def after_step(self, dt: float) -> Iterable[OutgoingMessage]:
         before, now = self._before, self._body.velocity
         self._before = now
-        if not self._timer.due():
+        if not self._timer.is_due():
             return ()
         ax, ay = (now[0] - before[0]) / dt, (now[1] - before[1]) / dt
         theta = self._body.pose.theta
         cos, sin = math.cos(theta), math.sin(theta)
         measured = theta, now[2], cos * ax + sin * ay, cos * ay - sin * ax
-        sent = self._truth.send(lambda: self._message(*measured, _EXACT, _EXACT, _EXACT))
+        sent = self._truth.publish(lambda: self._message(*measured, _NO_NOISE, _NO_NOISE, _NO_NOISE))
         if self._params.enabled:
             channels = (
                 self._params.orientation,
                 self._params.angular_velocity,
                 self._params.linear_acceleration,
             )
-            sent += self._imu.send(lambda: self._message(*measured, *channels))
+            sent += self._imu.publish(lambda: self._message(*measured, *channels))
         if self._params.broadcast_tf:
-            sent += self._tf.send(self._transform)
+            sent += self._tf.publish(self._transform)
         return sent
 
     def _message(
@@ -138,16 +145,16 @@ class Imu(Plugin):
         turn: float,
         ax: float,
         ay: float,
-        orientation: Channel,
-        angular_velocity: Channel,
-        linear_acceleration: Channel,
+        orientation: ImuChannel,
+        angular_velocity: ImuChannel,
+        linear_acceleration: ImuChannel,
     ) -> sensor_msgs.Imu:
         _, _, yaw = self._noisy(0, (0.0, 0.0, theta), orientation.noise)
         wx, wy, wz = self._noisy(3, (0.0, 0.0, turn), angular_velocity.noise)
         ax, ay, az = self._noisy(6, (ax, ay, 0.0), linear_acceleration.noise)
         return sensor_msgs.Imu(
-            header=Header(stamp=self._site.clock.stamp, frame_id=self._frame),
-            orientation=quaternion(yaw),
+            header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
+            orientation=yaw_quaternion(yaw),
             orientation_covariance=np.array(orientation.covariance),
             angular_velocity=Vector3(x=wx, y=wy, z=wz),
             angular_velocity_covariance=np.array(angular_velocity.covariance),
@@ -158,13 +165,13 @@ class Imu(Plugin):
     def _noisy(self, first: int, values: Sequence[float], variances: Sequence[float]) -> list[float]:
         """Three values with normal noise; ``first`` numbers them within a step."""
         return [
-            value + self._noise.normal(9 * self._site.clock.tick + first + i, math.sqrt(variance))
+            value + self._noise.normal(9 * self._context.clock.tick + first + i, math.sqrt(variance))
             for i, (value, variance) in enumerate(zip(values, variances, strict=True))
         ]
 
     def _transform(self) -> TFMessage:
-        parent = self._site.model.frame(self._body.name)
-        return transforms(transform(self._site.clock.stamp, parent, self._frame, Pose()))
+        parent = self._context.model.frame(self._body.name)
+        return tf_message(transform_message(self._context.clock.stamp, parent, self._frame, Pose()))
 
 
-DEVICE = Device("Imu", read, example="body: base")
+PLUGIN_TYPE = PluginType("Imu", read_params, example="body: base")

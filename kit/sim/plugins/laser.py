@@ -12,33 +12,33 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.kernels.lidar_index import beams
+from kit.kernels.lidar_index import make_beams
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate, read_topic
-from kit.sim.messages import TF_TOPIC, transform, transforms
-from kit.sim.plugin import Outgoing, Plugin
-from kit.sim.surroundings import ScanView
-from kit.world.plugin_reader import ModelScope, Section
-from kit.world.records import Sight
+from kit.sim.clock_and_noise import UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
+from kit.sim.state import LatestScan
+from kit.world.plugin_reader import ModelScope
+from kit.world.records import LaserMount
+from kit.world.yaml_section import Section
 
 MAX_RAYS = 10_000
 
-REFLECTANCE = "reflectance"
+REFLECTANCE_LAYER = "reflectance"
 """The layer whose walls and footprints shine."""
 
-SAME_PLACE = 1e-3
+SAME_HIT_DISTANCE = 1e-3
 """Two hits this near to each other [m] are one."""
 
 
 @dataclass(frozen=True, slots=True)
 class LaserParams:
-    sight: Sight
+    mount: LaserMount
     """The body that carries it, the layers it sees, and where it sits on the body."""
-    reach: float
+    max_range: float
     angle_min: float
     angle_max: float
     angle_increment: float
@@ -50,14 +50,14 @@ class LaserParams:
     always_publish: bool
     rate: float
     noise: float
-    reflecting: int
+    reflectance_bit: int
     """The bit of the layer "reflectance"; 0 where the world has none."""
 
-    def build(self, site: Site) -> Laser:
-        return Laser(self, site)
+    def build(self, context: PluginContext) -> Laser:
+        return Laser(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> LaserParams:
+def read_params(section: Section, scope: ModelScope) -> LaserParams:
     angles = section.section("angle")
     low = angles.number("min")
     high = angles.number("max")
@@ -75,8 +75,8 @@ def read(section: Section, scope: ModelScope) -> LaserParams:
     if section.flag("flipped", False):
         directions.reverse()
     return LaserParams(
-        sight=Sight(scope.body(section, "body"), scope.layers(section), section.pose("origin", Pose())),
-        reach=section.number("range", above=0),
+        mount=LaserMount(scope.body(section, "body"), scope.layers(section), section.pose("origin", Pose())),
+        max_range=section.number("range", above=0),
         angle_min=low,
         angle_max=high,
         angle_increment=increment,
@@ -87,7 +87,7 @@ def read(section: Section, scope: ModelScope) -> LaserParams:
         always_publish=section.flag("always_publish", False),
         rate=read_rate(section, "update_rate"),
         noise=section.number("noise_std_dev", 0.0, minimum=0),
-        reflecting=scope.layer_bits.get(REFLECTANCE, 0),
+        reflectance_bit=scope.layer_bits.get(REFLECTANCE_LAYER, 0),
     )
 
 
@@ -118,45 +118,48 @@ class Laser(Plugin):
     layer, else 0. In Flatland anything reflecting behind the first wall could shine through it; not here.
     """
 
-    def __init__(self, params: LaserParams, site: Site) -> None:
+    def __init__(self, params: LaserParams, context: PluginContext) -> None:
         self._params = params
-        self._site = site
-        self._body = site.bodies[params.sight.body]
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._beams = beams(params.directions)
-        self._frame = site.model.frame(params.frame or site.name)
-        self._scan = site.publisher(params.topic, LaserScan)
-        self._tf = site.publisher(TF_TOPIC, TFMessage)
-        self.endpoints = [self._scan.endpoint, *([self._tf.endpoint] if params.broadcast_tf else [])]
+        self._context = context
+        self._body = context.bodies[params.mount.body]
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._beams = make_beams(params.directions)
+        self._frame = context.model.frame(params.frame or context.name)
+        self._scan_publisher = context.publisher(params.topic, LaserScan)
+        self._tf_publisher = context.publisher(TF_TOPIC, TFMessage)
+        self.endpoints = [
+            self._scan_publisher.endpoint,
+            *([self._tf_publisher.endpoint] if params.broadcast_tf else []),
+        ]
 
     def reset(self, seed: int) -> None:
-        self._stream = seed
+        self._noise_key = seed
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
-        if not self._timer.due():
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        if not self._timer.is_due():
             return ()
         sent = []
-        if self._params.always_publish or self._scan.wanted:
-            sent.append(Outgoing(self._scan.topic, self._look()))
+        if self._params.always_publish or self._scan_publisher.has_subscribers:
+            sent.append(OutgoingMessage(self._scan_publisher.topic, self._scan_message()))
         if self._params.broadcast_tf:
-            sent += self._tf.send(self._transform)
+            sent += self._tf_publisher.publish(self._transform)
         return sent
 
-    def _look(self) -> LaserScan:
+    def _scan_message(self) -> LaserScan:
         params = self._params
-        pose = self._body.pose.compose(params.sight.origin)
-        ranges = self._site.surroundings.scan(pose, self._beams, params.reach, params.sight.bits)
-        intensities = self._intensities(pose, ranges) if params.reflecting else array("f")
+        pose = self._body.pose.compose(params.mount.origin)
+        ranges = self._context.laser_scene.scan(pose, self._beams, params.max_range, params.mount.bits)
+        intensities = self._intensities(pose, ranges) if params.reflectance_bit else array("f")
         if params.noise:
-            kernels.add_noise(ranges, params.noise, self._stream, self._site.clock.tick)
-        view = ScanView(self._site.model.name, self._site.name, pose, self._beams, ranges)
-        self._site.surroundings.views[view.model, view.plugin] = view
+            kernels.add_noise(ranges, params.noise, self._noise_key, self._context.clock.tick)
+        view = LatestScan(self._context.model.name, self._context.name, pose, self._beams, ranges)
+        self._context.laser_scene.latest_scans[view.model, view.plugin] = view
         return LaserScan(
-            header=Header(stamp=self._site.clock.stamp, frame_id=self._frame),
+            header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
             angle_min=params.angle_min,
             angle_max=params.angle_max,
             angle_increment=params.angle_increment,
-            range_max=params.reach,
+            range_max=params.max_range,
             ranges=array("f", ranges.tobytes()),
             intensities=intensities,
         )
@@ -164,19 +167,24 @@ class Laser(Plugin):
     def _intensities(self, pose: Pose, ranges: NDArray[np.float32]) -> array[float]:
         """255 where the nearest thing reflects."""
         params = self._params
-        shining = self._site.surroundings.scan(
-            pose, self._beams, params.reach, params.sight.bits, params.reflecting
+        shining = self._context.laser_scene.scan(
+            pose, self._beams, params.max_range, params.mount.bits, params.reflectance_bit
         )
         return array(
             "f",
-            [255.0 if near <= hit + SAME_PLACE else 0.0 for near, hit in zip(shining, ranges, strict=True)],
+            [
+                255.0 if near <= hit + SAME_HIT_DISTANCE else 0.0
+                for near, hit in zip(shining, ranges, strict=True)
+            ],
         )
 
     def _transform(self) -> TFMessage:
-        parent = self._site.model.frame(self._body.name)
-        return transforms(transform(self._site.clock.stamp, parent, self._frame, self._params.sight.origin))
+        parent = self._context.model.frame(self._body.name)
+        return tf_message(
+            transform_message(self._context.clock.stamp, parent, self._frame, self._params.mount.origin)
+        )
 
 
-DEVICE = Device(
-    "Laser", read, example="body: base\nrange: 10\nangle: {min: -3.14, max: 3.14, increment: 0.07}"
+PLUGIN_TYPE = PluginType(
+    "Laser", read_params, example="body: base\nrange: 10\nangle: {min: -3.14, max: 3.14, increment: 0.07}"
 )

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.clock import UpdateTimer
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_rate
-from kit.sim.messages import TF_TOPIC, transform, transforms
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.clock_and_noise import UpdateTimer
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import TF_TOPIC, read_rate, tf_message, transform_message
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +22,11 @@ class ModelTfPublisherParams:
     rate: float
     exclude: frozenset[str]
 
-    def build(self, site: Site) -> ModelTfPublisher:
-        return ModelTfPublisher(self, site)
+    def build(self, context: PluginContext) -> ModelTfPublisher:
+        return ModelTfPublisher(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
+def read_params(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
     world_frame = section.name("world_frame_id", "map").removeprefix("/")
     first = scope.model.bodies[0].name if scope.model.bodies else ""
     return ModelTfPublisherParams(
@@ -51,28 +51,28 @@ class ModelTfPublisher(Plugin):
     Bodies' frames are named ``namespace_body``; the world's, which all models share, has no prefix.
     """
 
-    def __init__(self, params: ModelTfPublisherParams, site: Site) -> None:
+    def __init__(self, params: ModelTfPublisherParams, context: PluginContext) -> None:
         self._params = params
-        self._site = site
-        self._reference = site.bodies[params.reference]
-        self._timer = UpdateTimer(params.rate, site.clock)
-        self._tf = site.publisher(TF_TOPIC, TFMessage)
+        self._context = context
+        self._reference = context.bodies[params.reference]
+        self._timer = UpdateTimer(params.rate, context.clock)
+        self._tf = context.publisher(TF_TOPIC, TFMessage)
         self.endpoints = [self._tf.endpoint]
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
-        return self._tf.send(self._transforms) if self._timer.due() else ()
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
+        return self._tf.publish(self._transforms) if self._timer.is_due() else ()
 
     def _transforms(self) -> TFMessage:
-        stamp, frame = self._site.clock.stamp, self._site.model.frame
+        stamp, frame = self._context.clock.stamp, self._context.model.frame
         parent, pose = frame(self._params.reference), self._reference.pose
         found = [
-            transform(stamp, parent, frame(body.name), pose.relative(body.pose))
-            for body in self._site.bodies.values()
+            transform_message(stamp, parent, frame(body.name), pose.relative(body.pose))
+            for body in self._context.bodies.values()
             if body is not self._reference and body.name not in self._params.exclude
         ]
         if self._params.world_frame is not None:
-            found.append(transform(stamp, self._params.world_frame, parent, pose))
-        return transforms(*found)
+            found.append(transform_message(stamp, self._params.world_frame, parent, pose))
+        return tf_message(*found)
 
 
-DEVICE = Device("ModelTfPublisher", read, example="")
+PLUGIN_TYPE = PluginType("ModelTfPublisher", read_params, example="")

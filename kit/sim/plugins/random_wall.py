@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.sim.context import WorldDevice, WorldSite
-from kit.sim.noise import Noise
-from kit.sim.physics import Wall
+from kit.plain_text import quoted
+from kit.sim.clock_and_noise import RandomStream
+from kit.sim.context import WorldPluginContext, WorldPluginType
+from kit.sim.physics import WallBody
 from kit.sim.plugin import Plugin
-from kit.world.plugin_reader import Section, WorldScope
-from kit.world.problems import quoted
+from kit.world.plugin_reader import WorldScope
+from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +25,15 @@ class RandomWallParams:
     distance: float
     both_sides: bool
 
-    def build(self, site: WorldSite) -> RandomWall:
-        return RandomWall(self, site)
+    def build(self, context: WorldPluginContext) -> RandomWall:
+        return RandomWall(self, context)
 
 
-def read(section: Section, scope: WorldScope) -> RandomWallParams:
+def read_params(section: Section, scope: WorldScope) -> RandomWallParams:
     layer = scope.layer(section, "layer")
     count = section.integer("num_of_walls", 0, minimum=0)
     walls = next((entry.walls for entry in scope.layers if layer in entry.names), None)
-    available = 0 if walls is None else len(walls.local)
+    available = 0 if walls is None else len(walls.local_segments)
     if count > available:
         section.error(f"the layer {quoted(layer)} has {available} wall segments, not {count}", "num_of_walls")
     return RandomWallParams(
@@ -59,36 +60,38 @@ class RandomWall(Plugin):
     The seed of the simulation chooses, where Flatland asks the clock.
     """
 
-    def __init__(self, params: RandomWallParams, site: WorldSite) -> None:
+    def __init__(self, params: RandomWallParams, context: WorldPluginContext) -> None:
         self._params = params
-        self._physics = site.physics
-        self._layer = next(layer for layer in site.world.layers if params.layer in layer.names)
-        self._robot = next(model.pose for model in site.world.models if model.name == params.robot)
-        self._added: Wall | None = None
+        self._physics = context.physics
+        self._layer = next(layer for layer in context.world.layers if params.layer in layer.names)
+        self._robot_pose = next(model.pose for model in context.world.models if model.name == params.robot)
+        self._added_wall: WallBody | None = None
 
     def reset(self, seed: int) -> None:
-        if self._added is not None:
-            self._physics.remove_wall(self._added)
-            self._added = None
+        if self._added_wall is not None:
+            self._physics.remove_wall(self._added_wall)
+            self._added_wall = None
         if self._layer.walls is None or not self._params.count:
             return
-        noise = Noise(seed)
+        noise = RandomStream(seed)
         segments = self._layer.walls.segments
         order = sorted(range(len(segments)), key=noise.uniform)
         chosen = segments[sorted(order[: self._params.count])]
         sides = (1.0, -1.0) if self._params.both_sides else (1.0,)
-        added = np.concatenate([self._thickened(segment, side) for segment in chosen for side in sides])
-        self._added = self._physics.add_wall(self._layer.name, self._layer.bits, added)
+        added = np.concatenate(
+            [self._thickening_segments(segment, side) for segment in chosen for side in sides]
+        )
+        self._added_wall = self._physics.add_wall(self._layer.name, self._layer.bits, added)
 
-    def _thickened(self, segment: NDArray[np.float64], side: float) -> NDArray[np.float64]:
+    def _thickening_segments(self, segment: NDArray[np.float64], side: float) -> NDArray[np.float64]:
         """(3, 4): the copy of a segment, and the two that close the ends. ``side`` 1 is the robot's."""
         a, b = segment[:2], segment[2:]
         along = (b - a) / max(np.hypot(*(b - a)), 1e-12)  # a .dat file may hold a point
         across = np.array([-along[1], along[0]])
-        if across @ (np.array([self._robot.x, self._robot.y]) - a) < 0:
+        if across @ (np.array([self._robot_pose.x, self._robot_pose.y]) - a) < 0:
             across = -across
         shift = side * self._params.distance * across
         return np.array([[*a, *(a + shift)], [*(a + shift), *(b + shift)], [*(b + shift), *b]])
 
 
-DEVICE = WorldDevice("RandomWall", read, example="layer: walls\nrobot_name: robot")
+PLUGIN_TYPE = WorldPluginType("RandomWall", read_params, example="layer: walls\nrobot_name: robot")

@@ -8,17 +8,19 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from kit.msg.geometry_msgs import Twist
+from kit.plain_text import quoted
 from kit.sim import motors
-from kit.sim.bodies import clipped
-from kit.sim.context import Device, Site
-from kit.sim.keys import SpeedLimits, read_limits, read_topic
-from kit.sim.odometry import Odometry, OdometryParams, read_odometry
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
-from kit.world.problems import quoted
+from kit.sim.bodies import clamp
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.motors import SpeedLimits, read_speed_limits
+from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import read_topic
+from kit.world.plugin_reader import ModelScope
 from kit.world.records import Anchor, Joint
+from kit.world.yaml_section import Section
 
-TOLERANCE = 1e-5
+POSITION_TOLERANCE = 1e-5
 """How exactly the wheels must be where they should be [m]."""
 
 Point = tuple[float, float]
@@ -37,33 +39,33 @@ class TricycleDriveParams:
     steering: SpeedLimits
     odometry: OdometryParams
 
-    def build(self, site: Site) -> TricycleDrive:
-        return TricycleDrive(self, site)
+    def build(self, context: PluginContext) -> TricycleDrive:
+        return TricycleDrive(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> TricycleDriveParams:
+def read_params(section: Section, scope: ModelScope) -> TricycleDriveParams:
     body = scope.body(section, "body")
-    front = _wheel(section, scope, "front_wheel_joint", "revolute", body)
-    left = _wheel(section, scope, "rear_left_wheel_joint", "weld", body)
-    right = _wheel(section, scope, "rear_right_wheel_joint", "weld", body)
+    front = _read_wheel(section, scope, "front_wheel_joint", "revolute", body)
+    left = _read_wheel(section, scope, "rear_left_wheel_joint", "weld", body)
+    right = _read_wheel(section, scope, "rear_right_wheel_joint", "weld", body)
     wheelbase, separation = 1.0, 1.0
     if front and left and right:
-        if math.hypot(*front.point) > TOLERANCE:
+        if math.hypot(*front.point) > POSITION_TOLERANCE:
             section.error("the front wheel must be at (0, 0) of the body", "front_wheel_joint")
-        wheelbase, separation = _axle(section, left.point, right.point)
+        wheelbase, separation = _rear_axle(section, left.point, right.point)
     return TricycleDriveParams(
         body=body,
         front_wheel=front.body if front else "",
         wheelbase=wheelbase,
         topic=read_topic(section, "twist_sub", "cmd_vel"),
         max_steering=section.number("max_steer_angle", 0.0, minimum=0),
-        linear=read_limits(section, "linear_dynamics"),
-        steering=_steering(section),
-        odometry=replace(read_odometry(section), wheel_separation=separation),
+        linear=read_speed_limits(section, "linear_dynamics"),
+        steering=_read_steering_limits(section),
+        odometry=replace(read_odometry_params(section), wheel_separation=separation),
     )
 
 
-def _wheel(section: Section, scope: ModelScope, key: str, kind: str, body: str) -> Anchor | None:
+def _read_wheel(section: Section, scope: ModelScope, key: str, kind: str, body: str) -> Anchor | None:
     """The wheel at a joint's other end, and where it is on the body; None, with the mistake noted, if there is none."""
     name = scope.joint(section, key)
     joint = next((joint for joint in scope.model.joints if joint.name == name), None)
@@ -72,18 +74,18 @@ def _wheel(section: Section, scope: ModelScope, key: str, kind: str, body: str) 
     if joint.kind != kind:
         section.error(f"{quoted(name)} must be a {kind} joint, not a {joint.kind} joint", key)
         return None
-    ends = _ends(joint, body)
+    ends = _joint_ends(joint, body)
     if ends is None:
         section.error(f"{quoted(name)} does not hold the body {quoted(body)}", key)
         return None
     on_body, on_wheel = ends
-    if math.hypot(*on_wheel.point) > TOLERANCE:
+    if math.hypot(*on_wheel.point) > POSITION_TOLERANCE:
         section.error(f"the anchor of {quoted(name)} on the wheel must be (0, 0)", key)
         return None
     return Anchor(on_wheel.body, on_body.point)
 
 
-def _ends(joint: Joint, body: str) -> tuple[Anchor, Anchor] | None:
+def _joint_ends(joint: Joint, body: str) -> tuple[Anchor, Anchor] | None:
     """The joint's end on the body, and the other one."""
     first, second = joint.anchors
     if first.body == body:
@@ -91,15 +93,15 @@ def _ends(joint: Joint, body: str) -> tuple[Anchor, Anchor] | None:
     return (second, first) if second.body == body else None
 
 
-def _axle(section: Section, left: Point, right: Point) -> tuple[float, float]:
+def _rear_axle(section: Section, left: Point, right: Point) -> tuple[float, float]:
     """Wheelbase and distance of the rear wheels [m]."""
     separation = math.dist(left, right)
-    if separation <= TOLERANCE:
+    if separation <= POSITION_TOLERANCE:
         section.error("the rear wheels must not be in the same place", "rear_left_wheel_joint")
         return 1.0, 1.0
     x, y = (left[0] + right[0]) / 2, (left[1] + right[1]) / 2
     slant = abs(left[0] - right[0])
-    if abs(y) > TOLERANCE or slant > TOLERANCE or abs(x) <= TOLERANCE:
+    if abs(y) > POSITION_TOLERANCE or slant > POSITION_TOLERANCE or abs(x) <= POSITION_TOLERANCE:
         section.error(
             "the rear wheels must be side by side, equally far from the body's x axis, "
             f"and not beside the front wheel: the middle between them is ({x:g}, {y:g})",
@@ -109,9 +111,9 @@ def _axle(section: Section, left: Point, right: Point) -> tuple[float, float]:
     return -x, separation
 
 
-def _steering(section: Section) -> SpeedLimits:
+def _read_steering_limits(section: Section) -> SpeedLimits:
     """How fast the steering angle may change: ``angular_dynamics``, or its two older keys."""
-    limits = read_limits(section, "angular_dynamics")
+    limits = read_speed_limits(section, "angular_dynamics")
     acceleration = section.number("max_steer_acceleration", limits.acceleration, minimum=0)
     if section.has("max_steer_acceleration"):
         limits = replace(limits, acceleration=acceleration, deceleration=acceleration)
@@ -139,45 +141,45 @@ class TricycleDrive(Plugin):
     holds for ever.
     """
 
-    def __init__(self, params: TricycleDriveParams, site: Site) -> None:
+    def __init__(self, params: TricycleDriveParams, context: PluginContext) -> None:
         self._params = params
-        self._body = site.bodies[params.body]
-        self._wheel = site.bodies[params.front_wheel]
-        self._odometry = Odometry(params.odometry, site, self._body, ahead=params.wheelbase)
-        self.endpoints = [site.subscription(params.topic, Twist), *self._odometry.endpoints]
+        self._body = context.bodies[params.body]
+        self._front_wheel = context.bodies[params.front_wheel]
+        self._odometry = Odometry(params.odometry, context, self._body, origin_offset=params.wheelbase)
+        self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
 
     def reset(self, seed: int) -> None:
-        self._wanted = (0.0, 0.0)
+        self._command = (0.0, 0.0)
         self._speed = self._steering = self._steering_rate = 0.0
         self._odometry.reset(seed)
 
     def accept(self, topic: str, message: Any) -> None:
         command = (message.linear.x, message.angular.z)
         # A controller that divides by zero stops its robot; nan would spread through the whole world.
-        self._wanted = command if all(map(math.isfinite, command)) else (0.0, 0.0)
+        self._command = command if all(map(math.isfinite, command)) else (0.0, 0.0)
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         params = self._params
-        speed, angle = self._wanted
+        speed, angle = self._command
         if params.max_steering:
-            angle = clipped(angle, params.max_steering)
-        self._speed = params.linear.limited(self._speed, speed, dt)
-        rate = params.steering.limited(self._steering_rate, (angle - self._steering) / dt, dt)
+            angle = clamp(angle, params.max_steering)
+        self._speed = params.linear.limited_speed(self._speed, speed, dt)
+        rate = params.steering.limited_speed(self._steering_rate, (angle - self._steering) / dt, dt)
         steering = self._steering + rate * dt
         if params.max_steering:
-            steering = clipped(steering, params.max_steering)
+            steering = clamp(steering, params.max_steering)
         forward, turn = motors.tricycle_twist(self._speed, self._steering, params.wheelbase)
         self._steering_rate = (steering - self._steering) / dt
         lateral = turn * params.wheelbase  # of the body's origin, which lies before the rear axle
         sent = self._odometry.step((forward, lateral, turn), dt)
         self._body.drive(forward, lateral, turn)
-        self._wheel.drive(self._speed, 0.0, turn + self._steering_rate)
+        self._front_wheel.drive(self._speed, 0.0, turn + self._steering_rate)
         self._steering = steering
         return sent
 
 
-DEVICE = Device(
+PLUGIN_TYPE = PluginType(
     "TricycleDrive",
-    read,
+    read_params,
     example="body: base\nfront_wheel_joint: front\nrear_left_wheel_joint: left\nrear_right_wheel_joint: right",
 )

@@ -10,10 +10,11 @@ from typing import Any
 
 from kit.geometry import Pose
 from kit.msg.std_msgs import Bool
-from kit.sim.context import Device, Site
-from kit.sim.keys import read_topic
-from kit.sim.plugin import Outgoing, Plugin
-from kit.world.plugin_reader import ModelScope, Section
+from kit.sim.context import PluginContext, PluginType
+from kit.sim.plugin import OutgoingMessage, Plugin
+from kit.sim.ros_conventions import read_topic
+from kit.world.plugin_reader import ModelScope
+from kit.world.yaml_section import Section
 
 Easing = Callable[[float], float]
 """From the share of the time that is over, 0 to 1, to the share of the way: 0 at 0 and 1 at 1."""
@@ -33,27 +34,27 @@ def _elastic(t: float) -> float:
     return t if t in (0.0, 1.0) else -(2.0 ** (10.0 * (t - 1.0))) * math.sin((t - 1.075) * math.tau / 0.3)
 
 
-def _dropped(t: float) -> float:
+def _bouncing_ball(t: float) -> float:
     """A ball that falls to 1 and bounces three times: parabolas, each half as wide as the one before."""
     bottoms = ((0.0, 0.0), (1.5, 0.75), (2.25, 0.9375), (2.625, 0.984375))
     return min(7.5625 * (t - middle / 2.75) ** 2 + height for middle, height in bottoms)
 
 
-def _in(curve: Easing) -> Easing:
+def _ease_in(curve: Easing) -> Easing:
     return curve
 
 
-def _out(curve: Easing) -> Easing:
+def _ease_out(curve: Easing) -> Easing:
     """The same backwards: slow at the end."""
     return lambda t: 1.0 - curve(1.0 - t)
 
 
-def _in_out(curve: Easing) -> Easing:
+def _ease_in_out(curve: Easing) -> Easing:
     """Half of it, and half of it backwards."""
     return lambda t: 0.5 * curve(2.0 * t) if t < 0.5 else 1.0 - 0.5 * curve(2.0 - 2.0 * t)
 
 
-_CURVES: Mapping[str, Easing] = {
+_EASING_CURVES: Mapping[str, Easing] = {
     "quadratic": _power(2),
     "cubic": _power(3),
     "quartic": _power(4),
@@ -62,16 +63,20 @@ _CURVES: Mapping[str, Easing] = {
     "circular": lambda t: 1.0 - math.sqrt(1.0 - t * t),
     "back": _back,
     "elastic": _elastic,
-    "bounce": _out(_dropped),
+    "bounce": _ease_out(_bouncing_ball),
 }
-_ENDS = {"In": _in, "Out": _out, "InOut": _in_out}
+_EASING_KINDS = {"In": _ease_in, "Out": _ease_out, "InOut": _ease_in_out}
 
 EASINGS: Mapping[str, Easing] = MappingProxyType(
     {"linear": lambda t: t}
-    | {f"{name}{end}": shaped(curve) for name, curve in _CURVES.items() for end, shaped in _ENDS.items()}
+    | {
+        f"{name}{end}": shaped(curve)
+        for name, curve in _EASING_CURVES.items()
+        for end, shaped in _EASING_KINDS.items()
+    }
 )
 
-Progress = Callable[[float], float]
+ProgressCurve = Callable[[float], float]
 """From the time over the duration to the share of the time that is over, 0 to 1."""
 
 
@@ -88,7 +93,7 @@ def _yoyo(turns: float) -> float:
     return 1.0 - abs(turns % 2.0 - 1.0)
 
 
-MODES: Mapping[str, Progress | None] = MappingProxyType(
+MODES: Mapping[str, ProgressCurve | None] = MappingProxyType(
     {"yoyo": _yoyo, "loop": _loop, "once": _once, "trigger": None}
 )
 """None: driven to and fro by messages."""
@@ -97,17 +102,17 @@ MODES: Mapping[str, Progress | None] = MappingProxyType(
 @dataclass(frozen=True, slots=True)
 class TweenParams:
     body: str
-    progress: Progress | None
+    progress: ProgressCurve | None
     duration: float
     delta: Pose
     easing: Easing
     trigger_topic: str
 
-    def build(self, site: Site) -> Tween:
-        return Tween(self, site)
+    def build(self, context: PluginContext) -> Tween:
+        return Tween(self, context)
 
 
-def read(section: Section, scope: ModelScope) -> TweenParams:
+def read_params(section: Section, scope: ModelScope) -> TweenParams:
     progress = section.choice("mode", MODES, "yoyo")
     trigger_topic = read_topic(section, "trigger_topic", "")
     if progress is None and not trigger_topic:
@@ -140,44 +145,48 @@ class Tween(Plugin):
     steps below a millisecond; here it goes on from where it was put, at steps of any length.
     """
 
-    def __init__(self, params: TweenParams, site: Site) -> None:
+    def __init__(self, params: TweenParams, context: PluginContext) -> None:
         self._params = params
-        self._physics = site.physics
-        self._body = site.bodies[params.body]
+        self._physics = context.physics
+        self._body = context.bodies[params.body]
         self._start = self._body.pose
         if params.trigger_topic:
-            self.endpoints = [site.subscription(params.trigger_topic, Bool)]
+            self.endpoints = [context.subscription(params.trigger_topic, Bool)]
 
     def reset(self, seed: int) -> None:
         self._steps = 0
-        self._share = 0.0
-        self._forward = False
+        self._time_fraction = 0.0
+        self._is_forward = False
 
     def moved(self) -> None:
-        pose, way = self._body.pose, self._way()
+        pose, way = self._body.pose, self._displacement()
         self._start = Pose(pose.x - way.x, pose.y - way.y, pose.theta - way.theta)
 
     def accept(self, topic: str, message: Any) -> None:
-        self._forward = message.data
+        self._is_forward = message.data
 
-    def before_step(self, dt: float) -> Iterable[Outgoing]:
+    def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         self._steps += 1
         part = dt / self._params.duration
         if self._params.progress is not None:
-            self._share = self._params.progress(self._steps * part)
+            self._time_fraction = self._params.progress(self._steps * part)
         else:
-            self._share = min(self._share + part, 1.0) if self._forward else max(self._share - part, 0.0)
-        way = self._way()
+            self._time_fraction = (
+                min(self._time_fraction + part, 1.0)
+                if self._is_forward
+                else max(self._time_fraction - part, 0.0)
+            )
+        way = self._displacement()
         self._physics.hold(
             self._body,
             Pose(self._start.x + way.x, self._start.y + way.y, self._start.theta + way.theta),
         )
         return ()
 
-    def _way(self) -> Pose:
+    def _displacement(self) -> Pose:
         """How far from the start it is."""
-        share = self._params.easing(self._share)
+        share = self._params.easing(self._time_fraction)
         return Pose(*(share * component for component in self._params.delta))
 
 
-DEVICE = Device("Tween", read, example="body: base")
+PLUGIN_TYPE = PluginType("Tween", read_params, example="body: base")

@@ -140,7 +140,7 @@ class WorldView(FrameView):
         robots = scene.robots
         if self._followed is not None and self._followed < len(robots):
             robot = robots[self._followed]
-            camera = camera.following(*robot.pose.point(*robot.extent.middle))
+            camera = camera.following(*robot.pose.transform_point(*robot.extent.middle))
         return camera
 
     def _draw_offered(self) -> None:

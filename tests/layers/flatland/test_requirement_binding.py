@@ -105,7 +105,7 @@ def test_requirements_that_do_not_fit_the_world_say_why(yard: Path, old: str, ne
 def test_a_collision_that_can_never_happen_is_named_in_its_line(yard: Path) -> None:
     with pytest.raises(WorldError) as caught:
         laid(yard, ASKED.replace("fence: [chair]", "fence: [chair, beacon]"))
-    assert [problem.place.line for problem in caught.value.problems] == [6]
+    assert [problem.location.line for problem in caught.value.problems] == [6]
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_one_list_cannot_serve_two_instances_with_different_needs(yard: Path, te
     with pytest.raises(WorldError, match=words) as caught:
         laid(yard, asked + "lasers: {robot.lidar: [], beacon.eye: []}\n")
     (problem,) = caught.value.problems
-    assert problem.place.file.name == "chair.model.yaml"
+    assert problem.location.file.name == "chair.model.yaml"
     assert "file of its own" in problem.message
 
 

@@ -13,7 +13,7 @@ from kit.layers.flatland.world_case import as_requirements, today_case
 from kit.layers.planning import solve
 from kit.layers.reading import read_requirements, written
 from kit.layers.requirements import Contact
-from kit.world.collision_rules import Touch, Touching
+from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.layers.cases import fewest_layers
 from tests.layers.conftest import YARD, WriteFiles
 from tests.layers.worlds import random_world
@@ -72,8 +72,8 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
         entity: {(spot.model, spot.thing.body) for slot in lists for spot in slot.spots}
         for entity, lists in world_case.entities.items()
     }
-    touching = Touching(world)
-    for a, b, verdict in touching.pairs():
+    touching = CollisionRules(world)
+    for a, b, verdict in touching.contact_rules():
         if a.model is None and b.model is None:
             continue
         ours = {
@@ -82,7 +82,7 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
             for other, its in bodies.items()
             if (a.model or "", a.body) in mine and (b.model or "", b.body) in its
         }
-        if verdict.touch is not Touch.PASSES:
+        if verdict.kind is not ContactKind.PASSES:
             assert "collide" in ours, (a.name, b.name, verdict)
         elif a.model != b.model:  # of one model, a copy may do what this one does not
             assert "collide" not in ours, (a.name, b.name, verdict)

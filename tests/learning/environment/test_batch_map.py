@@ -110,13 +110,13 @@ def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
     many = Ground("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
     fleet = fleet_of([small, many, small])
     for number, each in enumerate((small, many, small)):
-        first, end = fleet.walls.starts[fleet.blocks[number : number + 2]]
+        first, end = fleet.walls.starts[fleet.map_blocks[number : number + 2]]
         ours = {tuple(wall) for wall in fleet.walls.ends[first:end].tolist()}
         assert ours == {tuple(wall) for wall in each.walls.tolist()}
-    assert fleet.blocks.tolist()[0] == 0
-    assert fleet.radius == pytest.approx(np.hypot(0.1, 0.1))
+    assert fleet.map_blocks.tolist()[0] == 0
+    assert fleet.hull_radius == pytest.approx(np.hypot(0.1, 0.1))
     assert len(fleet.beams.cos) == len(small.robot.directions)
-    assert fleet.views.grids[:, 2].astype(bool).tolist() == [True, False, True]
+    assert fleet.visibility.map_grids[:, 2].astype(bool).tolist() == [True, False, True]
 
 
 def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
@@ -124,4 +124,4 @@ def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
     other = ground(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
     with pytest.raises(Unsupported, match="alike"):
         fleet_of([one, other])
-    assert fleet_of([one], noise=0.1).noise == 0.1
+    assert fleet_of([one], noise=0.1).noise_std == 0.1

@@ -43,4 +43,4 @@ def test_the_number_of_robots_must_be_that_of_the_map() -> None:
 def test_a_map_of_several_cases_stands_once() -> None:
     courses = Courses(HALLWAY.on("90_turns"))
     assert courses.map_of.tolist() == [0, 0, 1, 1]
-    assert len(courses.fleet.blocks) == 3
+    assert len(courses.fleet.map_blocks) == 3

@@ -8,7 +8,7 @@ from pathlib import Path
 from kit.school.progress import Event, Kind
 from kit.school.quiz.answers import Choice, Occasion, content_of
 from kit.school.quiz.items import Bank, Item, Option, Topic, bank_of
-from kit.world.records import Place
+from kit.world.records import SourceLocation
 
 MONDAY = datetime(2026, 3, 2, 10, 0, tzinfo=UTC)
 
@@ -16,7 +16,9 @@ MONDAY = datetime(2026, 3, 2, 10, 0, tzinfo=UTC)
 def item(name: str, topic: Topic = Topic.ROS2, *, lesson: str = "01-one", idea: int | None = None) -> Item:
     """One whose first option is right."""
     options = tuple(Option(f"{name} {i}", f"about {i}", i == 0) for i in range(3))
-    return Item(name, lesson, topic, idea, f"{name}?", (), options, lesson, "", "", Place(Path("quiz.yaml")))
+    return Item(
+        name, lesson, topic, idea, f"{name}?", (), options, lesson, "", "", SourceLocation(Path("quiz.yaml"))
+    )
 
 
 def bank(**counts: int) -> Bank:

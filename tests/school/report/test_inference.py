@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.school.report.inference import (
     correlation,
     correlation_interval,
@@ -66,7 +66,7 @@ def test_of_too_few_nothing_is_said(values: list[float]) -> None:
     assert math.isnan(found.interval.low)
 
 
-def by_hand(first: Floats, second: Floats) -> float:
+def by_hand(first: Float64Array, second: Float64Array) -> float:
     pooled = np.concatenate((first, second))
 
     def gap(chosen: tuple[int, ...]) -> float:

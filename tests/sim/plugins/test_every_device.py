@@ -12,7 +12,7 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.message import check_message
 from kit.msg.std_msgs import Bool
 from kit.sim import plugins
-from kit.sim.plugin import Outgoing
+from kit.sim.plugin import OutgoingMessage
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
 from kit.world.records import World
@@ -21,12 +21,12 @@ from tests.sim.workshop import Workshop
 SAYS = {Twist: Twist(linear=Vector3(x=0.3), angular=Vector3(z=0.4)), Bool: Bool(data=True)}
 """Something to say on each kind of topic that a device listens to."""
 
-EVERY = [*plugins.devices.values(), *plugins.world_devices.values()]
+EVERY = [*plugins.plugin_types.values(), *plugins.world_plugin_types.values()]
 
 
 def example_world(workshop: Workshop, type_: str, **changes: Any) -> World:
     """A car among walls with one device, as the device's own example has it."""
-    device = {**plugins.devices, **plugins.world_devices}[type_]
+    device = {**plugins.plugin_types, **plugins.world_plugin_types}[type_]
     entry = {"type": type_, "name": "device", **(yaml.safe_load(device.example) or {}), **changes}
     wheels = {"front": (0, 0), "left": (-0.3, 0.1), "right": (-0.3, -0.1)}
     wheel = {"type": "circle", "radius": 0.02, "density": 1, "layers": []}
@@ -41,17 +41,17 @@ def example_world(workshop: Workshop, type_: str, **changes: Any) -> World:
             }
             for name, at in wheels.items()
         ],
-        "plugins": [entry] if type_ in plugins.devices else [],
+        "plugins": [entry] if type_ in plugins.plugin_types else [],
     }
     return workshop.world(
         {"robot": car},
         {"walls": [[0.5, -5, 0.5, 5], [-3, -5, -3, 5]]},
         namespaces={"robot": "ns"},
-        plugins=[entry] if type_ in plugins.world_devices else [],
+        plugins=[entry] if type_ in plugins.world_plugin_types else [],
     )
 
 
-def run(simulation: Simulation, steps: int = 150) -> list[Outgoing]:
+def run(simulation: Simulation, steps: int = 150) -> list[OutgoingMessage]:
     for endpoint in simulation.endpoints:
         if endpoint.direction == "subscribe":
             simulation.accept(endpoint.topic, SAYS[endpoint.type])
@@ -61,8 +61,8 @@ def run(simulation: Simulation, steps: int = 150) -> list[Outgoing]:
 def test_the_folder_is_the_registry() -> None:
     files = {module.name.replace("_", "") for module in pkgutil.iter_modules(plugins.__path__)}
     assert {device.type.lower() for device in EVERY} == files
-    assert len(plugins.devices) == 9
-    assert set(plugins.world_readers) == {"RandomWall"}
+    assert len(plugins.plugin_types) == 9
+    assert set(plugins.world_plugin_readers) == {"RandomWall"}
 
 
 @pytest.mark.parametrize("type_", [device.type for device in EVERY])
@@ -92,7 +92,7 @@ class TestDevice:
 
     def test_is_silent_when_nobody_listens_and_does_the_same(self, workshop: Workshop, type_: str) -> None:
         world = example_world(workshop, type_)
-        heard, unheard = Simulation(world), Simulation(world, wanted=lambda topic: False)
+        heard, unheard = Simulation(world), Simulation(world, has_subscribers=lambda topic: False)
         run(heard)
         assert run(unheard) == []
         assert heard.state() == unheard.state()

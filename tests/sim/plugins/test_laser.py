@@ -184,7 +184,7 @@ def test_noise_has_its_deviation_and_hits_only(workshop: Workshop) -> None:
         )
     )
     first, second = (np.array(scans(simulation)["/scan"].ranges) for _ in range(2))
-    view = simulation.scan_views()[0]
+    view = simulation.latest_scans()[0]
     assert np.array_equal(view.ranges, second.astype(np.float32), equal_nan=True)
     hit = ~np.isnan(first)
     assert 0.05 < hit.mean() < 0.2  # 2 asin(1/3) of 6 rad
@@ -192,8 +192,8 @@ def test_noise_has_its_deviation_and_hits_only(workshop: Workshop) -> None:
 
 
 def test_noise_comes_from_the_seed_and_from_nothing_else(workshop: Workshop) -> None:
-    def ranges(seed: int, wanted: Callable[[str], bool] | None = None) -> list[float]:
-        simulation = Simulation(world, seed=seed, wanted=wanted)
+    def ranges(seed: int, has_subscribers: Callable[[str], bool] | None = None) -> list[float]:
+        simulation = Simulation(world, seed=seed, has_subscribers=has_subscribers)
         return [list(s.message.ranges) for s in simulation.step(30) if s.topic == "/scan"][-1]
 
     lasers = [laser(noise_std_dev=0.1), laser(name="other", topic="other", noise_std_dev=0.1)]
@@ -201,8 +201,8 @@ def test_noise_comes_from_the_seed_and_from_nothing_else(workshop: Workshop) -> 
     world = workshop.world({"robot": model}, {"walls": [[5, -1, 5, 1]]})
     assert ranges(1) == ranges(1) != ranges(2)
     assert ranges(1) == ranges(
-        1, wanted=lambda topic: topic == "/scan"
-    )  # whether the other looks is no matter
+        1, has_subscribers=lambda topic: topic == "/scan"
+    )  # the other laser does not matter
     simulation = Simulation(world, seed=1)
     last = simulation.step(1)
     by_topic = {s.topic: list(s.message.ranges) for s in last if isinstance(s.message, LaserScan)}
@@ -210,15 +210,17 @@ def test_noise_comes_from_the_seed_and_from_nothing_else(workshop: Workshop) -> 
 
 
 def test_an_unwanted_laser_does_not_look(workshop: Workshop) -> None:
-    simulation = Simulation(workshop.find("laser/world.yaml"), wanted=lambda topic: topic == "/r/scan")
+    simulation = Simulation(
+        workshop.find("laser/world.yaml"), has_subscribers=lambda topic: topic == "/r/scan"
+    )
     assert {out.topic for out in simulation.step(2)} == {"/r/scan"}
-    assert [view.plugin for view in simulation.scan_views()] == ["laser_front"]
+    assert [view.plugin for view in simulation.latest_scans()] == ["laser_front"]
 
 
 def test_scan_views_are_the_hits_in_the_world(workshop: Workshop) -> None:
     simulation = Simulation(workshop.find("laser/world.yaml"))
     simulation.step()
-    views = {view.plugin: view for view in simulation.scan_views()}
+    views = {view.plugin: view for view in simulation.latest_scans()}
     assert views["laser_back"].pose == pytest.approx((4, 4, PI / 2))
     assert views["laser_back"].hits == pytest.approx(np.array([[0.8, 4], [4, 0.5]]), abs=1e-5)
 

@@ -11,7 +11,7 @@ import pytest
 from kit.geometry import Pose
 from kit.msg import sensor_msgs
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.sim.plugins.gps import on_earth
+from kit.sim.plugins.gps import geodetic_position
 from kit.sim.simulation import Simulation
 from tests.sim.workshop import Workshop
 
@@ -23,7 +23,7 @@ def carrying(workshop: Workshop, **plugin: Any) -> Simulation:
 
 
 def test_the_reference_is_the_origin() -> None:
-    assert on_earth(0, 0, 41.178, -8.598) == pytest.approx((41.178, -8.598), abs=1e-12)
+    assert geodetic_position(0, 0, 41.178, -8.598) == pytest.approx((41.178, -8.598), abs=1e-12)
 
 
 @pytest.mark.parametrize("latitude", [0.0, 45.0, -80.0])
@@ -32,8 +32,8 @@ def test_a_kilometre_north_and_east(latitude: float) -> None:
     e2, sin = 0.00669437999014, math.sin(math.radians(latitude))
     meridian = 6378137.0 * (1 - e2) / (1 - e2 * sin**2) ** 1.5
     parallel = 6378137.0 / math.sqrt(1 - e2 * sin**2) * math.cos(math.radians(latitude))
-    north, _ = on_earth(0, 1000, latitude, 10)
-    _, east = on_earth(1000, 0, latitude, 10)
+    north, _ = geodetic_position(0, 1000, latitude, 10)
+    _, east = geodetic_position(1000, 0, latitude, 10)
     assert math.radians(north - latitude) * meridian == pytest.approx(1000, abs=0.1)
     assert math.radians(east - 10) * parallel == pytest.approx(1000, abs=0.1)
 
@@ -44,7 +44,7 @@ def test_fixes(workshop: Workshop) -> None:
     sent = simulation.step(100)
     fixes = [out.message for out in sent if isinstance(out.message, sensor_msgs.NavSatFix)]
     assert len(fixes) == 10
-    expected = on_earth(0, 1, 41, -8)  # the antenna is a metre ahead: north
+    expected = geodetic_position(0, 1, 41, -8)  # the antenna is a metre ahead: north
     assert (fixes[-1].latitude, fixes[-1].longitude) == pytest.approx(expected, abs=1e-12)
     assert (fixes[-1].altitude, fixes[-1].header.frame_id) == (0, "device")
     [frame] = {out.message.transforms[0].child_frame_id for out in sent if out.topic == "/tf"}

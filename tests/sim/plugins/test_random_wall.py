@@ -67,7 +67,7 @@ def test_they_stop_a_robot_on_both_sides_if_asked(workshop: Workshop) -> None:
 
 def test_ends_are_closed(workshop: Workshop) -> None:
     simulation = around(workshop, num_of_walls=4)
-    walls = np.concatenate([wall.ends for wall in simulation._stage.physics.walls])
+    walls = np.concatenate([wall.ends for wall in simulation._instance.physics.walls])
     assert len(walls) == 4 + 4 * 3
 
 

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.school.report.chapters.setting import SCALE, SHARE, Setting
 from kit.school.report.document import (
     Block,
@@ -40,7 +40,7 @@ class Quantity(NamedTuple):
 
     id: str
     title: str
-    values: Floats
+    values: Float64Array
     bounds: tuple[float, float]
 
 
@@ -105,7 +105,7 @@ def relations(setting: Setting) -> Chapter | None:
     return Chapter("relations", "What goes together", tuple(blocks))
 
 
-def _shared(x: Floats, y: Floats) -> int:
+def _shared(x: Float64Array, y: Float64Array) -> int:
     return int((~(np.isnan(x) | np.isnan(y))).sum())
 
 

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.kernels.arrays import Floats
+from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import Interval
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import Bars, Caution, Cell, Column, Style, Table
@@ -47,7 +47,7 @@ class Setting:
     """What a chapter is made from."""
 
     data: ClassData
-    score: Floats | None
+    score: Float64Array | None
     """Expertise by Algorithm 4; None where its six ratings were not asked."""
     divisions: tuple[Division, ...]
     """All that can be made."""
@@ -61,7 +61,7 @@ class Setting:
         everybody = Group("overall", np.ones(len(self.data.names), dtype=np.bool_))
         return (*(self.division.groups if self.division is not None else ()), everybody)
 
-    def chance(self, values: Floats) -> Chance | None:
+    def chance(self, values: Float64Array) -> Chance | None:
         """Of the difference between experts and beginners; None where the class is not divided."""
         if self.division is None:
             return None

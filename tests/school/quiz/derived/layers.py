@@ -13,7 +13,7 @@ from kit.layers.greedy import greedy
 from kit.layers.planning import solve
 from kit.layers.requirements import Case, Contact, Entity, Laser
 from kit.school.quiz.items import Item
-from kit.world.collision_rules import Touch, Touching
+from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 from tests.sim.workshop import Workshop
 
@@ -32,7 +32,7 @@ def _table(item: Item) -> dict[str, list[str]]:
     return {name.strip(): [layer.strip() for layer in layers.split(",")] for name, layers in rows}
 
 
-def _world(item: Item, folder: Path) -> Touching:
+def _world(item: Item, folder: Path) -> CollisionRules:
     """The picture as a world; ``laser`` is on a post that is in no layer, ``wall`` does not move."""
     shop, table = Workshop(folder), _table(item)
     watched = table.pop("laser", None)
@@ -43,14 +43,14 @@ def _world(item: Item, folder: Path) -> Touching:
     if watched is not None:
         models["post"] = shop.model(shop.circle(0.1, layers=[]), plugins=[{**EYE, "layers": watched}])
     names = sorted({layer for layers in (*table.values(), watched or []) for layer in layers})
-    return Touching(shop.world(models, dict.fromkeys(names, ())))
+    return CollisionRules(shop.world(models, dict.fromkeys(names, ())))
 
 
 def collisions_in_picture(item: Item, folder: Path) -> Finding:
     pairs = frozenset(
         frozenset({a.model, b.model})
-        for a, b, verdict in _world(item, folder).pairs()
-        if verdict.touch is Touch.COLLIDES
+        for a, b, verdict in _world(item, folder).contact_rules()
+        if verdict.kind is ContactKind.COLLIDES
     )
     names = list(_table(item))
     return Finding(
@@ -66,7 +66,9 @@ def collisions_in_picture(item: Item, folder: Path) -> Finding:
 
 
 def sight_in_picture(item: Item, folder: Path) -> Finding:
-    seen = frozenset(thing.model for _, thing, seeing in _world(item, folder).views() if seeing.sees)
+    seen = frozenset(
+        thing.model for _, thing, seeing in _world(item, folder).visibilities() if seeing.is_visible
+    )
     return Finding(
         seen,
         {
@@ -79,7 +81,7 @@ def sight_in_picture(item: Item, folder: Path) -> Finding:
 
 def robot_and_wall(item: Item, folder: Path) -> Finding:
     touching = _world(item, folder)
-    found = touching.between(*touching.things).touch is Touch.COLLIDES
+    found = touching.contact_rule(*touching.bodies).kind is ContactKind.COLLIDES
     return Finding(
         found,
         {
@@ -101,8 +103,8 @@ def laser_inside_hull(item: Item, folder: Path) -> Finding:
     sent = Simulation(world).step()
     (scan,) = [out.message for out in sent if isinstance(out.message, LaserScan)]
     hits = sum(value == value for value in scan.ranges)  # nan is not equal to itself
-    touching = Touching(world)
-    assert touching.seeing(touching.lasers[0], touching.things[0]).sees == (hits > 0)
+    touching = CollisionRules(world)
+    assert touching.visibility(touching.lasers[0], touching.bodies[0]).is_visible == (hits > 0)
     found = "all" if hits == len(scan.ranges) else "some" if hits else "nothing"
     return Finding(
         found,
@@ -121,8 +123,10 @@ def laser_own_wheels(item: Item, folder: Path) -> Finding:
         {"name": "wheel", "pose": [0, 0.2, 0], "footprints": [shop.circle(0.05, layers=["a"])]},
     ]
     model = {"bodies": bodies, "plugins": [{**EYE, "layers": ["a"]}]}
-    touching = Touching(shop.world({"robot": model}, {"a": ()}))
-    seen = {thing.body: touching.seeing(touching.lasers[0], thing).sees for thing in touching.things}
+    touching = CollisionRules(shop.world({"robot": model}, {"a": ()}))
+    seen = {
+        thing.body: touching.visibility(touching.lasers[0], thing).is_visible for thing in touching.bodies
+    }
     assert not seen["base"]
     return Finding(
         "always" if seen["wheel"] else "never",  # the verdict knows of no movement
@@ -137,14 +141,14 @@ def laser_own_wheels(item: Item, folder: Path) -> Finding:
 def static_crate(item: Item, folder: Path) -> Finding:
     shop = Workshop(folder)
     crate = shop.model(shop.circle(0.1, layers=["a"]), type="static")
-    touching = Touching(shop.world({"crate": crate}, {"a": [(0, -1, 0, 1)]}))
-    found = touching.between(*touching.things).touch
+    touching = CollisionRules(shop.world({"crate": crate}, {"a": [(0, -1, 0, 1)]}))
+    found = touching.contact_rule(*touching.bodies).kind
     return Finding(
         found,
         {
-            "Yes: they share a layer": Touch.COLLIDES,
-            "Yes: but only by a sensor": Touch.SENSES,
-            "No: neither of them moves": Touch.PASSES,
+            "Yes: they share a layer": ContactKind.COLLIDES,
+            "Yes: but only by a sensor": ContactKind.SENSES,
+            "No: neither of them moves": ContactKind.PASSES,
         },
     )
 
@@ -158,8 +162,8 @@ def one_model_two_bodies(item: Item, folder: Path) -> Finding:
     bodies = [{"name": name, "footprints": [shop.circle(0.1, layers=["a"])]} for name in ("one", "other")]
     bumper = {"type": "Bumper", "name": "bumper"}
     world = shop.world({"robot": {"bodies": bodies, "plugins": [bumper]}}, {"a": ()})
-    touching = Touching(world)
-    collide = touching.between(*touching.things).touch is Touch.COLLIDES
+    touching = CollisionRules(world)
+    collide = touching.contact_rule(*touching.bodies).kind is ContactKind.COLLIDES
     sent = Simulation(world).step(5)
     reported = any(isinstance(out.message, Collisions) and out.message.collisions for out in sent)
     return Finding(

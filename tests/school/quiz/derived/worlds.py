@@ -11,13 +11,12 @@ from PIL import Image
 
 from kit.msg.geometry_msgs import Twist
 from kit.school.quiz.items import Item
-from kit.sim.loading import load
-from kit.sim.simulation import Simulation
+from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import find_map
-from kit.world.collision_rules import Touch, Touching
+from kit.world.collision_rules import CollisionRules, ContactKind
 from kit.world.problems import WorldError
 from kit.world.records import ALL_LAYERS, World
-from kit.world.walls import image_walls
+from kit.world.walls import walls_from_image
 from tests.school.quiz.derived.finding import Derivation, Finding
 from tests.sim.workshop import Workshop
 
@@ -25,9 +24,9 @@ from tests.sim.workshop import Workshop
 def image_named_in(item: Item, folder: Path) -> Finding:
     """Of the maze's files, the one with the line; and what its reader says that the walls come from."""
     card = find_map("maze")
-    (layer,) = load(card.world_file, root=card.root).layers
+    (layer,) = load_world(card.world_file, root=card.root).layers
     assert layer.walls is not None
-    picture = layer.walls.source.name
+    picture = layer.walls.drawing_file.name
     naming = [path.name for path in card.folder.glob("*.yaml") if f"image: {picture}" in path.read_text()]
     assert naming == [layer.walls.file.name]
     assert picture not in card.world_file.read_text()
@@ -56,7 +55,7 @@ def map_origin(item: Item, folder: Path) -> Finding:
     (folder / "world.yaml").write_text(
         json.dumps({"properties": {}, "layers": [{"name": "solid", "map": "map.yaml"}]})
     )
-    walls = load(folder / "world.yaml").layers[0].walls
+    walls = load_world(folder / "world.yaml").layers[0].walls
     assert walls is not None
     low = walls.segments.reshape(-1, 2).min(axis=0)
     high = walls.segments.reshape(-1, 2).max(axis=0)
@@ -70,7 +69,7 @@ def map_origin(item: Item, folder: Path) -> Finding:
 
 def white_picture(item: Item, folder: Path) -> Finding:
     Image.fromarray(np.full((20, 20), 255, dtype=np.uint8)).save(folder / "white.png")
-    walls = image_walls(folder / "white.png", resolution=0.1, occupied_thresh=0.65)
+    walls = walls_from_image(folder / "white.png", resolution=0.1, occupied_thresh=0.65)
     found = {0: "none", 4: "rim"}.get(len(walls), "other")
     return Finding(found, {"Four, along its rim": "rim", "None at all": "none", "One large block": "block"})
 
@@ -82,7 +81,7 @@ def sixteen_names(item: Item, folder: Path) -> Finding:
         layers = [{"name": f"layer{number}"} for number in range(count)]
         (folder / "world.yaml").write_text(json.dumps({"properties": {}, "layers": layers}))
         try:
-            load(folder / "world.yaml")
+            load_world(folder / "world.yaml")
         except WorldError:
             return False
         return True
@@ -117,7 +116,7 @@ def relative_path(item: Item, folder: Path) -> Finding:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder / "here")
         patch.setenv("KIT_WORKSPACE", str(folder / "workspace"))
-        world = load(folder / "world" / "world.yaml")
+        world = load_world(folder / "world" / "world.yaml")
     return Finding(
         world.models[0].bodies[0].name, {text: f"body{number}" for number, text in enumerate(places)}
     )
@@ -159,16 +158,16 @@ def footprint_kind(item: Item, folder: Path) -> Finding:
     """The key that the question shows, on a footprint that shares a layer with a robot and its laser."""
     key = {"sensor: true": {"sensor": True}, "collision: false": {"collision": False}}
     (setting,) = [value for words, value in key.items() if words in item.question]
-    touching = Touching(_robot_and(folder, setting))
-    robot, thing = (next(t for t in touching.things if t.model == name) for name in ("robot", "thing"))
-    touch = touching.between(robot, thing).touch
-    seen = touching.seeing(touching.lasers[0], thing).sees
+    touching = CollisionRules(_robot_and(folder, setting))
+    robot, thing = (next(t for t in touching.bodies if t.model == name) for name in ("robot", "thing"))
+    touch = touching.contact_rule(robot, thing).kind
+    seen = touching.visibility(touching.lasers[0], thing).is_visible
     return Finding(
         (touch, seen),
         {
-            "It notices the robot, lets it through, and is not seen": (Touch.SENSES, False),
-            "It lets the robot through, and the laser sees it": (Touch.PASSES, True),
-            "It stops the robot, and the laser does not see it": (Touch.COLLIDES, False),
+            "It notices the robot, lets it through, and is not seen": (ContactKind.SENSES, False),
+            "It lets the robot through, and the laser sees it": (ContactKind.PASSES, True),
+            "It stops the robot, and the laser does not see it": (ContactKind.COLLIDES, False),
         },
     )
 
@@ -208,7 +207,7 @@ def _frame(folder: Path, columns: int, rows: int, resolution: float) -> np.ndarr
     picture = np.zeros((rows, columns), dtype=np.uint8)
     picture[1:-1, 1:-1] = 255
     Image.fromarray(picture).save(folder / "map.png")
-    return image_walls(folder / "map.png", resolution=resolution, occupied_thresh=0.65)
+    return walls_from_image(folder / "map.png", resolution=resolution, occupied_thresh=0.65)
 
 
 def _robot_and(folder: Path, setting: dict[str, bool]) -> World:
@@ -243,8 +242,8 @@ def _two_bodies(folder: Path, *, joint: bool) -> bool:
         if joint
         else [],
     }
-    touching = Touching(shop.world({"robot": model}, {"shared": ()}))
-    return touching.between(*touching.things).touch is Touch.COLLIDES
+    touching = CollisionRules(shop.world({"robot": model}, {"shared": ()}))
+    return touching.contact_rule(*touching.bodies).kind is ContactKind.COLLIDES
 
 
 WORLDS: dict[str, Derivation] = {

@@ -1,9 +1,11 @@
-"""Simulated time, and what happens at a rate of its own."""
+"""Simulated time, update rates and random streams: what makes a run of plugins reproducible."""
 
 from __future__ import annotations
 
 import math
+from hashlib import blake2b
 
+from kit.kernels import kernels
 from kit.msg.builtin_interfaces import Time
 
 NEVER = 2.0**31 - 1.0
@@ -41,8 +43,28 @@ class UpdateTimer:
         self._every_step = math.isinf(rate)
         self._period = 1.0 / rate if rate > 0.0 else NEVER
 
-    def due(self) -> bool:
+    def is_due(self) -> bool:
         if self._every_step:
             return True
         step = self._clock.step_size
         return math.fmod((self._clock.tick + 0.5) * step, self._period) < step
+
+
+def stream_key(seed: int, *names: str) -> int:
+    """A stream's key, 0 to 2**63 - 1, from the world's seed and the names of the device."""
+    text = "\0".join([str(seed), *names])
+    return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1
+
+
+class RandomStream:
+    """Random numbers from one stream. Value ``i`` is always the same, whatever was drawn before."""
+
+    def __init__(self, stream: int) -> None:
+        self._stream = stream
+
+    def uniform(self, index: int) -> float:
+        """In [0, 1)."""
+        return float(kernels.uniform(self._stream, index))
+
+    def normal(self, index: int, deviation: float = 1.0) -> float:
+        return float(deviation * kernels.normal(self._stream, index)) if deviation else 0.0

@@ -7,7 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.world.hull import area, convex_hull
+from kit.geometry import convex_hull, polygon_area
 
 grid = st.integers(-4, 4).map(float)
 points = st.lists(st.tuples(grid, grid), max_size=8)
@@ -22,12 +22,12 @@ def test_the_hull_turns_left_at_every_corner_and_holds_every_point(points: list[
     hull = convex_hull(points)
     assert set(hull) <= set(points)
     if len(hull) < 3:
-        assert area(hull) == 0
+        assert polygon_area(hull) == 0
         return
     ring = [*hull, *hull[:2]]
     assert all(turn(a, b, c) > 0 for a, b, c in zip(ring, ring[1:], ring[2:], strict=False))
     assert all(turn(a, b, point) >= 0 for a, b in pairwise(ring) for point in points)
-    assert area(hull) > 0
+    assert polygon_area(hull) > 0
 
 
 @given(points, st.randoms())
@@ -40,4 +40,4 @@ def test_the_order_of_the_points_does_not_matter(points: list[tuple[float, float
 def test_a_square_with_points_within_and_along_its_sides() -> None:
     square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
     assert convex_hull([(1, 1), *reversed(square), (1, 0), (0, 1)]) == square
-    assert area(square) == 4
+    assert polygon_area(square) == 4
