@@ -63,7 +63,7 @@ def checks(kind: str) -> None:
     from dataclasses import fields
 
     from grader.kinds.contract import find_kind, kind_names
-    from kit.world.problems import quoted, suggestion
+    from kit.plain_text import quoted, suggestion
 
     if kind not in kind_names():
         options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")

@@ -114,7 +114,9 @@ def graph_ticks() -> Callable[[], object]:
     """Ticks of the same world with the same driver, through nodes and topics."""
     graph = Graph()
     world = place_on_map(find_map("maze")).world
-    runner = Runner(Simulation(world, has_subscribers=lambda topic: graph.subscription_count(topic) > 0), graph)
+    runner = Runner(
+        Simulation(world, has_subscribers=lambda topic: graph.subscription_count(topic) > 0), graph
+    )
     node = create_graph_node(graph, "driver")
     drive = node.create_publisher(Twist, "/cmd_vel", 10)
     node.create_subscription(LaserScan, "/static_laser", lambda scan: drive.publish(command(scan)), 10)
