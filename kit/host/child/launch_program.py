@@ -27,11 +27,11 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
         if start["only_arguments"]:
             conversation.answer("ended", _arguments(description.get_launch_arguments()))
             return
-        requests = service.begin(description)
+        requests = service.start(description)
         while True:
             conversation.answer("reply", service.wake_ns, _checked(requests))
-            _, now_ns, happened = conversation.next_question()
-            requests = service.go_on(now_ns, happened)
+            _, now_ns, events = conversation.next_question()
+            requests = service.advance(now_ns, events)
     except LaunchError as problem:
         raise _told(problem, program) from None
 
@@ -49,9 +49,9 @@ def _checked(requests: list[Request]) -> list[Json]:
 
 
 def _told(problem: LaunchError, program: Program) -> GuestError:
-    file = program.relative(problem.place.file) if problem.place else None
-    line = problem.place.line if problem.place and file else None
+    file = program.relative(problem.location.file) if problem.location else None
+    line = problem.location.line if problem.location and file else None
     text = str(problem)
-    if problem.place and file is None:
-        text = f"{problem.place.file}:{problem.place.line}: {text}"
+    if problem.location and file is None:
+        text = f"{problem.location.file}:{problem.location.line}: {text}"
     return GuestError(Failure(FailureKind.EXCEPTION, text[:MAX_TEXT], file, line))

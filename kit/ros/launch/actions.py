@@ -1,4 +1,4 @@
-"""The actions that start no process: arguments, environment, groups, includes, timers, functions, the end."""
+"""Launch actions that start no process: arguments, environment, groups, includes, timers, functions, shutdown."""
 
 from __future__ import annotations
 
@@ -7,13 +7,25 @@ from typing import Any
 
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import Action, LaunchDescription, LaunchDescriptionEntity, entities
+from kit.ros.launch.entity import (
+    Action,
+    DeclaredArgument,
+    LaunchDescription,
+    LaunchDescriptionEntity,
+    to_entities,
+)
 from kit.ros.launch.errors import LaunchError
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent
 from kit.ros.launch.sources import LaunchDescriptionSource
-from kit.ros.launch.substitutions import SomeText, Substitution, described, normalize, perform
+from kit.ros.launch.substitutions import (
+    SomeText,
+    Substitution,
+    describe_substitutions,
+    normalize_to_substitutions,
+    perform_substitutions,
+)
 
 Entities = Iterable[LaunchDescriptionEntity]
 
@@ -32,14 +44,17 @@ class DeclareLaunchArgument(Action):
     ) -> None:
         super().__init__(condition=condition)
         self.name = name
-        self.default_value = None if default_value is None else normalize(default_value)
+        self.default_value = None if default_value is None else normalize_to_substitutions(default_value)
         self.description = description or "no description given"
         self.choices = None if choices is None else list(choices)
+
+    def declared_arguments(self) -> list[DeclaredArgument]:
+        return [self]
 
     @property
     def shown_default(self) -> str | None:
         """The default as ``--show-args`` prints it."""
-        return None if self.default_value is None else described(self.default_value)
+        return None if self.default_value is None else describe_substitutions(self.default_value)
 
     def execute(self, context: LaunchContext) -> None:
         if self.name not in context.launch_configurations:
@@ -48,7 +63,7 @@ class DeclareLaunchArgument(Action):
                     f"Required launch argument '{self.name}' (description: '{self.description}') was not "
                     f"provided: add {self.name}:=VALUE to the command"
                 )
-            context.launch_configurations[self.name] = perform(context, self.default_value)
+            context.launch_configurations[self.name] = perform_substitutions(context, self.default_value)
         value = context.launch_configurations[self.name]
         if self.choices is not None and value not in self.choices:
             raise LaunchError(
@@ -57,40 +72,44 @@ class DeclareLaunchArgument(Action):
 
 
 class SetLaunchConfiguration(Action):
-    """Gives a launch argument a value."""
+    """Sets the value of a launch argument."""
 
     def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name, self.value = normalize(name), normalize(value)
+        self.name, self.value = normalize_to_substitutions(name), normalize_to_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations[perform(context, self.name)] = perform(context, self.value)
+        context.launch_configurations[perform_substitutions(context, self.name)] = perform_substitutions(
+            context, self.value
+        )
 
 
 class UnsetLaunchConfiguration(Action):
-    """Takes a launch argument's value away."""
+    """Removes the value of a launch argument."""
 
     def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name = normalize(name)
+        self.name = normalize_to_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations.pop(perform(context, self.name), None)
+        context.launch_configurations.pop(perform_substitutions(context, self.name), None)
 
 
 class SetEnvironmentVariable(Action):
-    """For every process that is started from here on."""
+    """Sets a variable for every process that is started afterwards."""
 
     def __init__(self, name: SomeText, value: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name, self.value = normalize(name), normalize(value)
+        self.name, self.value = normalize_to_substitutions(name), normalize_to_substitutions(value)
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment[perform(context, self.name)] = perform(context, self.value)
+        context.environment[perform_substitutions(context, self.name)] = perform_substitutions(
+            context, self.value
+        )
 
 
 class AppendEnvironmentVariable(SetEnvironmentVariable):
-    """Adds to what a variable holds already."""
+    """Appends to a variable's value, or prepends."""
 
     def __init__(
         self,
@@ -102,39 +121,41 @@ class AppendEnvironmentVariable(SetEnvironmentVariable):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(name, value, condition=condition)
-        self.prepend, self.separator = prepend, normalize(separator)
+        self.prepend, self.separator = prepend, normalize_to_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
-        name, value = perform(context, self.name), perform(context, self.value)
+        name, value = perform_substitutions(context, self.name), perform_substitutions(context, self.value)
         parts = [part for part in (context.environment.get(name), value) if part]
-        joined = perform(context, self.separator).join(reversed(parts) if self.prepend else parts)
+        joined = perform_substitutions(context, self.separator).join(
+            reversed(parts) if self.prepend else parts
+        )
         context.environment[name] = joined
 
 
 class UnsetEnvironmentVariable(Action):
-    """Takes a variable away."""
+    """Removes a variable."""
 
     def __init__(self, name: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name = normalize(name)
+        self.name = normalize_to_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment.pop(perform(context, self.name), None)
+        context.environment.pop(perform_substitutions(context, self.name), None)
 
 
 class LogInfo(Action):
-    """Says something in the launch's log."""
+    """Logs a line."""
 
     def __init__(self, *, msg: SomeText, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.msg = normalize(msg)
+        self.msg = normalize_to_substitutions(msg)
 
     def execute(self, context: LaunchContext) -> None:
-        context.request("log", "INFO", perform(context, self.msg))
+        context.request("log", "INFO", perform_substitutions(context, self.msg))
 
 
-class _Do(LaunchDescriptionEntity):
-    """One step among entities."""
+class _Step(LaunchDescriptionEntity):
+    """Wraps a function of the context as an entity."""
 
     def __init__(self, step: Callable[[LaunchContext], object]) -> None:
         self._step = step
@@ -144,7 +165,7 @@ class _Do(LaunchDescriptionEntity):
 
 
 class GroupAction(Action):
-    """Several actions under one condition; what they set holds among them alone, unless ``scoped`` is false."""
+    """Several actions under one condition; their settings apply only inside the group, unless ``scoped`` is false."""
 
     def __init__(
         self,
@@ -156,11 +177,11 @@ class GroupAction(Action):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
-        self.actions = entities(actions)
+        self.actions = to_entities(actions)
         self.scoped, self.forwarding = scoped, forwarding
         self.launch_configurations = dict(launch_configurations or {})
 
-    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return self.actions
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
@@ -168,12 +189,12 @@ class GroupAction(Action):
         inside = [*given, *self.actions]
         if not self.scoped:
             return inside
-        forget = [] if self.forwarding else [_Do(lambda context: context.launch_configurations.clear())]
-        return [_Do(LaunchContext.push), *forget, *inside, _Do(LaunchContext.pop)]
+        forget = [] if self.forwarding else [_Step(lambda context: context.launch_configurations.clear())]
+        return [_Step(LaunchContext.push), *forget, *inside, _Step(LaunchContext.pop)]
 
 
 class IncludeLaunchDescription(Action):
-    """Another launch file, with arguments of its own."""
+    """Includes another launch file, with its own arguments."""
 
     def __init__(
         self,
@@ -191,7 +212,12 @@ class IncludeLaunchDescription(Action):
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         given = [SetLaunchConfiguration(name, value) for name, value in self.launch_arguments]
-        return [*given, _Do(self._enter), _Included(self.source), _Do(lambda context: context.files.pop())]
+        return [
+            *given,
+            _Step(self._enter),
+            _Included(self.source),
+            _Step(lambda context: context.files.pop()),
+        ]
 
     def _enter(self, context: LaunchContext) -> None:
         path = self.source.path(context)
@@ -210,7 +236,7 @@ class _Included(LaunchDescriptionEntity):
 
 
 class TimerAction(Action):
-    """Actions to be carried out ``period`` seconds later."""
+    """Carries out actions ``period`` seconds later."""
 
     def __init__(
         self,
@@ -221,15 +247,15 @@ class TimerAction(Action):
         condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
-        self.period = normalize(str(period) if isinstance(period, (int, float)) else period)
-        self.actions = entities(actions)
+        self.period = normalize_to_substitutions(str(period) if isinstance(period, (int, float)) else period)
+        self.actions = to_entities(actions)
         self._cancel: Callable[[], None] | None = None
 
-    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return self.actions
 
     def execute(self, context: LaunchContext) -> None:
-        text = perform(context, self.period)
+        text = perform_substitutions(context, self.period)
         try:
             seconds = float(text)
         except ValueError:
@@ -258,11 +284,11 @@ class OpaqueFunction(Action):
         self.function, self.args, self.kwargs = function, tuple(args or ()), dict(kwargs or {})
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        return entities(self.function(context, *self.args, **self.kwargs))
+        return to_entities(self.function(context, *self.args, **self.kwargs))
 
 
 class RegisterEventHandler(Action):
-    """Has an event handler react from here on."""
+    """Registers an event handler."""
 
     def __init__(self, event_handler: EventHandler, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -273,14 +299,14 @@ class RegisterEventHandler(Action):
 
 
 class UnregisterEventHandler(RegisterEventHandler):
-    """Has an event handler react no more."""
+    """Unregisters an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
         context.unregister_event_handler(self.event_handler)
 
 
 class EmitEvent(Action):
-    """Has an event happen."""
+    """Emits an event."""
 
     def __init__(self, *, event: Event, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -291,7 +317,7 @@ class EmitEvent(Action):
 
 
 class Shutdown(Action):
-    """Ends everything that the launch has started."""
+    """Shuts down everything that the launch has started."""
 
     def __init__(
         self, *, reason: str = "reason not given", condition: Condition | None = None, **_: Any

@@ -1,33 +1,55 @@
-"""What holds while a launch file is carried out: arguments, environment, namespaces; and who waits for which event."""
+"""The state of a running launch file: arguments, environment, namespaces, event handlers.
+
+Entities and event handlers are built on the context; it knows them by the protocols below.
+"""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from kit.ros.launch.errors import LaunchError
 
 if TYPE_CHECKING:
-    from kit.ros.launch.entity import LaunchDescriptionEntity
-    from kit.ros.launch.event_handlers import EventHandler
     from kit.ros.launch.events import Event
-    from kit.ros.launch.substitutions import Substitution
+
+
+class Visitable(Protocol):
+    """A launch description entity."""
+
+    def visit(self, context: LaunchContext) -> Iterable[Any] | None: ...
+
+
+class RegisteredHandler(Protocol):
+    """An event handler."""
+
+    needs_output: bool
+
+    def matches(self, event: Event) -> bool: ...
+
+    def handle(self, event: Event, context: LaunchContext) -> Iterable[Any]: ...
+
+
+class PerformableText(Protocol):
+    """A substitution."""
+
+    def perform(self, context: LaunchContext) -> str: ...
 
 
 @dataclass
 class Scope:
-    """What a group of actions can change for itself alone."""
+    """The settings that a group of actions can change without affecting what is outside the group."""
 
     configurations: dict[str, str] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
     namespace: str = ""
     parameters: list[tuple[str, str]] = field(default_factory=list)
-    """For every node: names, and values as ``-p`` takes them."""
+    """Names and values, as ``-p`` takes them, for every node that is started."""
     remappings: list[tuple[str, str]] = field(default_factory=list)
 
-    def copied(self) -> Scope:
+    def copy(self) -> Scope:
         return Scope(
             dict(self.configurations),
             dict(self.environment),
@@ -38,18 +60,18 @@ class Scope:
 
 
 class LaunchContext:
-    """Handed to substitutions, conditions, functions and event handlers."""
+    """The argument of substitutions, conditions, functions and event handlers."""
 
     def __init__(self, *, argv: Iterable[str] = (), environment: dict[str, str] | None = None) -> None:
         self.argv = list(argv)
         self.files: list[str] = []
-        """The launch files being read, each included by the one before."""
-        self.handlers: list[EventHandler] = []
-        self.emit: Callable[[Event], None] = _nobody_listens
-        """Has an event handled after what is being done."""
-        self.request: Callable[..., None] = _nobody_listens
-        """Asks whoever carries the launch out for something; see ``service``."""
-        self.start_timer: Callable[[float, Iterable[LaunchDescriptionEntity]], Callable[[], None]]
+        """The launch files being loaded, each included by the one before."""
+        self.handlers: list[RegisteredHandler] = []
+        self.emit: Callable[[Event], None] = _ignore
+        """Queues an event; it is handled after the present action."""
+        self.request: Callable[..., None] = _ignore
+        """Sends a request to the process that runs the launch; see ``service``."""
+        self.start_timer: Callable[[float, Iterable[Any]], Callable[[], None]]
         self.is_shutdown = False
         self._scopes = [Scope(environment=dict(os.environ if environment is None else environment))]
 
@@ -66,21 +88,21 @@ class LaunchContext:
         return self.scope.environment
 
     def push(self) -> None:
-        """What is changed from here on holds until ``pop``."""
-        self._scopes.append(self.scope.copied())
+        """Opens a scope: changes from here on are undone by ``pop``."""
+        self._scopes.append(self.scope.copy())
 
     def pop(self) -> None:
         self._scopes.pop()
 
-    def perform_substitution(self, substitution: Substitution) -> str:
+    def perform_substitution(self, substitution: PerformableText) -> str:
         return substitution.perform(self)
 
-    def register_event_handler(self, event_handler: EventHandler) -> None:
+    def register_event_handler(self, event_handler: RegisteredHandler) -> None:
         self.handlers.insert(0, event_handler)
-        if event_handler.hears_output:
+        if event_handler.needs_output:
             self.request("listen")
 
-    def unregister_event_handler(self, event_handler: EventHandler) -> None:
+    def unregister_event_handler(self, event_handler: RegisteredHandler) -> None:
         if event_handler not in self.handlers:
             raise LaunchError("this event handler is not registered")
         self.handlers.remove(event_handler)
@@ -89,5 +111,5 @@ class LaunchContext:
         self.emit(event)
 
 
-def _nobody_listens(*_: Any) -> None:
-    """Outside a run nothing is carried out."""
+def _ignore(*_: Any) -> None:
+    """Does nothing: no launch is running."""

@@ -1,28 +1,42 @@
-"""Entities: what a launch description consists of, and the actions among them."""
+"""Launch descriptions and what they consist of: entities, some of them actions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
-from kit.ros.launch.errors import calling_place
+from kit.ros.launch.errors import calling_location
 
 if TYPE_CHECKING:
-    from kit.ros.launch.actions import DeclareLaunchArgument
     from kit.ros.launch.conditions import Condition
     from kit.ros.launch.context import LaunchContext
 
 
+class DeclaredArgument(Protocol):
+    """A ``DeclareLaunchArgument``."""
+
+    name: str
+    description: str
+    choices: list[str] | None
+
+    @property
+    def shown_default(self) -> str | None: ...
+
+
 class LaunchDescriptionEntity:
-    """Something to be carried out."""
+    """Something that a launch carries out."""
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
-        """Carries it out; what it consists of is carried out next."""
+        """Carries the entity out; returns the entities to carry out next."""
         raise NotImplementedError(f"{type(self).__name__}.visit")
 
-    def parts(self) -> Sequence[LaunchDescriptionEntity]:
-        """What it consists of as far as that is known before it is carried out."""
+    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
+        """The entities it contains, as far as they are known before it is carried out."""
         return ()
+
+    def declared_arguments(self) -> list[DeclaredArgument]:
+        """The launch arguments that it declares itself, without those of ``sub_entities``."""
+        return []
 
 
 class Action(LaunchDescriptionEntity):
@@ -30,7 +44,7 @@ class Action(LaunchDescriptionEntity):
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         self.condition = condition
-        self.place = calling_place()
+        self.location = calling_location()
         """The line of the launch file that made it."""
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
@@ -39,12 +53,12 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
-        """What subclasses do."""
+        """Carries the action out; defined by subclasses."""
         raise NotImplementedError(f"{type(self).__name__}.execute")
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """What ``generate_launch_description`` returns."""
+    """The entities of a launch file: the result of its ``generate_launch_description``."""
 
     def __init__(
         self,
@@ -52,7 +66,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         *,
         deprecated_reason: str | None = None,
     ) -> None:
-        self.entities = entities(initial_entities)
+        self.entities = to_entities(initial_entities)
         self.deprecated_reason = deprecated_reason
 
     def add_action(self, action: Action) -> None:
@@ -66,29 +80,29 @@ class LaunchDescription(LaunchDescriptionEntity):
             context.request("log", "WARN", f"this launch file is deprecated: {self.deprecated_reason}")
         return self.entities
 
-    def parts(self) -> Sequence[LaunchDescriptionEntity]:
+    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return self.entities
 
-    def get_launch_arguments(self) -> list[DeclareLaunchArgument]:
-        """All arguments that it and its parts declare, each name once."""
-        from kit.ros.launch.actions import DeclareLaunchArgument
+    def get_launch_arguments(self) -> list[DeclaredArgument]:
+        """The arguments that it and its entities declare, each name once."""
 
-        found: dict[str, DeclareLaunchArgument] = {}
+        found: dict[str, DeclaredArgument] = {}
         waiting: list[Any] = [self]
         while waiting:
             entity = waiting.pop(0)
-            if isinstance(entity, DeclareLaunchArgument):
-                found.setdefault(entity.name, entity)
-            waiting[:0] = entity.parts() if isinstance(entity, LaunchDescriptionEntity) else ()
+            if isinstance(entity, LaunchDescriptionEntity):
+                for argument in entity.declared_arguments():
+                    found.setdefault(argument.name, argument)
+                waiting[:0] = entity.sub_entities()
         return list(found.values())
 
 
-def entities(found: Any) -> list[LaunchDescriptionEntity]:
-    """What a function or an argument gave, as a list: nothing, one entity, or several. TypeError otherwise."""
+def to_entities(found: Any) -> list[LaunchDescriptionEntity]:
+    """Normalizes None, one entity, or nested iterables of entities to a list. Raises TypeError for anything else."""
     if found is None:
         return []
     if isinstance(found, LaunchDescriptionEntity):
         return [found]
     if isinstance(found, Iterable):
-        return [entity for entry in found for entity in entities(entry)]
+        return [entity for entry in found for entity in to_entities(entry)]
     raise TypeError(f"an action, or a list of actions, is needed here, not {type(found).__name__}")

@@ -1,38 +1,38 @@
-"""What can be wrong with a launch file, with the place in it."""
+"""Errors of a launch file, with the line that caused them."""
 
 from __future__ import annotations
 
 import sys
 from typing import Final, NamedTuple
 
-_HERE: Final = __file__.rpartition("/launch/")[0]
+_LIBRARY_FOLDER: Final = __file__.rpartition("/launch/")[0]
 """The folder of ``kit.ros``: frames below it are the library's, frames elsewhere the launch file's author's."""
 
 
-class Place(NamedTuple):
-    """A line of somebody's launch file."""
+class LaunchFileLocation(NamedTuple):
+    """A line of a launch file, or of a module it imports."""
 
     file: str
     line: int
 
 
 class LaunchError(Exception):
-    """A launch file that cannot be carried out; ``place`` is the line to look at, if it is known."""
+    """A launch file that cannot be carried out; ``location`` is the line that caused it, if known."""
 
-    def __init__(self, message: str, place: Place | None = None) -> None:
+    def __init__(self, message: str, location: LaunchFileLocation | None = None) -> None:
         super().__init__(message)
-        self.place = place
+        self.location = location
 
 
 class SubstitutionFailure(LaunchError):
     """A substitution that cannot be performed."""
 
 
-def calling_place() -> Place | None:
-    """The innermost line outside this library that is being run."""
+def calling_location() -> LaunchFileLocation | None:
+    """The innermost line of the call stack that is outside this library; None if there is none."""
     frame = sys._getframe(1)
-    while frame.f_code.co_filename.startswith(_HERE):
+    while frame.f_code.co_filename.startswith(_LIBRARY_FOLDER):
         if frame.f_back is None:
             return None
         frame = frame.f_back
-    return Place(frame.f_code.co_filename, frame.f_lineno)
+    return LaunchFileLocation(frame.f_code.co_filename, frame.f_lineno)

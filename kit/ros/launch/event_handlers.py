@@ -1,4 +1,4 @@
-"""Event handlers: what is carried out when something happens."""
+"""Event handlers: entities that are carried out when an event occurs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import LaunchDescriptionEntity, entities
+from kit.ros.launch.entity import LaunchDescriptionEntity, to_entities
 from kit.ros.launch.events import (
     Event,
     ProcessExited,
@@ -17,14 +17,14 @@ from kit.ros.launch.events import (
 )
 
 Reaction = Callable[..., Any] | LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
-"""Actions, or a function ``(event, context)`` that returns some."""
+"""Actions, or a function ``(event, context)`` that returns actions."""
 
 
 class EventHandler:
-    """Reacts to the events that ``matcher`` picks."""
+    """Carries out ``entities`` when an event occurs for which ``matcher(event)`` is true."""
 
-    hears_output = False
-    """Whether it wants to know of every line that a process prints."""
+    needs_output = False
+    """Whether it needs an event for every line that a process prints."""
 
     def __init__(
         self, *, matcher: Callable[[Any], bool], entities: Reaction | None = None, handle_once: bool = False
@@ -37,27 +37,31 @@ class EventHandler:
         return self._matcher(event)
 
     def handle(self, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """What is to be carried out now."""
+        """The entities to carry out now."""
         if self.handle_once:
             context.unregister_event_handler(self)
-        return react(self._reaction, event, context)
+        return reaction_entities(self._reaction, event, context)
 
 
-def react(reaction: Reaction | None, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-    """The actions of a reaction to an event."""
+def reaction_entities(
+    reaction: Reaction | None, event: Event, context: LaunchContext
+) -> list[LaunchDescriptionEntity]:
+    """The entities of a reaction; a function is called to get them."""
     if callable(reaction) and not isinstance(reaction, LaunchDescriptionEntity):
-        return entities(reaction(event, context))
-    return entities(reaction)
+        return to_entities(reaction(event, context))
+    return to_entities(reaction)
 
 
 class _OnProcess(EventHandler):
+    """Reacts to events of one kind, of one action's process or of any."""
+
     kind: type[RunningProcessEvent]
 
     def __init__(self, target_action: Any, reaction: Reaction, handle_once: bool) -> None:
         self._target = target_action
-        super().__init__(matcher=self._is_meant, entities=reaction, handle_once=handle_once)
+        super().__init__(matcher=self._matches_target, entities=reaction, handle_once=handle_once)
 
-    def _is_meant(self, event: Any) -> bool:
+    def _matches_target(self, event: Any) -> bool:
         if not isinstance(event, self.kind):
             return False
         if self._target is None or self._target is event.action:
@@ -67,7 +71,7 @@ class _OnProcess(EventHandler):
 
 
 class OnProcessExit(_OnProcess):
-    """When a process has ended; ``target_action`` None: any."""
+    """Reacts when a process has ended; ``target_action`` None: any process."""
 
     kind = ProcessExited
 
@@ -76,7 +80,7 @@ class OnProcessExit(_OnProcess):
 
 
 class OnProcessStart(_OnProcess):
-    """When a process has started."""
+    """Reacts when a process has started."""
 
     kind = ProcessStarted
 
@@ -85,10 +89,10 @@ class OnProcessStart(_OnProcess):
 
 
 class OnProcessIO(_OnProcess):
-    """When a process has printed something."""
+    """Reacts when a process has printed something."""
 
     kind = ProcessIO
-    hears_output = True
+    needs_output = True
 
     def __init__(
         self,
@@ -99,13 +103,13 @@ class OnProcessIO(_OnProcess):
         on_stderr: Reaction | None = None,
     ) -> None:
         def choose(event: ProcessIO, context: LaunchContext) -> Any:
-            return react(on_stdout if event.from_stdout else on_stderr, event, context)
+            return reaction_entities(on_stdout if event.from_stdout else on_stderr, event, context)
 
         super().__init__(target_action, choose, handle_once=False)
 
 
 class OnShutdown(EventHandler):
-    """When everything is about to end."""
+    """Reacts when the launch is shut down."""
 
     def __init__(self, *, on_shutdown: Reaction, handle_once: bool = False) -> None:
         super().__init__(

@@ -1,4 +1,4 @@
-"""Events: what happens to processes, and the end of it all."""
+"""Events: a process starts, prints or ends; the launch shuts down."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any
 
 
 class Event:
-    """Something that happened, or is to happen."""
+    """Something that events, or is to happen."""
 
     name = "launch.Event"
 
 
 class Shutdown(Event):
-    """Everything ends."""
+    """The launch shuts down."""
 
     name = "launch.events.Shutdown"
 
@@ -23,7 +23,7 @@ class Shutdown(Event):
 
 
 class RunningProcessEvent(Event):
-    """Something about a process that a launch file has started."""
+    """An event of a process that the launch has started."""
 
     name = "launch.events.process.RunningProcessEvent"
 
@@ -47,7 +47,7 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """Something that a process has printed."""
+    """A process has printed something."""
 
     name = "launch.events.process.ProcessIO"
 
@@ -62,20 +62,20 @@ class ProcessIO(RunningProcessEvent):
 
 
 class ProcessMatchingEvent(Event):
-    """Meant for the processes whose action a function picks."""
+    """Commands the processes for whose action ``process_matcher(action)`` is true."""
 
     def __init__(self, *, process_matcher: Callable[[Any], bool]) -> None:
         self.process_matcher = process_matcher
 
 
 class ShutdownProcess(ProcessMatchingEvent):
-    """Has a process ended."""
+    """Ends processes."""
 
     name = "launch.events.process.ShutdownProcess"
 
 
 class SignalProcess(ProcessMatchingEvent):
-    """Has a signal sent to a process; here any signal ends it."""
+    """Sends a signal to processes; here any signal ends them."""
 
     name = "launch.events.process.SignalProcess"
 
@@ -85,5 +85,5 @@ class SignalProcess(ProcessMatchingEvent):
 
 
 def matches_action(action: Any) -> Callable[[Any], bool]:
-    """Picks the process that this action has started."""
+    """Returns a matcher for the process that this action has started."""
     return lambda other: other is action

@@ -10,7 +10,12 @@ from typing import Any
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.errors import LaunchError
-from kit.ros.launch.substitutions import SomeText, Substitution, normalize, perform
+from kit.ros.launch.substitutions import (
+    SomeText,
+    Substitution,
+    normalize_to_substitutions,
+    perform_substitutions,
+)
 
 
 class ParameterValue:
@@ -22,7 +27,7 @@ class ParameterValue:
     def evaluate(self, context: LaunchContext) -> Any:
         if not isinstance(self.value, (str, Substitution, list, tuple)):
             return self.value
-        text = perform(context, self.value)
+        text = perform_substitutions(context, self.value)
         if self.value_type is str:
             return text
         value = _read(text)
@@ -38,7 +43,7 @@ class ParameterFile:
     """A file of parameters."""
 
     def __init__(self, param_file: SomeText, *, allow_substs: bool | SomeText = False) -> None:
-        self.param_file = normalize(param_file)
+        self.param_file = normalize_to_substitutions(param_file)
 
 
 class Parameter(ParameterValue):
@@ -46,46 +51,49 @@ class Parameter(ParameterValue):
 
     def __init__(self, name: SomeText, value: Any, *, value_type: Any = None) -> None:
         super().__init__(value, value_type=value_type)
-        self.name = normalize(name)
+        self.name = normalize_to_substitutions(name)
 
 
 def arguments(context: LaunchContext, given: Iterable[Any]) -> Iterator[str]:
     """``-p`` and ``--params-file`` for what a node's ``parameters`` list holds. LaunchError."""
     for entry in given:
         if isinstance(entry, Mapping):
-            for name, value in flattened(context, entry):
+            for name, value in flatten_parameters(context, entry):
                 yield from ("-p", f"{name}:={value}")
         elif isinstance(entry, Parameter):
-            yield from ("-p", f"{perform(context, entry.name)}:={written(entry.evaluate(context))}")
+            yield from (
+                "-p",
+                f"{perform_substitutions(context, entry.name)}:={to_argument_text(entry.evaluate(context))}",
+            )
         else:
             source = entry.param_file if isinstance(entry, ParameterFile) else entry
-            path = perform(context, source)
+            path = perform_substitutions(context, source)
             if not Path(path).is_file():
                 raise LaunchError(f"the parameter file {path} does not exist")
             yield from ("--params-file", path)
 
 
-def flattened(
+def flatten_parameters(
     context: LaunchContext, values: Mapping[Any, Any], prefix: str = ""
 ) -> Iterator[tuple[str, str]]:
     """Names and written values of a dict of parameters, dicts in it included."""
     for key, value in values.items():
-        name = prefix + perform(context, key)
+        name = prefix + perform_substitutions(context, key)
         if isinstance(value, Mapping):
-            yield from flattened(context, value, f"{name}.")
+            yield from flatten_parameters(context, value, f"{name}.")
         else:
-            yield name, written(_evaluated(context, value))
+            yield name, to_argument_text(_evaluate(context, value))
 
 
-def _evaluated(context: LaunchContext, value: Any) -> Any:
+def _evaluate(context: LaunchContext, value: Any) -> Any:
     """The value as ROS 2 finds it: texts and substitutions are read as YAML, lists of them are joined first."""
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, (str, Path, Substitution)):
-        return _read(perform(context, value))
+        return _read(perform_substitutions(context, value))
     if isinstance(value, (list, tuple)):
         if any(isinstance(entry, Substitution) for entry in value):
-            return _read(perform(context, value))
+            return _read(perform_substitutions(context, value))
         return list(value)
     return value
 
@@ -99,7 +107,7 @@ def _read(text: str) -> Any:
         return text
 
 
-def written(value: Any) -> str:
+def to_argument_text(value: Any) -> str:
     """A value as it must stand on a command line to be read as the same value."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -108,5 +116,5 @@ def written(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value)
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(written(entry) for entry in value)}]"
+        return f"[{', '.join(to_argument_text(entry) for entry in value)}]"
     raise LaunchError(f"no parameter can hold {value!r:.40}, a {type(value).__name__}")

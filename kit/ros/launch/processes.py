@@ -10,11 +10,11 @@ from kit.ros.graph.naming import absolute_namespace
 from kit.ros.launch import parameters as parameter_arguments
 from kit.ros.launch.conditions import Condition
 from kit.ros.launch.context import LaunchContext
-from kit.ros.launch.entity import Action, LaunchDescriptionEntity, entities
+from kit.ros.launch.entity import Action, LaunchDescriptionEntity, to_entities
 from kit.ros.launch.event_handlers import OnProcessExit
-from kit.ros.launch.substitutions import SomeText, normalize, perform
+from kit.ros.launch.substitutions import SomeText, normalize_to_substitutions, perform_substitutions
 
-WITHOUT_MEANING = frozenset(
+IGNORED_ARGUMENTS = frozenset(
     {
         "emulate_tty", "sigterm_timeout", "sigkill_timeout", "log_cmd", "cached_output", "output_format",
         "respawn_max_retries", "exec_name", "sigint_sigterm_timeout",
@@ -44,24 +44,28 @@ class ExecuteProcess(Action):
         **others: Any,
     ) -> None:
         super().__init__(condition=condition)
-        strange = sorted(others.keys() - WITHOUT_MEANING)
+        strange = sorted(others.keys() - IGNORED_ARGUMENTS)
         if strange:
             raise TypeError(f"{type(self).__name__}() has no argument {', '.join(map(repr, strange))}")
-        self.cmd = [normalize(part) for part in cmd]
-        self.title = None if name is None else normalize(name)
-        self.cwd = None if cwd is None else normalize(cwd)
+        self.cmd = [normalize_to_substitutions(part) for part in cmd]
+        self.title = None if name is None else normalize_to_substitutions(name)
+        self.cwd = None if cwd is None else normalize_to_substitutions(cwd)
         self.env, self.additional_env = env, additional_env
-        self.prefix = None if prefix is None else normalize(prefix)
+        self.prefix = None if prefix is None else normalize_to_substitutions(prefix)
         self.shell = shell
         self.output = output
-        self.respawn = normalize(str(respawn)) if isinstance(respawn, bool) else normalize(respawn)
+        self.respawn = (
+            normalize_to_substitutions(str(respawn))
+            if isinstance(respawn, bool)
+            else normalize_to_substitutions(respawn)
+        )
         self.respawn_delay = respawn_delay
         self.on_exit = on_exit
         self.number: int | None = None
         """Which process it has started."""
 
-    def parts(self) -> Sequence[LaunchDescriptionEntity]:
-        return () if callable(self.on_exit) else entities(self.on_exit)
+    def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
+        return () if callable(self.on_exit) else to_entities(self.on_exit)
 
     def execute(self, context: LaunchContext) -> None:
         if self.on_exit is not None:
@@ -69,35 +73,40 @@ class ExecuteProcess(Action):
         context.request("process", self, self.specification(context))
 
     def respawns(self, context: LaunchContext) -> bool:
-        return perform(context, self.respawn).lower() in ("true", "1")
+        return perform_substitutions(context, self.respawn).lower() in ("true", "1")
 
     def specification(self, context: LaunchContext) -> dict[str, Any]:
         """What is to be started, as plain data."""
-        command = [perform(context, part) for part in self.cmd]
+        command = [perform_substitutions(context, part) for part in self.cmd]
         title = Path(command[0].split()[0]).name if command and command[0] else "process"
         return {
             "kind": "command",
-            "title": title if self.title is None else perform(context, self.title),
+            "title": title if self.title is None else perform_substitutions(context, self.title),
             "command": command,
             "shell": self.shell,
-            **self._surroundings(context),
+            **self._process_environment(context),
         }
 
-    def _surroundings(self, context: LaunchContext) -> dict[str, Any]:
+    def _process_environment(self, context: LaunchContext) -> dict[str, Any]:
         environment = dict(context.environment)
         if self.env is not None:
-            environment = _performed(context, self.env)
-        environment |= _performed(context, self.additional_env or {})
+            environment = _perform_mapping(context, self.env)
+        environment |= _perform_mapping(context, self.additional_env or {})
         return {
             "environment": environment,
-            "cwd": None if self.cwd is None else str(Path(perform(context, self.cwd)).absolute()),
-            "file": self.place.file if self.place else None,
-            "line": self.place.line if self.place else None,
+            "cwd": None
+            if self.cwd is None
+            else str(Path(perform_substitutions(context, self.cwd)).absolute()),
+            "file": self.location.file if self.location else None,
+            "line": self.location.line if self.location else None,
         }
 
 
-def _performed(context: LaunchContext, values: Mapping[Any, SomeText]) -> dict[str, str]:
-    return {perform(context, key): perform(context, value) for key, value in values.items()}
+def _perform_mapping(context: LaunchContext, values: Mapping[Any, SomeText]) -> dict[str, str]:
+    return {
+        perform_substitutions(context, key): perform_substitutions(context, value)
+        for key, value in values.items()
+    }
 
 
 class Node(ExecuteProcess):
@@ -118,49 +127,55 @@ class Node(ExecuteProcess):
         **kwargs: Any,
     ) -> None:
         super().__init__(cmd=[executable], name=exec_name, **kwargs)
-        self.package = None if package is None else normalize(package)
-        self.executable = normalize(executable)
-        self.node_name = None if name is None else normalize(name)
-        self.namespace = None if namespace is None else normalize(namespace)
+        self.package = None if package is None else normalize_to_substitutions(package)
+        self.executable = normalize_to_substitutions(executable)
+        self.node_name = None if name is None else normalize_to_substitutions(name)
+        self.namespace = None if namespace is None else normalize_to_substitutions(namespace)
         self.parameters = list(parameters or ())
         self.remappings = [
-            (normalize(match), normalize(replacement)) for match, replacement in remappings or ()
+            (normalize_to_substitutions(match), normalize_to_substitutions(replacement))
+            for match, replacement in remappings or ()
         ]
-        self.ros_arguments = [normalize(each) for each in ros_arguments or ()]
-        self.arguments = [normalize(each) for each in arguments or ()]
+        self.ros_arguments = [normalize_to_substitutions(each) for each in ros_arguments or ()]
+        self.arguments = [normalize_to_substitutions(each) for each in arguments or ()]
 
     def specification(self, context: LaunchContext) -> dict[str, Any]:
-        executable = perform(context, self.executable)
-        own = [perform(context, each) for each in self.arguments]
-        ros = [perform(context, each) for each in self.ros_arguments]
+        executable = perform_substitutions(context, self.executable)
+        own = [perform_substitutions(context, each) for each in self.arguments]
+        ros = [perform_substitutions(context, each) for each in self.ros_arguments]
         if self.node_name is not None:
-            ros += ["-r", f"__node:={perform(context, self.node_name)}"]
+            ros += ["-r", f"__node:={perform_substitutions(context, self.node_name)}"]
         namespace = self._namespace(context)
         if namespace is not None:
             ros += ["-r", f"__ns:={namespace}"]
         for name, value in context.scope.parameters:
             ros += ["-p", f"{name}:={value}"]
         ros += parameter_arguments.arguments(context, self.parameters)
-        remappings = [(perform(context, match), perform(context, to)) for match, to in self.remappings]
+        remappings = [
+            (perform_substitutions(context, match), perform_substitutions(context, to))
+            for match, to in self.remappings
+        ]
         for match, to in (*remappings, *context.scope.remappings):
             ros += ["-r", f"{match}:={to}"]
         return {
             "kind": "node",
-            "title": Path(executable).name if self.title is None else perform(context, self.title),
-            "package": None if self.package is None else perform(context, self.package),
+            "title": Path(executable).name
+            if self.title is None
+            else perform_substitutions(context, self.title),
+            "package": None if self.package is None else perform_substitutions(context, self.package),
             "executable": executable,
             "arguments": [*own, *(["--ros-args", *ros] if ros else [])],
-            **self._surroundings(context),
+            **self._process_environment(context),
         }
 
     def _namespace(self, context: LaunchContext) -> str | None:
         pushed = context.scope.namespace
         if self.namespace is None:
             return pushed or None
-        return joined_namespace(pushed, perform(context, self.namespace))
+        return join_namespaces(pushed, perform_substitutions(context, self.namespace))
 
 
-def joined_namespace(outer: str, inner: str) -> str:
+def join_namespaces(outer: str, inner: str) -> str:
     """A namespace within another; an absolute one stands for itself."""
     if inner.startswith("/") or not outer:
         return absolute_namespace(inner)
@@ -172,10 +187,12 @@ class PushRosNamespace(Action):
 
     def __init__(self, namespace: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.namespace = normalize(namespace)
+        self.namespace = normalize_to_substitutions(namespace)
 
     def execute(self, context: LaunchContext) -> None:
-        context.scope.namespace = joined_namespace(context.scope.namespace, perform(context, self.namespace))
+        context.scope.namespace = join_namespaces(
+            context.scope.namespace, perform_substitutions(context, self.namespace)
+        )
 
 
 class SetParameter(Action):
@@ -183,11 +200,11 @@ class SetParameter(Action):
 
     def __init__(self, name: SomeText, value: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.name, self.value = normalize(name), value
+        self.name, self.value = normalize_to_substitutions(name), value
 
     def execute(self, context: LaunchContext) -> None:
-        values = {perform(context, self.name): self.value}
-        context.scope.parameters += parameter_arguments.flattened(context, values)
+        values = {perform_substitutions(context, self.name): self.value}
+        context.scope.parameters += parameter_arguments.flatten_parameters(context, values)
 
 
 class SetRemap(Action):
@@ -195,7 +212,9 @@ class SetRemap(Action):
 
     def __init__(self, src: SomeText, dst: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
-        self.src, self.dst = normalize(src), normalize(dst)
+        self.src, self.dst = normalize_to_substitutions(src), normalize_to_substitutions(dst)
 
     def execute(self, context: LaunchContext) -> None:
-        context.scope.remappings.append((perform(context, self.src), perform(context, self.dst)))
+        context.scope.remappings.append(
+            (perform_substitutions(context, self.src), perform_substitutions(context, self.dst))
+        )

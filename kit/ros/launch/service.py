@@ -1,10 +1,10 @@
-"""One run of a launch file: what is asked for, in which order, and what follows from what happens.
+"""Runs a launch description: turns entities and events into requests to start and end processes.
 
-Time and events come from outside; requests go outside, as plain data::
+Time and events are passed in; requests are returned, as plain data::
 
     log        level, text
-    listen                                        tell of what processes print, from now on
-    process    number, specification              start it; ``processes`` says what a specification holds
+    listen                                        send an event for every line a process prints
+    process    number, specification              start it; see ``processes`` for the specification
     end        number                             end it
     shutdown   reason                             end everything
 """
@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from kit.ros.launch.context import LaunchContext
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
-from kit.ros.launch.errors import LaunchError, Place
+from kit.ros.launch.errors import LaunchError, LaunchFileLocation
 from kit.ros.launch.events import (
     Event,
     ProcessExited,
@@ -31,11 +31,11 @@ from kit.ros.launch.events import (
 from kit.ros.launch.processes import ExecuteProcess
 
 Request = list[Any]
-"""A kind and its content."""
+"""The kind of the request, then its content."""
 
 
 class LaunchService:
-    """Carries a launch description out, as far as it can without starting anything itself."""
+    """Carries a launch description out without starting any process itself."""
 
     def __init__(
         self, file: str, arguments: dict[str, str], *, environment: dict[str, str] | None = None
@@ -53,24 +53,24 @@ class LaunchService:
         self._actions: dict[int, tuple[ExecuteProcess, str]] = {}
         self._numbers = count(1)
         self._now_ns = 0
-        self.place: Place | None = None
+        self.location: LaunchFileLocation | None = None
         """The line of the launch file that is being carried out."""
 
     @property
     def wake_ns(self) -> int | None:
-        """When the next timer is due."""
+        """The time at which the next timer is due [ns]; None without timers."""
         return self._timers[0][0] if self._timers else None
 
-    def begin(self, description: LaunchDescription) -> list[Request]:
-        """Carries out what is to be done at once. Raises LaunchError, and what the launch file's functions raise."""
+    def start(self, description: LaunchDescription) -> list[Request]:
+        """Visits the description; returns the first requests. Raises LaunchError, and what functions of the file raise."""
         self._visit(description)
         return self._finish()
 
-    def go_on(self, now_ns: int, happened: Iterable[list[Any]]) -> list[Request]:
-        """What follows from the passing of time and from what has happened: see ``_NEWS``. Raises likewise."""
+    def advance(self, now_ns: int, events: Iterable[list[Any]]) -> list[Request]:
+        """Handles events (see ``_EVENT_METHODS``) and due timers; returns the requests that follow. Raises likewise."""
         self._now_ns = now_ns
-        for kind, *about in happened:
-            _NEWS[kind](self, *about)
+        for kind, *content in events:
+            _EVENT_METHODS[kind](self, *content)
         while self._timers and self._timers[0][0] <= now_ns:
             _, number, actions = heappop(self._timers)
             if number not in self._cancelled:
@@ -85,16 +85,16 @@ class LaunchService:
         return requests
 
     def _visit(self, entity: LaunchDescriptionEntity) -> None:
-        place = getattr(entity, "place", None)
-        before, self.place = self.place, place or self.place
+        location = getattr(entity, "location", None)
+        before, self.location = self.location, location or self.location
         try:
             for part in entity.visit(self.context) or ():
                 self._visit(part)
         except LaunchError as problem:
-            if problem.place is None:
-                problem.place = self.place
+            if problem.location is None:
+                problem.location = self.location
             raise
-        self.place = before
+        self.location = before
 
     def _handle(self, event: Event) -> None:
         if isinstance(event, ProcessMatchingEvent):
@@ -110,7 +110,7 @@ class LaunchService:
             self._timers.clear()
             self._requests.append(["shutdown", event.reason])
 
-    # What the context's users ask for
+    # Called through the context
 
     def _request(self, kind: str, *content: Any) -> None:
         if kind == "process":
@@ -129,7 +129,7 @@ class LaunchService:
         heappush(self._timers, (self._now_ns + int(seconds * 1e9), number, tuple(actions)))
         return lambda: self._cancelled.add(number)
 
-    # What has happened
+    # Events
 
     def _started(self, number: int, pid: int) -> None:
         action, name = self._actions[number]
@@ -149,7 +149,7 @@ class LaunchService:
         self._emit(Shutdown(reason=reason, due_to_sigint=True))
 
 
-_NEWS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
+_EVENT_METHODS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
     {
         "started": LaunchService._started,
         "exited": LaunchService._exited,
@@ -157,4 +157,4 @@ _NEWS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(
         "interrupted": LaunchService._interrupted,
     }
 )
-"""What can have happened: a process has started, ended or printed something; the user wants the end."""
+"""The kinds of events: a process has started, ended or printed something; the user has interrupted the launch."""

@@ -15,7 +15,7 @@ from kit.ros.packages import PackageError, share_folder
 if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext
 
-OURS = frozenset({"ros2"})
+KIT_COMMANDS = frozenset({"ros2"})
 """Programs that are found wherever the kit is: it has its own."""
 
 
@@ -36,26 +36,26 @@ SomeText = str | Path | Substitution | Iterable[str | Path | Substitution]
 """What an action takes where a text is wanted: pieces are joined without anything between them."""
 
 
-def normalize(text: Any) -> list[Substitution]:
+def normalize_to_substitutions(text: Any) -> list[Substitution]:
     """The pieces of a text. TypeError for what is none."""
     if isinstance(text, Substitution):
         return [text]
     if isinstance(text, (str, Path)):
         return [TextSubstitution(text=str(text))]
     if isinstance(text, Iterable) and not isinstance(text, (bytes, dict)):
-        return [piece for entry in text for piece in normalize(entry)]
+        return [piece for entry in text for piece in normalize_to_substitutions(entry)]
     raise TypeError(
         f"a text is needed here, a substitution, or a list of these, not {type(text).__name__} ({text!r:.40})"
     )
 
 
-def perform(context: LaunchContext, text: SomeText) -> str:
+def perform_substitutions(context: LaunchContext, text: SomeText) -> str:
     """The text itself, now."""
-    return "".join(piece.perform(context) for piece in normalize(text))
+    return "".join(piece.perform(context) for piece in normalize_to_substitutions(text))
 
 
-def described(text: SomeText) -> str:
-    return " + ".join(piece.describe() for piece in normalize(text))
+def describe_substitutions(text: SomeText) -> str:
+    return " + ".join(piece.describe() for piece in normalize_to_substitutions(text))
 
 
 class TextSubstitution(Substitution):
@@ -77,21 +77,21 @@ class LaunchConfiguration(Substitution):
     """The value of a launch argument."""
 
     def __init__(self, variable_name: SomeText, *, default: Any = None) -> None:
-        self.variable_name = normalize(variable_name)
-        self.default = None if default is None else normalize(_as_text(default))
+        self.variable_name = normalize_to_substitutions(variable_name)
+        self.default = None if default is None else normalize_to_substitutions(_as_text(default))
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform(context, self.variable_name)
+        name = perform_substitutions(context, self.variable_name)
         if name in context.launch_configurations:
             return context.launch_configurations[name]
         if self.default is not None:
-            return perform(context, self.default)
+            return perform_substitutions(context, self.default)
         near = nearest_name(name, context.launch_configurations)
         hint = f"did you mean '{near}'?" if near else "DeclareLaunchArgument comes before its use"
         raise SubstitutionFailure(f"launch configuration '{name}' does not exist; {hint}")
 
     def describe(self) -> str:
-        return f"LaunchConfig({described(self.variable_name)})"
+        return f"LaunchConfig({describe_substitutions(self.variable_name)})"
 
 
 def _as_text(value: Any) -> Any:
@@ -102,13 +102,13 @@ class PathJoinSubstitution(Substitution):
     """Parts of a path, with slashes between them."""
 
     def __init__(self, substitutions: Iterable[SomeText]) -> None:
-        self.substitutions = [normalize(part) for part in substitutions]
+        self.substitutions = [normalize_to_substitutions(part) for part in substitutions]
 
     def perform(self, context: LaunchContext) -> str:
-        return str(Path(*(perform(context, part) for part in self.substitutions)))
+        return str(Path(*(perform_substitutions(context, part) for part in self.substitutions)))
 
     def describe(self) -> str:
-        return f"PathJoin({', '.join(described(part) for part in self.substitutions)})"
+        return f"PathJoin({', '.join(describe_substitutions(part) for part in self.substitutions)})"
 
     def __truediv__(self, other: SomeText) -> PathJoinSubstitution:
         return PathJoinSubstitution([*self.substitutions, other])
@@ -118,29 +118,29 @@ class EnvironmentVariable(Substitution):
     """An environment variable."""
 
     def __init__(self, name: SomeText, *, default_value: SomeText | None = None) -> None:
-        self.name = normalize(name)
-        self.default_value = None if default_value is None else normalize(default_value)
+        self.name = normalize_to_substitutions(name)
+        self.default_value = None if default_value is None else normalize_to_substitutions(default_value)
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform(context, self.name)
+        name = perform_substitutions(context, self.name)
         if name in context.environment:
             return context.environment[name]
         if self.default_value is None:
             raise SubstitutionFailure(f"environment variable '{name}' does not exist")
-        return perform(context, self.default_value)
+        return perform_substitutions(context, self.default_value)
 
     def describe(self) -> str:
-        return f"EnvVar({described(self.name)})"
+        return f"EnvVar({describe_substitutions(self.name)})"
 
 
 class PythonExpression(Substitution):
     """The value of a Python expression, as a text; what ``math`` has is at hand."""
 
     def __init__(self, expression: SomeText) -> None:
-        self.expression = normalize(expression)
+        self.expression = normalize_to_substitutions(expression)
 
     def perform(self, context: LaunchContext) -> str:
-        expression = perform(context, self.expression)
+        expression = perform_substitutions(context, self.expression)
         try:
             # The launch file's author's own code, in the launch file's own process.
             return str(eval(expression, {}, dict(vars(math))))
@@ -151,24 +151,24 @@ class PythonExpression(Substitution):
             ) from None
 
     def describe(self) -> str:
-        return f"PythonExpr({described(self.expression)})"
+        return f"PythonExpr({describe_substitutions(self.expression)})"
 
 
 class FindExecutable(Substitution):
     """The path of a program, found as a shell finds it."""
 
     def __init__(self, *, name: SomeText) -> None:
-        self.name = normalize(name)
+        self.name = normalize_to_substitutions(name)
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform(context, self.name)
+        name = perform_substitutions(context, self.name)
         found = shutil.which(name, path=context.environment.get("PATH"))
-        if found is None and name not in OURS:
+        if found is None and name not in KIT_COMMANDS:
             raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
         return found or name
 
     def describe(self) -> str:
-        return f"FindExec({described(self.name)})"
+        return f"FindExec({describe_substitutions(self.name)})"
 
 
 class ThisLaunchFile(Substitution):
@@ -189,10 +189,13 @@ class EqualsSubstitution(Substitution):
     """``true`` if two texts are the same, else ``false``."""
 
     def __init__(self, left: SomeText, right: SomeText) -> None:
-        self.left, self.right = normalize(_as_text(left)), normalize(_as_text(right))
+        self.left, self.right = (
+            normalize_to_substitutions(_as_text(left)),
+            normalize_to_substitutions(_as_text(right)),
+        )
 
     def _equal(self, context: LaunchContext) -> bool:
-        left, right = perform(context, self.left), perform(context, self.right)
+        left, right = perform_substitutions(context, self.left), perform_substitutions(context, self.right)
         return left == right or {left.lower(), right.lower()} in ({"true", "1"}, {"false", "0"})
 
     def perform(self, context: LaunchContext) -> str:
@@ -210,16 +213,16 @@ class FindPackageShare(Substitution):
     """The share folder of a package: here the folder that its ``package.xml`` lies in."""
 
     def __init__(self, package: SomeText) -> None:
-        self.package = normalize(package)
+        self.package = normalize_to_substitutions(package)
 
     def perform(self, context: LaunchContext) -> str:
         try:
-            return str(share_folder(perform(context, self.package)))
+            return str(share_folder(perform_substitutions(context, self.package)))
         except PackageError as problem:
             raise SubstitutionFailure(str(problem)) from None
 
     def describe(self) -> str:
-        return f"FindPackageShare(pkg={described(self.package)})"
+        return f"FindPackageShare(pkg={describe_substitutions(self.package)})"
 
     def __truediv__(self, other: SomeText) -> PathJoinSubstitution:
         return PathJoinSubstitution([[self], other])

@@ -18,11 +18,11 @@ class Play:
 
     def __init__(self, *entities: Any, environment: dict[str, str] | None = None, **arguments: str) -> None:
         self.service = LaunchService("/pkg/launch/top.launch.py", arguments, environment=environment or {})
-        self.requests = self.service.begin(LaunchDescription(list(entities)))
+        self.requests = self.service.start(LaunchDescription(list(entities)))
 
-    def go_on(self, seconds: float = 0.0, *happened: Any) -> list[Any]:
+    def advance(self, seconds: float = 0.0, *events: Any) -> list[Any]:
         """What it asks for next."""
-        self.requests = self.service.go_on(int(seconds * 1e9), [list(each) for each in happened])
+        self.requests = self.service.advance(int(seconds * 1e9), [list(each) for each in events])
         return self.requests
 
     @property

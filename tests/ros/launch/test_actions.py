@@ -166,8 +166,8 @@ def test_groups_push_namespaces_parameters_and_remappings() -> None:
 def test_what_cannot_be_done_is_said_with_the_line(make: Any, message: str) -> None:
     with pytest.raises(LaunchError, match=message) as caught:
         Play(make())
-    assert caught.value.place is not None
-    assert caught.value.place.file == __file__
+    assert caught.value.location is not None
+    assert caught.value.location.file == __file__
 
 
 def test_unknown_arguments_of_an_action_are_refused_at_once() -> None:
@@ -188,13 +188,13 @@ def test_timers_go_off_in_the_launch_s_time() -> None:
     )
     assert run.service.wake_ns == 1_000_000_000
     cancelled.cancel()
-    run.go_on(1.0)
+    run.advance(1.0)
     assert run.said == ["first"]
-    run.go_on(2.0)
+    run.advance(2.0)
     assert run.said == ["second"]
-    run.go_on(2.9)
+    run.advance(2.9)
     assert run.said == []
-    run.go_on(3.0)
+    run.advance(3.0)
     assert run.said == ["third"]
     assert run.service.wake_ns is None
 
@@ -230,20 +230,20 @@ def test_what_happens_to_processes_is_reacted_to() -> None:
             )
         ),
     )
-    run.go_on(0.0, ("started", 1, 11))
+    run.advance(0.0, ("started", 1, 11))
     assert [each["command"] for each in run.started] == [["client"]]
-    run.go_on(0.0, ("started", 2, 12), ("printed", 1, "trouble", False))
+    run.advance(0.0, ("started", 2, 12), ("printed", 1, "trouble", False))
     assert run.said == ["trouble"]
-    run.go_on(0.0, ("exited", 2, 12, 3))
+    run.advance(0.0, ("exited", 2, 12, 3))
     assert run.said == ["client-2 3"]
 
 
 def test_a_process_is_started_again() -> None:
     run = Play(ExecuteProcess(cmd=["x"], respawn=True, respawn_delay=0.5))
-    run.go_on(1.0, ("exited", 1, 11, 1))
+    run.advance(1.0, ("exited", 1, 11, 1))
     assert run.started == []
     assert run.service.wake_ns == 1_500_000_000
-    run.go_on(1.5)
+    run.advance(1.5)
     assert [each["command"] for each in run.started] == [["x"]]
 
 
@@ -254,7 +254,7 @@ def test_the_end_of_one_can_be_the_end_of_all() -> None:
         RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg="good bye")])),
         ExecuteProcess(cmd=["x"]),
     )
-    run.go_on(1.0, ("exited", 1, 11, 0))
+    run.advance(1.0, ("exited", 1, 11, 0))
     assert run.said == ["good bye"]
     assert run.requests[-1] == ["shutdown", "main is done"]
 
@@ -270,7 +270,7 @@ def test_a_process_can_be_ended_and_handlers_withdrawn() -> None:
         EmitEvent(event=ShutdownProcess(process_matcher=matches_action(victim))),
     )
     assert ["end", 2] in run.requests
-    run.go_on(0.0, ("exited", 2, 12, 0))
+    run.advance(0.0, ("exited", 2, 12, 0))
     assert run.said == []
 
 

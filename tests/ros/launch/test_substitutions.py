@@ -70,8 +70,8 @@ def test_a_substitution_becomes_its_text(substitution: Any, text: str) -> None:
 def test_what_cannot_be_known_is_said_with_the_line(substitution: Any, message: str) -> None:
     with pytest.raises(LaunchError, match=message) as caught:
         Play(LogInfo(msg=substitution), room="maze", environment={"PATH": ""})
-    assert caught.value.place is not None
-    assert caught.value.place.file == __file__
+    assert caught.value.location is not None
+    assert caught.value.location.file == __file__
 
 
 @pytest.mark.parametrize("nonsense", [1, None, {"a": 1}, b"bytes", [1.5]])
