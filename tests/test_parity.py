@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import Ground, Unsupported, fleet_of, ground_of
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world
@@ -56,7 +56,7 @@ class Both:
     """One map in both engines."""
 
     world: World
-    ground: Ground
+    ground: BatchMap
     fleet: kernels.BatchGeometry
     robots: tuple[str, ...]
     lasers: tuple[str, ...]
@@ -82,8 +82,8 @@ def both(name: str) -> Both:
     robots = tuple(each for each in (card.robot, card.partner) if each)
     world = quiet(load_world(card.world_file, root=card.root))
     try:
-        ground = ground_of(world, name, robots)
-    except Unsupported as refusal:
+        ground = batch_map_of_world(world, name, robots)
+    except UnsupportedWorld as refusal:
         pytest.skip(f"the batch engine refuses {name}: {refusal}")
     lasers = tuple(
         plugin.name
@@ -93,7 +93,7 @@ def both(name: str) -> Both:
         for plugin in model.plugins
         if isinstance(plugin.params, LaserParams)
     )
-    return Both(world, ground, fleet_of([ground]), robots, lasers)
+    return Both(world, ground, build_fleet([ground]), robots, lasers)
 
 
 def drives(name: str, count: int) -> Iterator[tuple[list[Pose], NDArray[np.float64]]]:
@@ -151,10 +151,10 @@ def test_the_batch_engine_represents_a_map_or_names_what_it_cannot(name: str) ->
         for body in model.bodies
     ) and not any(model.joints for model in world.models)
     if plain:
-        assert ground_of(world, name, (card.robot, card.partner)).name == name
+        assert batch_map_of_world(world, name, (card.robot, card.partner)).name == name
     else:
-        with pytest.raises(Unsupported, match=r"\.yaml:\d+:\d+: the batch engine "):
-            ground_of(world, name, (card.robot, card.partner))
+        with pytest.raises(UnsupportedWorld, match=r"\.yaml:\d+:\d+: the batch engine "):
+            batch_map_of_world(world, name, (card.robot, card.partner))
 
 
 @every_map

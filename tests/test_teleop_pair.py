@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.scenario import find_place
 from kit.run.session import Session
 
@@ -14,7 +14,7 @@ from kit.run.session import Session
 @pytest.mark.parametrize("turn", ["left", "right"])
 def test_a_pair_stays_side_by_side_round_a_bend(turn: str) -> None:
     with Session(find_place("pair_straight", None)) as session:
-        session.drive_with(find("teleop_pair"))
+        session.drive_with(find_controller("teleop_pair"))
         session.wait_until_driven()
         simulation = session.runner.simulation
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.controllers import find, in_folder
-from kit.controllers.workspace_files import open_desk
+from kit.controllers import find_controller, prepare_workspace, user_controllers
 from kit.workspace import WorkspaceError, at_home, check_writable, open_workspace, write_atomically
 
 
@@ -56,7 +55,7 @@ def test_a_desk_on_a_full_disk_says_so(tmp_path: Path, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(WorkspaceError, match="No space left on device"):
-        open_desk(tmp_path)
+        prepare_workspace(tmp_path)
 
 
 def test_what_cannot_be_written_is_known_beforehand(tmp_path: Path) -> None:
@@ -75,6 +74,6 @@ def test_only_files_are_controllers(tmp_path: Path) -> None:
     (tmp_path / "gone.py").symlink_to(tmp_path / "nowhere")
     (tmp_path / "deep.py").write_text("x = " + "(" * 5000 + ")" * 5000)
     (tmp_path / "bytes.py").write_bytes(b"\xff\x00")
-    assert [each.name for each in in_folder(tmp_path)] == ["bytes", "deep"]
+    assert [each.name for each in user_controllers(tmp_path)] == ["bytes", "deep"]
     with pytest.raises(LookupError):
-        find("pipe.py", tmp_path)
+        find_controller("pipe.py", tmp_path)

@@ -22,7 +22,12 @@ from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
 from kit.learning.environment.transition import Transition
-from kit.learning.training.student_reward import FUNCTION, RewardFileError, columns_of, parameters_of
+from kit.learning.training.student_reward import (
+    REWARD_FUNCTION,
+    RewardFileError,
+    reward_columns,
+    reward_parameters,
+)
 from kit.plain_text import suggestion
 
 SHUFFLE: Final = 1234
@@ -168,7 +173,9 @@ class RewardEvidence:
 
     def _rewards_of(self, functions: StudentFunctions, step: Transition) -> Floats:
         """(n,) what the student's reward pays for n transitions."""
-        return np.array(functions.call_columns(FUNCTION, columns_of(step, self._names)), dtype=np.float64)
+        return np.array(
+            functions.call_columns(REWARD_FUNCTION, reward_columns(step, self._names)), dtype=np.float64
+        )
 
 
 class RewardCollector:
@@ -206,13 +213,13 @@ class RewardCollector:
 def read_parameter_names(file: Path) -> tuple[str, ...]:
     """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
     try:
-        names = parameters_of(file)
+        names = reward_parameters(file)
     except RewardFileError as error:
         # Where the snapshot lies is nothing to tell.
         message = str(error).replace(f"{file}", file.name)
         raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
     unknown = [name for name in names if name not in MODEL_FACTS]
     if unknown:
-        message = f"{file.name}: {FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], MODEL_FACTS)}"
+        message = f"{file.name}: {REWARD_FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], MODEL_FACTS)}"
         raise GuestError(Failure(FailureKind.IMPORT, message))
     return names

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from statistics import fmean
 
-from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.policies.evaluation import Examiner, seed_for
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.optional_deps import require_learner
+from kit.learning.training.optional_deps import require_learn_extra
 from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner
 
@@ -39,7 +39,7 @@ class SilentCallbacks:
     def between(self) -> None:
         """Nothing to do between two updates."""
 
-    def saw(self, episode: Episode) -> None:
+    def saw(self, episode: EpisodeStats) -> None:
         """Nor after an episode."""
 
 
@@ -49,14 +49,14 @@ def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
     Raises GuestError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
     something that is not here.
     """
-    algorithm, choice = find_algorithm(budget.algorithm), TaskChoice(budget.task)
+    algorithm, choice = find_algorithm(budget.algorithm), TaskSpec(budget.task)
     if algorithm.neural:
-        require_learner()
+        require_learn_extra()
     task = choice.resolve()
     preset = find_preset("kit", algorithm, budget.task)
     shares = []
     for seed in range(budget.seeds):
         learner = make_learner(algorithm, preset, choice, task, seed=seed, reward=reward)
         learner.learn(budget.steps, SilentCallbacks())
-        shares.append(Examiner(task).test(learner.policy(), budget.episodes, seed_for(seed, "exam")).mean)
+        shares.append(Evaluator(task).test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
     return fmean(shares)

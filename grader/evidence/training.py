@@ -9,22 +9,22 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
-from kit.learning.environment.episode_stats import Episode
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.policies.confidence_intervals import at_least
-from kit.learning.policies.evaluation import Examiner, seed_for
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.policies.policies import Policy
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.learner import Halt, Learner
-from kit.learning.training.optional_deps import require_learner
-from kit.learning.training.presets import Falling, Preset, Tabular, find_preset
+from kit.learning.training.learner import Learner, StopLearning
+from kit.learning.training.optional_deps import require_learn_extra
+from kit.learning.training.presets import LinearSchedule, Preset, TabularParams, find_preset
 from kit.learning.training.stopping_rules import (
-    Count,
-    Counts,
-    Memory,
-    Strategy,
-    TrainUntil,
-    UntilSure,
+    CaseCount,
+    CaseCounts,
+    StoppingMemory,
+    StoppingRule,
+    TrainUntilGoal,
+    TrainUntilSure,
     accuracy,
 )
 from kit.learning.training.training import make_learner
@@ -58,7 +58,7 @@ class CaseOrder(Enum):
 class TrainingBudget:
     """The kind's task: what is to be learned, and how much may be spent."""
 
-    choice: TaskChoice
+    choice: TaskSpec
     cases: tuple[str, ...]
     algorithms: tuple[str, ...]
     steps: int
@@ -75,8 +75,8 @@ class TrainingSettings:
     """What a student hands in."""
 
     algorithm: str
-    learning_rate: Falling
-    exploration: Falling
+    learning_rate: LinearSchedule
+    exploration: LinearSchedule
     discount: float
     edges: tuple[float, ...]
     worlds: int
@@ -98,7 +98,7 @@ class TrainingTest:
     """One test on the way."""
 
     steps: int
-    counts: Counts
+    counts: CaseCounts
     kept: bool
     """Whether the policy of this moment was the best so far."""
 
@@ -112,7 +112,7 @@ class TrainingResult:
     tests: tuple[TrainingTest, ...]
     claimed: float
     """The accuracy that its own last word gives the policy kept; 0 if it was never tested."""
-    exam: Counts
+    exam: CaseCounts
     """Of the policy kept, on episodes that nothing else has seen."""
 
     @property
@@ -128,15 +128,15 @@ class TrainingResults:
     settings: TrainingSettings
     trainings: tuple[TrainingResult, ...]
 
-    def pooled(self, case: str) -> Count:
+    def pooled(self, case: str) -> CaseCount:
         """Of all exams."""
         counts = [training.exam[case] for training in self.trainings]
-        return Count(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
     def success_lower_bound(self, *cases: str) -> float:
         """What the success in these cases together is not below, with 95 % confidence (Wilson)."""
         counts = [self.pooled(case) for case in cases or self.budget.cases]
-        return at_least(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+        return lower_bound(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
     @property
     def worst_case(self) -> str:
@@ -166,7 +166,7 @@ def run_trainings(
 ) -> TrainingResults:
     """Trains as planned, once for each seed. Raises LearnerMissing."""
     if find_algorithm(settings.algorithm).neural:
-        require_learner()
+        require_learn_extra()
     return TrainingResults(
         budget,
         settings,
@@ -183,17 +183,17 @@ def _run_training(
     )
     learner: Learner | None = None
     for place, on in enumerate(stages, 1):
-        learner = _learner(settings, budget, on, seed_for(seed, "training", place), learner)
+        learner = _learner(settings, budget, on, derive_seed(seed, "training", place), learner)
         monitor.learner = learner
         try:
             learner.learn(settings.steps * place // len(stages), monitor)
-        except Halt:
+        except StopLearning:
             break
     assert learner is not None  # a plan names at least one case
     monitor.test_last_steps()
     policy = monitor.best if settings.keeps_best and monitor.best is not None else learner.policy()
     claimed = monitor.best_accuracy if settings.keeps_best else monitor.last_accuracy
-    exam = monitor.examine(policy, budget.episodes, seed_for(seed, "exam"))
+    exam = monitor.examine(policy, budget.episodes, derive_seed(seed, "exam"))
     return TrainingResult(number, learner.steps, tuple(monitor.tests), claimed, exam)
 
 
@@ -217,17 +217,17 @@ def _adapted(preset: Preset, settings: TrainingSettings, neural: bool) -> Preset
         return replace(
             preset, worlds=settings.worlds, learning_rate=settings.learning_rate, steps=settings.steps
         )
-    tabular = Tabular(settings.learning_rate, settings.discount, settings.exploration, settings.edges)
+    tabular = TabularParams(settings.learning_rate, settings.discount, settings.exploration, settings.edges)
     return replace(preset, settings=tabular, worlds=settings.worlds, steps=settings.steps)
 
 
-def _strategy(settings: TrainingSettings, cases: int) -> Strategy:
+def _strategy(settings: TrainingSettings, cases: int) -> StoppingRule:
     if settings.stop is StopRule.SURE:
         screening = -(-settings.test_episodes // cases)
         confirming = max(CONFIRMING_EPISODES, screening)
-        return UntilSure(settings.batch, settings.goal, screening, confirming, patience=0)
+        return TrainUntilSure(settings.batch, settings.goal, screening, confirming, patience=0)
     goal = settings.goal if settings.stop is StopRule.FIRST else UNREACHABLE_GOAL
-    return TrainUntil(settings.batch, settings.test_episodes, goal)
+    return TrainUntilGoal(settings.batch, settings.test_episodes, goal)
 
 
 class _TrainingMonitor:
@@ -236,11 +236,11 @@ class _TrainingMonitor:
     learner: Learner
 
     def __init__(self, settings: TrainingSettings, budget: TrainingBudget, seed: int) -> None:
-        self._examiner = Examiner(budget.choice.resolve())
+        self._examiner = Evaluator(budget.choice.resolve())
         self._strategy = _strategy(settings, len(budget.cases))
         self._every, self._seed = settings.batch, seed
         self._next, self._test_count = settings.batch, 0
-        self._memory = Memory()
+        self._memory = StoppingMemory()
         self.tests: list[TrainingTest] = []
         self.best: Policy | None = None
         self.best_accuracy = self.last_accuracy = 0.0
@@ -254,7 +254,7 @@ class _TrainingMonitor:
             self._next = self.learner.steps + self._every
             self._run_test()
 
-    def saw(self, episode: Episode) -> None:
+    def saw(self, episode: EpisodeStats) -> None:
         """What training does is not what counts."""
 
     def test_last_steps(self) -> None:
@@ -262,19 +262,19 @@ class _TrainingMonitor:
         if not self.tests or self.tests[-1].steps < self.learner.steps:
             try:
                 self._run_test()
-            except Halt:
+            except StopLearning:
                 return
 
-    def __call__(self, episodes: int) -> Counts:
+    def __call__(self, episodes: int) -> CaseCounts:
         """A test of the present policy."""
         self._test_count += 1
-        seed = seed_for(self._seed, "test", self._test_count)
+        seed = derive_seed(self._seed, "test", self._test_count)
         return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
 
-    def examine(self, policy: Policy, episodes: int, seed: int) -> Counts:
+    def examine(self, policy: Policy, episodes: int, seed: int) -> CaseCounts:
         """(policy, episodes of each case, seed) -> what came of them."""
         result = self._examiner.test(policy, episodes, seed)
-        return {case.case: Count(case.reached, case.episodes) for case in result.cases}
+        return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
 
     def _run_test(self) -> None:
         verdict = self._strategy.look(self.learner.steps, self._memory, self)
@@ -284,4 +284,4 @@ class _TrainingMonitor:
         if verdict.keep:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
         if verdict.stop:
-            raise Halt(verdict.reason)
+            raise StopLearning(verdict.reason)

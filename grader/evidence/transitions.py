@@ -11,7 +11,7 @@ import numpy as np
 
 from grader.evidence.task_model import CELL, LAST_MOVES, MOVES, Flags, Floats, GridModel, Integers
 from kit.learning.environment.actions import Move
-from kit.learning.environment.observations import RAYS
+from kit.learning.environment.observations import RAY_COUNT
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
 
@@ -116,5 +116,5 @@ def to_transition(steps: TransitionBatch) -> Transition:
         previous_to_go=model.to_go[before][:, None],
         full_turns=zeros,
         forward_steps=zeros.astype(np.float64),
-        ranges=np.repeat(front[:, None, None], RAYS, axis=2),
+        ranges=np.repeat(front[:, None, None], RAY_COUNT, axis=2),
     )

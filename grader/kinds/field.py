@@ -28,11 +28,11 @@ from grader.evidence.episodes import shifted_start
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from kit.fields import adjacency
-from kit.fields.controller_setup import Course
-from kit.fields.derived_charges import derive
-from kit.fields.layout import Layout, read_layout
-from kit.fields.minima import Flow
-from kit.fields.pair import decide
+from kit.fields.controller_setup import ControllerSetup
+from kit.fields.derived_charges import derive_charges
+from kit.fields.layout import ChargeLayout, read_layout
+from kit.fields.minima import ForceFlow
+from kit.fields.pair import control_step
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
@@ -61,7 +61,7 @@ MAX_INTENSITY: Final = 1e6
 class FieldDrive(DriveRecord):
     """One drive in the student's field."""
 
-    course: Course | None = None
+    course: ControllerSetup | None = None
     all_reached_s: float | None = None
     """When every robot was within the target's radius."""
 
@@ -71,7 +71,7 @@ class FieldDrive(DriveRecord):
         return end + (f", {self.score.bumps} bumps" if self.score.bumps else "")
 
     @cached_property
-    def flow(self) -> Flow:
+    def flow(self) -> ForceFlow:
         assert self.course is not None
         return self.course.flow
 
@@ -128,7 +128,9 @@ def side_by_side(drive: FieldDrive, params: NoParams) -> float:
     if len(tracks) != 2 or not len(tracks[0]):
         return math.nan
     return float(
-        np.mean(adjacency.by_geometry(tracks[0][::DECISION_INTERVAL], tracks[1][::DECISION_INTERVAL]))
+        np.mean(
+            adjacency.is_adjacent_by_poses(tracks[0][::DECISION_INTERVAL], tracks[1][::DECISION_INTERVAL])
+        )
     )
 
 
@@ -143,7 +145,7 @@ def covers(drive: FieldDrive, params: CoverageParams) -> float:
     """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
     assert drive.course is not None
     own = _line_charges(drive.course.layout.charges)
-    wanted = _line_charges(derive(drive.course.floor))
+    wanted = _line_charges(derive_charges(drive.course.floor))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
         length
@@ -166,9 +168,9 @@ Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
 def _line_charges(charges: Sequence[Any]) -> list[Segment]:
-    from kit.fields.charges import LineCharge, members
+    from kit.fields.charges import LineCharge, iter_members
 
-    return [each.ends for each in members(charges) if isinstance(each, LineCharge)]
+    return [each.ends for each in iter_members(charges) if isinstance(each, LineCharge)]
 
 
 def _is_same_segment(one: Segment, other: Segment, within: float) -> bool:
@@ -240,7 +242,9 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
     case = place.case
     if case is None:
         raise LookupError(f"{place.name} has no target.")
-    course = Course.open(place.world.file, place.partners, case.target, case.target_radius, derived=True)
+    course = ControllerSetup.open(
+        place.world.file, place.partners, case.target, case.target_radius, derived=True
+    )
     course = replace(course, layout=_check_limits(read_layout(file, course.floor)))
     simulation = Simulation(place.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
     field_run = _FieldRun(place, course, simulation)
@@ -266,7 +270,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
     )
 
 
-def _check_limits(layout: Layout) -> Layout:
+def _check_limits(layout: ChargeLayout) -> ChargeLayout:
     """ValueError for what would only take time or make no sense."""
     numbers = [getattr(layout.intensities, name) for name in ("walls", "target", "robot", "tension")]
     if len(layout.field.stretches) > MAX_CHARGES:
@@ -292,7 +296,7 @@ def _shifted_scenario(trial: Trial, seed: int) -> Place:
 class _FieldRun:
     """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
 
-    def __init__(self, place: Place, course: Course, simulation: Simulation) -> None:
+    def __init__(self, place: Place, course: ControllerSetup, simulation: Simulation) -> None:
         self._place = place
         self._course = course
         self._simulation = simulation
@@ -320,7 +324,7 @@ class _FieldRun:
     def _decide(self) -> None:
         poses = [Pose(*self._simulation.pose(name)) for name in self._place.partners]
         stands = self.metrics.total_bumps > 0
-        commands = decide(poses, self._course.target, self._course.layout).commands
+        commands = control_step(poses, self._course.target, self._course.layout).commands
         for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
             fine = math.isfinite(forward) and math.isfinite(turn) and not stands
             command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if fine else Twist()

@@ -34,11 +34,11 @@ from grader.evidence.training import (
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask
 from kit.learning.training.algorithms import ALGORITHMS
-from kit.learning.training.optional_deps import LearnerMissing
-from kit.learning.training.presets import Falling
+from kit.learning.training.optional_deps import LearnExtraMissing
+from kit.learning.training.presets import LinearSchedule
 from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
 
@@ -102,7 +102,7 @@ def steps_used(evidence: EvidenceRecord, params: object) -> float:
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """What is to be learned, and what it may cost."""
     section = files.public.section("training")
-    choice = TaskChoice(
+    choice = TaskSpec(
         section.name("task"),
         reward=section.text("reward") if section.has("reward") else None,
         scale=section.number("scale", above=0) if section.has("scale") else None,
@@ -139,7 +139,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     try:
         seeds = budget.secret_seeds if options.secret and budget.secret_seeds else budget.seeds
         results = run_trainings(settings, budget, seeds)
-    except LearnerMissing as error:
+    except LearnExtraMissing as error:
         return _failed(str(error))
     return EvidenceRecord(
         results,
@@ -208,12 +208,12 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     return made
 
 
-def _schedule(section: Section, key: str, default: tuple[float, float]) -> Falling:
+def _schedule(section: Section, key: str, default: tuple[float, float]) -> LinearSchedule:
     """Two numbers between 0 and 1: at the beginning, at the end."""
     first, last = section.numbers(key, default, length=2)
     if not (0 <= first <= 1 and 0 <= last <= 1):
         section.error(f"{quoted(key)} must be two numbers between 0 and 1: at the beginning, at the end", key)
-    return Falling(first, last)
+    return LinearSchedule(first, last)
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(

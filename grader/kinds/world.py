@@ -25,7 +25,7 @@ from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.host.failure import GuestError
 from kit.host.sandbox.confinement import Level
 from kit.plain_text import quoted
@@ -87,7 +87,7 @@ def _read_spec(section: Section, folder: Path) -> WorldRunSpec:
     if driver:
         try:
             own = folder / driver
-            file = str(own if own.is_file() else find(driver).file)
+            file = str(own if own.is_file() else find_controller(driver).file)
         except LookupError as error:
             section.error(str(error), "driver")
     target = section.point("target") if section.has("target") else None

@@ -138,11 +138,11 @@ def study(
     glyphs: str | None,
 ) -> None:
     """Print the dissertation's Tables 5.4 to 5.9 beside ours, computed from its raw answers; its slips by name."""
-    from kit.study.evaluation_data import read_study
-    from kit.study.evaluation_report import study_report
+    from kit.study.evaluation_data import read_evaluation_data
+    from kit.study.evaluation_report import evaluation_report
 
     with _mistakes_explained():
-        made = study_report(read_study(), whole=whole)
+        made = evaluation_report(read_evaluation_data(), whole=whole)
         _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 

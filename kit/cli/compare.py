@@ -31,19 +31,19 @@ def command(
 ) -> None:
     """Test several policies on the same fresh episodes. `--on all` takes every case of the task, trained on or not."""
     with learning_options.mistakes():
-        from kit.learning.policies.evaluation import Examiner, seed_for
-        from kit.learning.training.run_text import side_by_side
+        from kit.learning.policies.evaluation import Evaluator, derive_seed
+        from kit.learning.training.run_text import format_comparison
 
         results = {}
         for name in policies:
             title, policy = learning_options.find_policy(name, workspace)
             task = learning_options.test_task(policy, None, on)
-            fresh = seed_for(seed, "evaluate")
-            results[title] = Examiner(task).test(policy, episodes, fresh, greedy=not sampled)
+            fresh = derive_seed(seed, "evaluate")
+            results[title] = Evaluator(task).test(policy, episodes, fresh, greedy=not sampled)
         if as_json:
             click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
         else:
-            click.echo("\n".join(side_by_side(results)))
+            click.echo("\n".join(format_comparison(results)))
         if curves:
             _draw(policies, workspace)
 
@@ -53,8 +53,8 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
 
     import numpy as np
 
-    from kit.learning.training.events import Examined
-    from kit.learning.training.run_text import shares_of
+    from kit.learning.training.events import Evaluated
+    from kit.learning.training.run_text import success_shares
     from kit.learning.training.runs import find_run
     from kit.render.curve import Axes, Curve, draw_curves
     from kit.render.encode import ENCODERS
@@ -64,9 +64,9 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
         tests = [
             event
             for event in find_run(learning_options.runs_folder(workspace), name).events()
-            if isinstance(event, Examined)
+            if isinstance(event, Evaluated)
         ]
-        means = [float(np.mean([*shares_of(test).values()])) for test in tests]
+        means = [float(np.mean([*success_shares(test).values()])) for test in tests]
         drawn.append(Curve(name, np.array([float(test.steps) for test in tests]), np.array(means)))
     columns, _ = shutil.get_terminal_size()
     frame = draw_curves(drawn, Axes("steps", 0.0, 1.0), columns - 1, 16, ENCODERS["braille"](True))

@@ -41,24 +41,26 @@ def command(
     were trained on one group each. Interrupt it as you like; the same command goes on where it was.
     """
     with learning_options.mistakes():
-        from kit.learning.environment.task_spec import TaskChoice
+        from kit.learning.environment.task_spec import TaskSpec
         from kit.learning.training.algorithms import find_algorithm
-        from kit.learning.training.crosstable import crosstable, groups_of, rows_of
-        from kit.learning.training.optional_deps import require_learner
+        from kit.learning.training.crosstable import case_groups, format_crosstable, train_crosstable
+        from kit.learning.training.optional_deps import require_learn_extra
         from kit.learning.training.runs import RunConfig
 
         if find_algorithm(algo).neural:
-            require_learner()
-        config = RunConfig(TaskChoice(task), algo, preset, seed, steps)
-        chosen = learning_options.names(groups) or groups_of(config)
+            require_learn_extra()
+        config = RunConfig(TaskSpec(task), algo, preset, seed, steps)
+        chosen = learning_options.names(groups) or case_groups(config)
         folder = (
             learning_options.runs_folder(workspace).parent
             / "tables"
             / (name or f"{task}-{algo}-{preset}-{seed}")
         )
         try:
-            columns = crosstable(folder, config, chosen, episodes=episodes, at_once=at_once, tell=click.echo)
+            columns = train_crosstable(
+                folder, config, chosen, episodes=episodes, at_once=at_once, tell=click.echo
+            )
         except KeyboardInterrupt:
             click.echo(f"\nThe trainings go on in {folder}. The same command takes them up.")
             raise SystemExit(130) from None
-        click.echo("\n".join(rows_of(columns)))
+        click.echo("\n".join(format_crosstable(columns)))

@@ -12,7 +12,7 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.environment.tasks import Task
+    from kit.learning.environment.tasks import LearningTask
     from kit.learning.policies.policies import Policy
 
 
@@ -57,14 +57,14 @@ def command(
     confidence (Wilson).
     """
     with learning_options.mistakes():
-        from kit.learning.policies.evaluation import Examiner, seed_for
+        from kit.learning.policies.evaluation import Evaluator, derive_seed
 
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
             _write_node(found, node)
             return
         place = learning_options.test_task(found, task, on)
-        result = Examiner(place).test(found, episodes, seed_for(seed, "evaluate"), greedy=not sampled)
+        result = Evaluator(place).test(found, episodes, derive_seed(seed, "evaluate"), greedy=not sampled)
         if as_json:
             click.echo(json.dumps({"policy": title, "steps": found.steps, **result.as_dict()}, indent=2))
         else:
@@ -75,10 +75,10 @@ def command(
 
 
 def _write_node(policy: Policy, file: Path) -> None:
-    from kit.learning.policies.policy_node import node_source
+    from kit.learning.policies.policy_node import format_policy_node
     from kit.workspace import write_atomically
 
-    write_atomically(file, node_source(policy).encode())
+    write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     click.echo(
         f"{file}: `kit play {task.maps[0]} --controller {file}` drives it here, `python3 {file}` on a robot."
@@ -86,20 +86,20 @@ def _write_node(policy: Policy, file: Path) -> None:
 
 
 def _show_paths(
-    policy: Policy, task: Task, count: int, pictures: Path | None, seed: int, *, greedy: bool
+    policy: Policy, task: LearningTask, count: int, pictures: Path | None, seed: int, *, greedy: bool
 ) -> None:
-    from kit.learning.policies.evaluation import seed_for
-    from kit.learning.policies.paths import drive, scene_of
+    from kit.learning.policies.evaluation import derive_seed
+    from kit.learning.policies.paths import build_paths_scene, record_paths
     from kit.render.encode import ENCODERS
     from kit.render.image import draw, image_camera, save
     from kit.render.world_text import plain_rows
 
-    ways = drive(policy, task, count, seed_for(seed, "paths"), greedy=greedy)
+    ways = record_paths(policy, task, count, derive_seed(seed, "paths"), greedy=greedy)
     columns, rows = shutil.get_terminal_size()
     if pictures is not None:
         pictures.mkdir(parents=True, exist_ok=True)
     for card, case in task.courses():
-        scene = scene_of(card, case, ways, task.target_radius)
+        scene = build_paths_scene(card, case, ways, task.target_radius)
         if pictures is not None:
             file = pictures / f"{case.name}.png"
             save(file, draw(scene, image_camera(scene.bounds, 640, 640)))

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from kit.cli import options
-from kit.controllers import find
+from kit.controllers import find_controller
 
 if TYPE_CHECKING:
-    from kit.fields.controller_setup import Course
+    from kit.fields.controller_setup import ControllerSetup
     from kit.run.scenario import Place
-    from kit.study.pairs import Printed, Summary
+    from kit.study.pairs import PairSummary, PrintedPairResult
 
 FAILED: Final = 1
 """Exit code of ``test``: not every run reached the target."""
@@ -79,18 +79,18 @@ def show(
 
     On the full screen, `i` chooses an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
-    from kit.controllers.workspace_files import open_desk
+    from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
 
     with _mistakes_explained():
         try:
-            desk = open_desk(workspace)
+            desk = prepare_workspace(workspace)
         except WorkspaceError as error:
             options.fail(str(error))
         there = replace(_place(place, case), charges=charges)
         course = _course(there, derived)
         terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-        find(controller, desk.controllers)
+        find_controller(controller, desk.controllers)
     if terminal.plain.value:
         for line in _described(there, course):
             click.echo(line)
@@ -146,17 +146,17 @@ def test(
     Starts differ a little from run to run. Exit code: 0 every run of every controller reached the target, 1 not,
     2 something named does not exist or is wrong.
     """
-    from kit.study.pairs import repeat
+    from kit.study.pairs import run_repeatedly
     from kit.world.catalogue import find_map
 
     found = []
     with _mistakes_explained():
-        drivers = [find(each) for each in controllers]
+        drivers = [find_controller(each) for each in controllers]
         cases = [case] if case is not None else [each.name for each in find_map(place).cases]
         for name in cases:
             there = replace(_place(place, name), charges=charges)
             for driver in drivers:
-                found.append(repeat(there, driver, runs=runs, seed=seed))
+                found.append(run_repeatedly(there, driver, runs=runs, seed=seed))
                 if not as_json:
                     _print_test(found[-1], first=len(found) == 1)
     if as_json:
@@ -176,19 +176,19 @@ def table(runs: int, seed: int, as_json: bool) -> None:
     were side by side: by geometry (its equations 4.2 to 4.6, repaired), and as four rays tell (4.7 to 4.9), which
     the lasers' noise limits to 0.96.
     """
-    from kit.study.pairs import TABLE_46, rows
+    from kit.study.pairs import TABLE_46, run_tables
 
-    drivers = tuple(find(name) for name in BOTH)
+    drivers = tuple(find_controller(name) for name in BOTH)
     if not as_json:
         click.echo(f"{'':<16}  dissertation  {'fields':^20}  {'abreast':^20}")
         click.echo(
             f"{'':<16}  {'acc':>5} {'adj':>6}  {'acc':>6} {'adj':>6} {'rays':>6}  {'acc':>6} {'adj':>6} {'rays':>6}"
         )
         click.echo("Table 4.6")
-    printed: list[tuple[Printed, tuple[Summary, ...]]] = []
+    printed: list[tuple[PrintedPairResult, tuple[PairSummary, ...]]] = []
     failures: list[str] = []
     with _mistakes_explained():
-        for number, (row, ours) in enumerate(rows(runs, seed, drivers)):
+        for number, (row, ours) in enumerate(run_tables(runs, seed, drivers)):
             printed.append((row, ours))
             failures += [
                 f"{row.title}, {each.controller}: {count} of {each.runs} {why}"
@@ -208,7 +208,7 @@ def table(runs: int, seed: int, as_json: bool) -> None:
         click.echo(line)
 
 
-def _table_row(row: Printed, ours: tuple[Summary, ...]) -> str:
+def _table_row(row: PrintedPairResult, ours: tuple[PairSummary, ...]) -> str:
     theirs = f"{_number(row.accuracy):>5} {_number(row.adjacency):>6}"
     cells = "  ".join(f"{each.accuracy:6.2f} {each.by_geometry:6.2f} {each.by_rays:6.2f}" for each in ours)
     return f"  {row.title:<14}  {theirs}  {cells}"
@@ -218,7 +218,7 @@ def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.2f}"
 
 
-def _print_test(summary: Summary, *, first: bool) -> None:
+def _print_test(summary: PairSummary, *, first: bool) -> None:
     if first:
         click.echo(
             f"{'case':<20} {'controller':<10} {'runs':>4} {'acc':>5} {'adj':>5} {'rays':>5} {'graded':>6} "
@@ -234,9 +234,9 @@ def _print_test(summary: Summary, *, first: bool) -> None:
         click.echo(f"  {count} of {each.runs} {failure}")
 
 
-def _described(place: Place, course: Course) -> Iterator[str]:
+def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
     """The field in characters and in words."""
-    from kit.fields.controller_setup import middle_of
+    from kit.fields.controller_setup import mean_position
     from kit.fields.planner import Unreachable
     from kit.render.camera import Camera
     from kit.render.encode import Ascii
@@ -262,7 +262,7 @@ def _described(place: Place, course: Course) -> Iterator[str]:
         yield f"unlike the walls: {difference}"
     for trap in traps:
         yield f"trap (!) at ({trap.x:.2f}, {trap.y:.2f}): {trap.share:.0%} of the floor leads there"
-    start = middle_of(place.starts)
+    start = mean_position(place.starts)
     verdict = "lead to the target" if course.flow.reaches(*start) else "do not lead to the target"
     yield f"from the start, the forces {verdict}"
     try:
@@ -271,15 +271,15 @@ def _described(place: Place, course: Course) -> Iterator[str]:
         yield str(reason)
 
 
-def _course(place: Place, derived: bool) -> Course:
-    from kit.fields.controller_setup import Course
+def _course(place: Place, derived: bool) -> ControllerSetup:
+    from kit.fields.controller_setup import ControllerSetup
 
     if place.case is None:
         raise LookupError(
             f"{place.name} has no target, so its field has none either: take a map of the catalogue; "
             "`kit maps` lists them."
         )
-    return Course.open(
+    return ControllerSetup.open(
         place.world.file,
         place.partners,
         place.case.target,

@@ -29,7 +29,7 @@ PLACES = 5
 @contextmanager
 def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
     """The journal and the desk; every mistake ends the verb with a message."""
-    from kit.controllers.workspace_files import open_desk
+    from kit.controllers import prepare_workspace
     from kit.school.game.leaderboard import FameError
     from kit.school.game.levels import UnknownLevel
     from kit.school.progress import Progress, ProgressError
@@ -37,7 +37,7 @@ def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
     from kit.world.problems import WorldError
 
     try:
-        desk = open_desk(workspace)
+        desk = prepare_workspace(workspace)
         with Progress(desk.folder) as progress:
             if progress.notice:
                 click.echo(progress.notice, err=True)
@@ -111,7 +111,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 @click.pass_obj
 def race_(workspace: Path | None, level: str, controller: str | None, agent: str | None) -> None:
     """Let a program or a trained agent drive LEVEL against the clock."""
-    from kit.controllers import find
+    from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
     from kit.school.game.levels import find_level
     from kit.school.game.race import Driver, race, race_agent
@@ -125,7 +125,9 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         try:
             if controller is not None:
                 driver = Driver.CONTROLLER
-                finish, recording = race(chosen, find(controller, desk.controllers), on_second=_tell)
+                finish, recording = race(
+                    chosen, find_controller(controller, desk.controllers), on_second=_tell
+                )
             else:
                 driver = Driver.AGENT
                 finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_tell)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kit.cli import options
 from kit.cli.plain import Plain, play_plainly
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.recording import RecordingError, load
 from kit.school.game.race import SEED, judged
 
@@ -26,7 +26,7 @@ def drive_by_lines(level: Level, desk: Workspace) -> tuple[Finish, Recording]:
         play_plainly(
             Plain(
                 level.find(),
-                find("teleop", desk.controllers),
+                find_controller("teleop", desk.controllers),
                 seed=SEED,
                 folder=desk.controllers,
                 record=file,

@@ -12,7 +12,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.learning.environment.tasks import Task
+    from kit.learning.environment.tasks import LearningTask
     from kit.learning.policies.policies import Policy
 
 on = click.option(
@@ -51,11 +51,11 @@ def names(text: str | None) -> tuple[str, ...]:
 def mistakes() -> Iterator[None]:
     """Ends the verb with one clear line for whatever a user can cause."""
     from kit.host.failure import GuestError
-    from kit.learning.environment.batch_map import Unsupported
+    from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.environment.tasks import UnknownTask
     from kit.learning.policies.policies import PolicyError
     from kit.learning.training.algorithms import UnknownAlgorithm
-    from kit.learning.training.optional_deps import LearnerMissing
+    from kit.learning.training.optional_deps import LearnExtraMissing
     from kit.learning.training.runs import RunError
     from kit.learning.training.student_reward import RewardFileError
     from kit.workspace import WorkspaceError
@@ -65,7 +65,7 @@ def mistakes() -> Iterator[None]:
         yield
     except UnknownAlgorithm as error:
         options.fail(str(error))
-    except (GuestError, LearnerMissing, PolicyError, RewardFileError, RunError, Unsupported) as error:
+    except (GuestError, LearnExtraMissing, PolicyError, RewardFileError, RunError, UnsupportedWorld) as error:
         options.fail(str(error))
     except (UnknownTask, WorkspaceError, WorldError) as error:
         options.fail(str(error))
@@ -91,7 +91,7 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
     return run.name, run.policy(newest=newest)
 
 
-def test_task(policy: Policy, task: str | None, on: str | None) -> Task:
+def test_task(policy: Policy, task: str | None, on: str | None) -> LearningTask:
     """What to test a policy on: what it was trained on, or another task with the same inputs and actions."""
     from dataclasses import replace
 

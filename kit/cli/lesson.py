@@ -37,7 +37,7 @@ def command(
     """
     from kit.cli.lesson_plain import PlainLesson
     from kit.cli.waiting import Intake
-    from kit.controllers.workspace_files import open_desk
+    from kit.controllers import prepare_workspace
     from kit.school.lessons.exercise_files import WorkError
     from kit.school.lessons.lesson_session import Visit
     from kit.school.lessons.reading import UnknownLesson, find_lesson
@@ -46,7 +46,7 @@ def command(
     from kit.world.problems import WorldError
 
     try:
-        desk = open_desk(workspace)
+        desk = prepare_workspace(workspace)
         with Progress(desk.folder) as progress:
             if progress.notice:
                 click.echo(progress.notice, err=True)
@@ -96,7 +96,7 @@ def _list(progress: Progress) -> None:
 def _watch(scene: Scene) -> None:
     """A scene in words and two pictures: how it begins and how it ends."""
     from kit.cli.plain import HEIGHT, WIDTH
-    from kit.controllers import find
+    from kit.controllers import find_controller
     from kit.render.world_text import plain_rows, report
     from kit.run.episode import run_until, when_failed
     from kit.run.scenario import find_place
@@ -105,7 +105,7 @@ def _watch(scene: Scene) -> None:
 
     place = find_place(scene.place, scene.case, None)
     with Session(place, seed=scene.seed, watched=True) as session:
-        session.drive_with(find(scene.controller, None) if scene.controller else None)
+        session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
         showing = Showing(session)
         click.echo(f"At the start: {report(showing.view().scene)}")
@@ -120,7 +120,7 @@ def _watch(scene: Scene) -> None:
 def _drive(scene: Scene, file: str, desk: Workspace, intake: Intake) -> None:
     """The student drives line by line; the recording is kept in ``file``."""
     from kit.cli.plain import Plain, play_plainly
-    from kit.controllers import find
+    from kit.controllers import find_controller
     from kit.run.scenario import find_place
 
     place = find_place(scene.place, scene.case, None)
@@ -130,7 +130,7 @@ def _drive(scene: Scene, file: str, desk: Workspace, intake: Intake) -> None:
     play_plainly(
         Plain(
             place,
-            find("teleop", desk.controllers),
+            find_controller("teleop", desk.controllers),
             seed=scene.seed,
             folder=desk.controllers,
             record=Path(file),

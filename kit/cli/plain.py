@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import click
 
 from kit.cli.waiting import Intake, Lines
-from kit.controllers import ControllerFile, find, in_folder, shipped
+from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.render.world_text import plain_rows, report
@@ -127,7 +127,7 @@ class Plain:
         click.echo("\n".join(plain_rows(Showing(self._session).view().scene, WIDTH, HEIGHT)))
 
     def use(self, name: str) -> None:
-        self._controller = find(name, self._folder)
+        self._controller = find_controller(name, self._folder)
         self._seat(self._session)
 
     def open(self, name: str, case: str | None) -> None:
@@ -142,7 +142,7 @@ class Plain:
         self.look()
 
     def controllers(self) -> None:
-        for each in (*in_folder(self._folder), *shipped()):
+        for each in (*user_controllers(self._folder), *kit_controllers()):
             click.echo(f"{each.name}: {each.title}")
 
     def close(self) -> None:

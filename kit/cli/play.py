@@ -49,14 +49,13 @@ def command(
     kit play my_world/world.yaml --controller my_controller.py
     kit play simple --controller teleop --record drive.npz
     """
-    from kit.controllers import find
-    from kit.controllers.workspace_files import open_desk
+    from kit.controllers import find_controller, prepare_workspace
     from kit.inspection.world_sockets import sockets_folder
     from kit.workspace import WorkspaceError, check_writable
 
     try:
-        desk = open_desk(workspace)
-        driver = find(controller, desk.controllers)
+        desk = prepare_workspace(workspace)
+        driver = find_controller(controller, desk.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
     if record is not None:

@@ -75,7 +75,7 @@ def command(
     Exit code: 0 the run went through; 1 the controller failed; 2 something named does not exist or is wrong; 130
     Ctrl-C, after the summary of what was run.
     """
-    from kit.controllers import find
+    from kit.controllers import find_controller
     from kit.ros.graph.graph import Graph
     from kit.run.headless import run_headless
     from kit.run.lockstep import ClosableParticipant
@@ -103,7 +103,7 @@ def command(
     try:
         summary = run_headless(
             find_place(place, case, root),
-            find(controller, desk.controllers),
+            find_controller(controller, desk.controllers),
             steps=steps,
             seed=seed,
             factor=speed or (REAL_TIME if serve else MAXIMUM),

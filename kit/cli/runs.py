@@ -12,7 +12,7 @@ import click
 from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
-    from kit.learning.training.runs import Run
+    from kit.learning.training.runs import TrainingRun
 
 
 @click.command()
@@ -26,8 +26,8 @@ def command(
     run: str | None, order: Literal["pause", "go", "stop"] | None, as_json: bool, workspace: Path | None
 ) -> None:
     """List the training runs, show RUN, or ask it (by default the last one) to pause, go on or stop."""
-    from kit.learning.training.run_text import table_of
-    from kit.learning.training.runs import all_runs, find_run
+    from kit.learning.training.run_text import format_runs
+    from kit.learning.training.runs import find_run, list_runs
 
     with learning_options.mistakes():
         folder = learning_options.runs_folder(workspace)
@@ -36,14 +36,16 @@ def command(
         elif run is not None:
             _show(find_run(folder, run), as_json)
         elif as_json:
-            rows = [{"name": each.name, **asdict(each.summary())} for each in all_runs(folder)]
+            rows = [{"name": each.name, **asdict(each.summary())} for each in list_runs(folder)]
             click.echo(json.dumps(rows, indent=2))
         else:
-            found = all_runs(folder)
-            click.echo("\n".join(table_of(found)) if found else "No runs yet. `kit train turn` starts one.")
+            found = list_runs(folder)
+            click.echo(
+                "\n".join(format_runs(found)) if found else "No runs yet. `kit train turn` starts one."
+            )
 
 
-def _ask(run: Run, order: Literal["pause", "go", "stop"]) -> None:
+def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
     from kit.learning.training.runs import RunError
 
     if not run.alive:
@@ -52,8 +54,8 @@ def _ask(run: Run, order: Literal["pause", "go", "stop"]) -> None:
     click.echo(f"{run.name}: {order}.")
 
 
-def _show(run: Run, as_json: bool) -> None:
-    from kit.learning.training.run_text import line_of
+def _show(run: TrainingRun, as_json: bool) -> None:
+    from kit.learning.training.run_text import format_event
 
     config, summary = run.config(), run.summary()
     if as_json:
@@ -65,5 +67,5 @@ def _show(run: Run, as_json: bool) -> None:
     click.echo(f"{summary.state}, {summary.steps:,} steps in {summary.seconds:.1f} s  {summary.reason}")
     for title, test in (("last test", summary.tested), ("best", summary.best)):
         if test is not None:
-            click.echo(f"{title:10}{line_of(test).strip()}")
+            click.echo(f"{title:10}{format_event(test).strip()}")
     click.echo(f"in {run.folder}")

@@ -36,11 +36,11 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
 
     Enter goes on where you left off: for a new student that is the first lesson.
     """
-    from kit.controllers.workspace_files import open_desk
+    from kit.controllers import prepare_workspace
     from kit.workspace import WorkspaceError
 
     try:
-        desk = open_desk(workspace)
+        desk = prepare_workspace(workspace)
     except WorkspaceError as error:
         options.fail(str(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)

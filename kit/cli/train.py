@@ -11,7 +11,7 @@ from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
     from kit.learning.training.events import EventReader
-    from kit.learning.training.runs import Run, RunConfig
+    from kit.learning.training.runs import RunConfig, TrainingRun
     from kit.tui.terminal import TerminalDecision
 
 
@@ -111,10 +111,10 @@ def command(
             raise click.UsageError(
                 "Which task? `kit train --list` lists them; `kit train turn` is the first."
             )
-        from kit.learning.environment.task_spec import TaskChoice
+        from kit.learning.environment.task_spec import TaskSpec
         from kit.learning.training.runs import RunConfig
 
-        choice = TaskChoice(
+        choice = TaskSpec(
             task,
             learning_options.names(on),
             measured_to=measured_to,
@@ -138,27 +138,27 @@ def _begin(
 ) -> None:
     """Checks everything that can be wrong before anything is written."""
     from kit.learning.training.algorithms import find_algorithm
-    from kit.learning.training.optional_deps import require_learner
-    from kit.learning.training.runs import new_run
-    from kit.learning.training.student_reward import parameters_of
+    from kit.learning.training.optional_deps import require_learn_extra
+    from kit.learning.training.runs import create_run
+    from kit.learning.training.student_reward import reward_parameters
 
     _check(config)
     if find_algorithm(config.algorithm).neural:
-        require_learner()
+        require_learn_extra()
     if config.reward_file is not None:
-        parameters_of(Path(config.reward_file))
-    _start(new_run(learning_options.runs_folder(workspace), config, name), terminal)
+        reward_parameters(Path(config.reward_file))
+    _start(create_run(learning_options.runs_folder(workspace), config, name), terminal)
 
 
 def _check(config: RunConfig) -> None:
-    from kit.learning.environment.case_arrays import Courses
-    from kit.learning.environment.mirror import Mirror
+    from kit.learning.environment.case_arrays import CaseArrays
+    from kit.learning.environment.mirror import TaskMirror
     from kit.learning.training.algorithms import find_algorithm
 
     task = config.choice.resolve()
-    Courses(task)
+    CaseArrays(task)
     if config.mirrored:
-        Mirror(task)
+        TaskMirror(task)
         if find_algorithm(config.algorithm).family == "table":
             options.fail("A table is learned without a mirror: leave --mirrored out.")
 
@@ -183,13 +183,13 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
     _start(run, terminal)
 
 
-def _start(run: Run, terminal: TerminalDecision | None) -> None:
+def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
     """``terminal``: where to watch it; None: nowhere."""
     from kit.learning.training.events import EventReader
-    from kit.learning.training.worker import start
+    from kit.learning.training.worker import start_worker
 
     reader = EventReader(run.events_file, from_now=True)
-    process = start(run)
+    process = start_worker(run)
     click.echo(f"{run.name}: training in {run.folder}")
     if terminal is None:
         click.echo(f"`kit watch {run.name}` shows how it goes.")
@@ -201,7 +201,7 @@ def _start(run: Run, terminal: TerminalDecision | None) -> None:
             process.wait()
 
 
-def _show(run: Run, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
+def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
     from kit.cli.watch import follow, look
 
     if terminal.plain.value:

@@ -13,7 +13,7 @@ from kit.cli import learning_options, options
 
 if TYPE_CHECKING:
     from kit.learning.training.events import EventReader
-    from kit.learning.training.runs import Run
+    from kit.learning.training.runs import TrainingRun
     from kit.tui.terminal import TerminalDecision
 
 LINE_S = 2.0
@@ -46,7 +46,7 @@ def command(
             look(found, terminal)
 
 
-def look(run: Run, terminal: TerminalDecision) -> None:
+def look(run: TrainingRun, terminal: TerminalDecision) -> None:
     """Opens the training screen; exit code 1 if the training has failed by the time it is left."""
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
@@ -63,13 +63,13 @@ def look(run: Run, terminal: TerminalDecision) -> None:
         raise SystemExit(app.return_code or 1)
 
 
-def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -> None:
+def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None = None) -> None:
     """Prints a run's events as they come, until nobody trains it any more; exit code 1 if it failed.
 
     ``reader``: of its events, if not all of them.
     """
-    from kit.learning.training.events import Ended, EventReader, Progress
-    from kit.learning.training.run_text import line_of
+    from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
+    from kit.learning.training.run_text import format_event
 
     reader = reader or EventReader(run.events_file)
     told_at, ended = -LINE_S, None
@@ -77,12 +77,12 @@ def follow(run: Run, *, once: bool = False, reader: EventReader | None = None) -
         while True:
             alive = run.alive  # asked first: whatever is written before the end is read below
             for event in reader.new():
-                if isinstance(event, Progress):
+                if isinstance(event, TrainingProgress):
                     if event.seconds - told_at < LINE_S:
                         continue
                     told_at = event.seconds
-                ended = event if isinstance(event, Ended) else None
-                click.echo(line_of(event))
+                ended = event if isinstance(event, TrainingEnded) else None
+                click.echo(format_event(event))
             if once or not alive:
                 break
             time.sleep(0.1)

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit.plain_text import nearest_name
-from kit.workspace import at_home
+from kit.workspace import Workspace, at_home, open_workspace, unusable, write_atomically
 
 FOLDER = Path(__file__).parent
+TEMPLATE = FOLDER / "template.py"
+FIRST_CONTROLLER = "my_controller.py"
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +23,7 @@ class ControllerFile:
     title: str
 
 
-def title_of(file: Path) -> str:
+def controller_title(file: Path) -> str:
     """The first line of a Python file's docstring, or nothing. The file is read, never run."""
     try:
         return (ast.get_docstring(ast.parse(file.read_bytes())) or "").partition("\n")[0]
@@ -29,22 +31,22 @@ def title_of(file: Path) -> str:
         return ""
 
 
-def shipped() -> tuple[ControllerFile, ...]:
+def kit_controllers() -> tuple[ControllerFile, ...]:
     """The kit's own controllers, the two that the kit opens with first, then the worked examples."""
     own = (FOLDER / f"{name}.py" for name in ("random_walk", "teleop", "teleop_pair", "fields", "abreast"))
     names = [*own, *sorted((FOLDER / "examples").glob("*.py"))]
-    return tuple(ControllerFile(file.stem, file, title_of(file)) for file in names)
+    return tuple(ControllerFile(file.stem, file, controller_title(file)) for file in names)
 
 
-def in_folder(folder: Path) -> tuple[ControllerFile, ...]:
+def user_controllers(folder: Path) -> tuple[ControllerFile, ...]:
     """The user's controllers: every ``.py`` file of ``folder``, by name."""
     files = sorted(
         file for file in folder.glob("*.py") if not file.name.startswith((".", "_")) and file.is_file()
     )
-    return tuple(ControllerFile(file.stem, file, title_of(file)) for file in files)
+    return tuple(ControllerFile(file.stem, file, controller_title(file)) for file in files)
 
 
-def find(name: str, folder: Path | None = None) -> ControllerFile:
+def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
     """A controller by path, from here or from the user's ``folder``, or by name: theirs first, then the kit's own.
 
     Raises LookupError that names what there is.
@@ -54,12 +56,26 @@ def find(name: str, folder: Path | None = None) -> ControllerFile:
         places = [path, *([] if folder is None else [folder / path])]
         for file in places:
             if file.is_file():
-                return ControllerFile(file.stem, file.absolute(), title_of(file))
+                return ControllerFile(file.stem, file.absolute(), controller_title(file))
         tried = "" if folder is None or path.is_absolute() else f", neither here nor in {folder}"
         raise LookupError(f"{name}: there is no such file{tried}.")
-    known = {item.name: item for item in (*shipped(), *(in_folder(folder) if folder else ()))}
+    known = {item.name: item for item in (*kit_controllers(), *(user_controllers(folder) if folder else ()))}
     if name in known:
         return known[name]
     near = nearest_name(name, known)
     hint = f" Did you mean {near}?" if near else ""
     raise LookupError(f"There is no controller named {name}.{hint} There are: {', '.join(known)}.")
+
+
+def prepare_workspace(folder: Path | None = None) -> Workspace:
+    """Opens the user's workspace and copies a controller to start from into it where it has none.
+
+    Files that exist are never overwritten. Raises WorkspaceError.
+    """
+    workspace = open_workspace(folder)
+    if not any(workspace.controllers.glob("*.py")):
+        try:
+            write_atomically(workspace.controllers / FIRST_CONTROLLER, TEMPLATE.read_bytes())
+        except OSError as error:
+            raise unusable(workspace.folder, error) from None
+    return workspace

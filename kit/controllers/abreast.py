@@ -6,20 +6,20 @@ if no way leads to the target.
 
 from collections.abc import Sequence
 
-from kit.controllers.odometry import CourseNode, spin
-from kit.fields.controller_setup import Course
-from kit.fields.pair import Command
+from kit.controllers.odometry import SetupNode, spin
+from kit.fields.controller_setup import ControllerSetup
+from kit.fields.pair import VelocityCommand
 from kit.fields.planner import Unreachable
-from kit.fields.trajectory import Follower
+from kit.fields.trajectory import TrajectoryTracker
 from kit.geometry import Pose
 
 
-class Abreast(CourseNode):
+class Abreast(SetupNode):
     def __init__(self) -> None:
         super().__init__("abreast")
-        self._follower: Follower | None = None
+        self._follower: TrajectoryTracker | None = None
 
-    def step(self, course: Course, poses: Sequence[Pose]) -> Sequence[Command] | None:
+    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
         if self._follower is None:
             try:
                 ride = course.ride(poses)
@@ -27,7 +27,7 @@ class Abreast(CourseNode):
                 self.stop(f"Not driving. {reason}")
                 return None
             self.get_logger().info(f"A ride of {ride.seconds:.1f} s.")
-            self._follower = Follower(ride)
+            self._follower = TrajectoryTracker(ride)
         return self._follower.commands(poses)
 
 

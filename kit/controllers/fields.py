@@ -10,14 +10,14 @@ from dataclasses import replace
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
-from kit.controllers.odometry import CourseNode, spin
-from kit.fields.controller_setup import Course, middle_of
+from kit.controllers.odometry import SetupNode, spin
+from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.layout import Intensities
-from kit.fields.pair import Command, decide
+from kit.fields.pair import VelocityCommand, control_step
 from kit.geometry import Pose
 
 
-class Fields(CourseNode):
+class Fields(SetupNode):
     def __init__(self) -> None:
         super().__init__("fields")
         self._foreseen = False
@@ -28,14 +28,14 @@ class Fields(CourseNode):
                 self._change(name, float(given))
         self.add_on_set_parameters_callback(self._on_parameters)
 
-    def step(self, course: Course, poses: Sequence[Pose]) -> Sequence[Command]:
+    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand]:
         if not self._foreseen:
             self._foreseen = True
             self._foresee(course, poses)
-        return decide(poses, course.target, course.layout).commands
+        return control_step(poses, course.target, course.layout).commands
 
-    def _foresee(self, course: Course, poses: Sequence[Pose]) -> None:
-        start = middle_of(poses)
+    def _foresee(self, course: ControllerSetup, poses: Sequence[Pose]) -> None:
+        start = mean_position(poses)
         end = course.flow.end(*start)
         if end is not None and not course.flow.reaches(*start):
             self.get_logger().warning(

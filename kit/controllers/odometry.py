@@ -15,8 +15,8 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 
-from kit.fields.controller_setup import Course
-from kit.fields.pair import Command
+from kit.fields.controller_setup import ControllerSetup
+from kit.fields.pair import VelocityCommand
 from kit.geometry import Pose
 from kit.world.problems import WorldError
 
@@ -24,7 +24,7 @@ PERIOD_NS = 100_000_000
 """At most ten steps a second, however often odometry comes."""
 
 
-class CourseNode(Node):
+class SetupNode(Node):
     """Drives one robot or two along a course. Parameters: ``world`` (a world file), ``models`` (the left one first),
     ``target`` [x, y], ``target_radius`` [m], ``charges`` (a charge file to use instead of the world's).
 
@@ -33,7 +33,7 @@ class CourseNode(Node):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self.course: Course | None = None
+        self.course: ControllerSetup | None = None
         self._poses: dict[str, Pose] = {}
         self._stepped_ns = -PERIOD_NS
         self._drives = {}
@@ -53,7 +53,7 @@ class CourseNode(Node):
                 self.create_subscription(Collisions, robot.contacts, on_contact, 10)
 
     @abstractmethod
-    def step(self, course: Course, poses: Sequence[Pose]) -> Sequence[Command] | None:
+    def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
         """What each robot does next; None: nothing, for good."""
 
     def stop(self, reason: str) -> None:
@@ -64,7 +64,7 @@ class CourseNode(Node):
         for drive in self._drives.values():
             drive.publish(Twist())
 
-    def _open(self) -> Course:
+    def _open(self) -> ControllerSetup:
         world = str(self.declare_parameter("world", "").value)
         models = list(self.declare_parameter("models", ["left", "right"]).value)
         target = [float(each) for each in self.declare_parameter("target", [math.nan, math.nan]).value]
@@ -74,7 +74,7 @@ class CourseNode(Node):
             raise ValueError("no world is given: add -p world:=WORLD.yaml.")
         if len(target) != 2 or not all(map(math.isfinite, target)):
             raise ValueError("no target is given: add -p target:=[x, y], or drive on a map that has one.")
-        return Course.open(
+        return ControllerSetup.open(
             Path(world),
             models,
             (target[0], target[1]),

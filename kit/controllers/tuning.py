@@ -9,7 +9,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 
 
-class Tuner:
+class ParameterTuner:
     """Of one node, by its service ``set_parameters``. Never waits; a node without the service is left alone."""
 
     def __init__(self, graph: Graph, node: str, namespace: str = "") -> None:

@@ -19,43 +19,45 @@ Array: TypeAlias = Any
 SIDE_RAYS: Final = ((45 - 21, 45 - 25), (45 + 21, 45 + 25))
 """Of 91 rays, with which two the left and the right robot look at each other: a little ahead of abeam and a little
 behind (figure 4.8)."""
-BESIDE: Final = 0.4
+MAX_SIDE_RANGE: Final = 0.4
 """Side rays of robots side by side are no longer."""
-ALIKE: Final = 0.05
+MAX_RANGE_DIFFERENCE: Final = 0.05
 """And those of a pair differ by no more."""
 
 
 @dataclass(frozen=True, slots=True)
-class Thresholds:
+class AdjacencyThresholds:
     """Of the geometric answer; the dissertation names none."""
 
     distance: float = 0.5
     angle: float = 0.35
 
 
-def by_geometry(left: ArrayLike, right: ArrayLike, thresholds: Thresholds = Thresholds()) -> Array:
+def is_adjacent_by_poses(
+    left: ArrayLike, right: ArrayLike, thresholds: AdjacencyThresholds = AdjacencyThresholds()
+) -> Array:
     """(...) bool, of poses (..., 3): near, facing the same way, and abeam, the left one on the left (4.3, 4.4, 4.6).
 
     With the arctangent of two arguments and wrapped angles, so that it holds in every direction.
     """
     one, other = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
     dx, dy = other[..., 0] - one[..., 0], other[..., 1] - one[..., 1]
-    apart = np.abs(wrapped(one[..., 2] - other[..., 2]))
-    abeam = np.abs(wrapped(np.arctan2(dy, dx) - (one[..., 2] - np.pi / 2)))
+    apart = np.abs(wrap_angles(one[..., 2] - other[..., 2]))
+    abeam = np.abs(wrap_angles(np.arctan2(dy, dx) - (one[..., 2] - np.pi / 2)))
     return (np.hypot(dx, dy) < thresholds.distance) & (apart < thresholds.angle) & (abeam < thresholds.angle)
 
 
-def by_rays(left: ArrayLike, right: ArrayLike) -> Array:
+def is_adjacent_by_rays(left: ArrayLike, right: ArrayLike) -> Array:
     """(...) bool, of side rays (..., 2), the front one first: all short, and the pairs alike (4.7 to 4.9).
 
     What a robot can see by itself. Two walls at the same distance look the same to it.
     """
     one, other = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
-    short = (one <= BESIDE) & (other <= BESIDE)
-    return (short & (np.abs(one - other) <= ALIKE)).all(axis=-1)
+    short = (one <= MAX_SIDE_RANGE) & (other <= MAX_SIDE_RANGE)
+    return (short & (np.abs(one - other) <= MAX_RANGE_DIFFERENCE)).all(axis=-1)
 
 
-def graded(left: ArrayLike, right: ArrayLike) -> Array:
+def adjacency_score(left: ArrayLike, right: ArrayLike) -> Array:
     """(...) 0 to 1, of poses (..., 3): 1 where each is straight abeam of the other and both face the same way.
 
     exp(-(a / 0.08 m)^2 - (h / 0.4 rad)^2), a: how far each is ahead of or behind the other, on average; h: the angle
@@ -64,10 +66,10 @@ def graded(left: ArrayLike, right: ArrayLike) -> Array:
     one, other = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
     dx, dy = other[..., 0] - one[..., 0], other[..., 1] - one[..., 1]
     ahead = [np.abs(np.cos(each[..., 2]) * dx + np.sin(each[..., 2]) * dy) for each in (one, other)]
-    apart = wrapped(one[..., 2] - other[..., 2])
+    apart = wrap_angles(one[..., 2] - other[..., 2])
     return np.exp(-(((ahead[0] + ahead[1]) / (2 * 0.08)) ** 2) - (apart / 0.4) ** 2)
 
 
-def wrapped(angle: Array) -> Array:
+def wrap_angles(angle: Array) -> Array:
     """The same direction, in [-pi, pi)."""
     return (angle + np.pi) % (2 * np.pi) - np.pi

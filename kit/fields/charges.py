@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from kit.kernels import kernels
 
-Floats = NDArray[np.float64]
+FloatArray = NDArray[np.float64]
 
-FIRST: Final = 1e12
+FIRST_LINE_RANK: Final = 1e12
 """Lines that go before nearer ones are preferred by so many square metres."""
-BLOCK: Final = 512
+BLOCK_SIZE: Final = 512
 """So many points at once: their arrays stay in the processor's nearest cache."""
 
 
@@ -47,9 +47,9 @@ class PointCharge:
     y: float
     intensity: float = 1.0
 
-    def force(self, points: ArrayLike) -> Floats:
+    def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return Field.of([self]).forces(points)
+        return ChargeField.of([self]).forces(points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +73,9 @@ class LineCharge:
     def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
         return (self.ax, self.ay), (self.bx, self.by)
 
-    def force(self, points: ArrayLike) -> Floats:
+    def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return Field.of([self]).forces(points)
+        return ChargeField.of([self]).forces(points)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +90,9 @@ class CompositeCharge:
     points: tuple[PointCharge, ...]
     handover: Handover = Handover.NEAREST
 
-    def force(self, points: ArrayLike) -> Floats:
+    def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        return Field.of([self]).forces(points)
+        return ChargeField.of([self]).forces(points)
 
 
 Charge = PointCharge | LineCharge | CompositeCharge
@@ -106,57 +106,57 @@ class TensionPoint:
     y: float
     intensity: float
 
-    def force(self, points: ArrayLike) -> Floats:
+    def force(self, points: ArrayLike) -> FloatArray:
         """At ``points`` (..., 2): forces (..., 2)."""
-        forces: Floats = self.intensity * (np.array((self.x, self.y)) - np.asarray(points, dtype=float))
+        forces: FloatArray = self.intensity * (np.array((self.x, self.y)) - np.asarray(points, dtype=float))
         return forces
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Field:
+class ChargeField:
     """Many charges as arrays, for ``kit.kernels.kernels.add_forces``, where the formula stands."""
 
-    stretches: Floats
+    stretches: FloatArray
     """(m, 9) ``ax ay ux uy length low high intensity rank``: points are stretches of no length."""
     starts: NDArray[np.int64]
     """(c + 1): the first stretch of each charge."""
 
     @classmethod
-    def of(cls, charges: Iterable[Charge]) -> Field:
-        groups = [list(_stretches(charge)) for charge in charges]
+    def of(cls, charges: Iterable[Charge]) -> ChargeField:
+        groups = [list(_segment_rows(charge)) for charge in charges]
         rows = [row for group in groups for row in group]
         return cls(
             np.array(rows, dtype=np.float64).reshape(-1, 9),
             np.cumsum([0, *map(len, groups)], dtype=np.int64),
         )
 
-    def forces(self, points: ArrayLike) -> Floats:
+    def forces(self, points: ArrayLike) -> FloatArray:
         """The sum of all charges' forces at ``points`` (..., 2), in that shape."""
         places = np.asarray(points, dtype=np.float64)
         x, y = (np.ascontiguousarray(places[..., axis].ravel()) for axis in (0, 1))
         fx, fy = np.zeros_like(x), np.zeros_like(y)
-        for first in range(0, len(x), BLOCK):
-            some = slice(first, first + BLOCK)
+        for first in range(0, len(x), BLOCK_SIZE):
+            some = slice(first, first + BLOCK_SIZE)
             kernels.add_forces(x[some], y[some], self.stretches, self.starts, fx[some], fy[some])
         return np.stack((fx, fy), axis=-1).reshape(places.shape)
 
 
-Row = tuple[float, float, float, float, float, float, float, float, float]
+SegmentRow = tuple[float, float, float, float, float, float, float, float, float]
 
 
-def _stretches(charge: Charge) -> Iterator[Row]:
+def _segment_rows(charge: Charge) -> Iterator[SegmentRow]:
     if isinstance(charge, PointCharge):
-        yield _point(charge)
+        yield _point_row(charge)
     elif isinstance(charge, LineCharge):
-        yield _line(charge, 0.0)
+        yield _line_row(charge, 0.0)
     elif _is_closed(charge):
-        yield from (_line(line, 0.0, clamped=True) for line in charge.lines)
+        yield from (_line_row(line, 0.0, clamped=True) for line in charge.lines)
     else:
         first = charge.handover is Handover.FIRST_LINE
         count = len(charge.lines)
         for number, line in enumerate(charge.lines):
-            yield _line(line, FIRST * (number - count) if first else 0.0)
-        yield from map(_point, charge.points)
+            yield _line_row(line, FIRST_LINE_RANK * (number - count) if first else 0.0)
+        yield from map(_point_row, charge.points)
 
 
 def _is_closed(composite: CompositeCharge) -> bool:
@@ -167,18 +167,18 @@ def _is_closed(composite: CompositeCharge) -> bool:
     return composite.handover is Handover.NEAREST and ends == corners
 
 
-def _point(charge: PointCharge) -> Row:
+def _point_row(charge: PointCharge) -> SegmentRow:
     return charge.x, charge.y, 0.0, 0.0, 0.0, 0.0, 0.0, charge.intensity, 0.0
 
 
-def _line(line: LineCharge, rank: float, *, clamped: bool = False) -> Row:
+def _line_row(line: LineCharge, rank: float, *, clamped: bool = False) -> SegmentRow:
     length = line.length
     ux, uy = ((line.bx - line.ax) / length, (line.by - line.ay) / length) if length else (0.0, 0.0)
     low, high = (-math.inf, math.inf) if clamped else (0.0, length)
     return line.ax, line.ay, ux, uy, length, low, high, line.intensity, rank
 
 
-def members(charges: Iterable[Charge]) -> Iterator[PointCharge | LineCharge]:
+def iter_members(charges: Iterable[Charge]) -> Iterator[PointCharge | LineCharge]:
     """Every point and line, those of composites too."""
     for charge in charges:
         if isinstance(charge, CompositeCharge):

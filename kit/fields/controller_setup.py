@@ -9,26 +9,26 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final
 
-from kit.fields.derived_charges import derive, differences
-from kit.fields.layout import Layout, derived_layout, layout_of, read_layout
-from kit.fields.minima import Flow
-from kit.fields.occupancy_grid import Floor, open_floor
-from kit.fields.planner import Size, Ways
-from kit.fields.trajectory import Comfort, Ride, plan_ride
+from kit.fields.derived_charges import derive_charges, layout_differences
+from kit.fields.layout import ChargeLayout, derived_layout, load_layout, read_layout
+from kit.fields.minima import ForceFlow
+from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid
+from kit.fields.planner import CostToGo, VehicleSize
+from kit.fields.trajectory import ComfortLimits, Trajectory, plan_trajectory
 from kit.geometry import Pose, wrap_angle
 from kit.plain_text import suggestion
 from kit.world.records import Circle, Footprint, Model, World
 
-SPARE: Final = 0.01
+WALL_MARGIN: Final = 0.01
 """m that a robot keeps from walls at least."""
-GAP: Final = 0.3
+PAIR_GAP: Final = 0.3
 """m between two robots side by side; the dissertation's."""
-ABREAST: Final = 0.5
+MAX_START_ANGLE: Final = 0.5
 """rad: so far off they may face another way, or stand behind one another, and still count as side by side."""
 
 
 @dataclass(frozen=True, slots=True)
-class Robot:
+class DrivenRobot:
     name: str
     odometry: str
     """The topic that says where it is."""
@@ -43,12 +43,12 @@ class Robot:
 
 
 @dataclass(frozen=True)
-class Course:
+class ControllerSetup:
     """One task for the first two robots of a world, or for one."""
 
-    floor: Floor
-    layout: Layout
-    robots: tuple[Robot, ...]
+    floor: OccupancyGrid
+    layout: ChargeLayout
+    robots: tuple[DrivenRobot, ...]
     target: tuple[float, float]
     target_radius: float = 0.25
 
@@ -62,51 +62,53 @@ class Course:
         *,
         derived: bool = False,
         charges: Path | None = None,
-    ) -> Course:
+    ) -> ControllerSetup:
         """For the first two of ``models``, the left one first. ``derived``: do not use the charges drawn by hand.
         ``charges``: a charge file to use instead of the world's own.
 
         Raises WorldError for a wrong file, ValueError for a world without walls, LookupError for a missing model.
         """
-        world, floor = open_floor(world_file)
+        world, floor = load_occupancy_grid(world_file)
         if charges is not None:
             layout = read_layout(charges, floor)
         else:
-            layout = derived_layout(floor) if derived else layout_of(world_file, floor)
-        robots = tuple(_robot(_model(world, name)) for name in models[:2])
+            layout = derived_layout(floor) if derived else load_layout(world_file, floor)
+        robots = tuple(_driven_robot(_find_model(world, name)) for name in models[:2])
         return cls(floor, layout, robots, target, target_radius)
 
     @cached_property
-    def flow(self) -> Flow:
+    def flow(self) -> ForceFlow:
         """Where the charges' forces lead."""
-        return Flow.of(self.layout, self.floor, self.target, self.target_radius)
+        return ForceFlow.of(self.layout, self.floor, self.target, self.target_radius)
 
     @property
-    def size(self) -> Size:
-        reach = max(robot.reach for robot in self.robots) + SPARE
+    def size(self) -> VehicleSize:
+        reach = max(robot.reach for robot in self.robots) + WALL_MARGIN
         if len(self.robots) == 1:
-            return Size(reach, reach, f"the robot {self.robots[0].name}")
-        width = GAP / 2 + max(robot.half_width for robot in self.robots) + SPARE
-        return Size(max(width, reach), reach, "two robots side by side")
+            return VehicleSize(reach, reach, f"the robot {self.robots[0].name}")
+        width = PAIR_GAP / 2 + max(robot.half_width for robot in self.robots) + WALL_MARGIN
+        return VehicleSize(max(width, reach), reach, "two robots side by side")
 
-    def ways(self, start: tuple[float, float]) -> Ways:
+    def ways(self, start: tuple[float, float]) -> CostToGo:
         """Ways to the target. Raises Unreachable if none leads there from ``start``."""
-        ways = Ways.to(self.floor, self.target, self.size, start)
+        ways = CostToGo.to(self.floor, self.target, self.size, start)
         ways.check(start)
         return ways
 
-    def ride(self, poses: Sequence[Pose], limits: Comfort = Comfort()) -> Ride:
+    def ride(self, poses: Sequence[Pose], limits: ComfortLimits = ComfortLimits()) -> Trajectory:
         """From where the robots are. Raises Unreachable."""
-        start = middle_of(poses)
+        start = mean_position(poses)
         way = self.ways(start).way(start, _common_heading(poses))
-        return plan_ride(way, poses, GAP, limits)
+        return plan_trajectory(way, poses, PAIR_GAP, limits)
 
     def hand_drawn_differences(self) -> tuple[str, ...]:
         """Where the layout differs from the one derived from the walls, in words."""
-        return differences(self.layout.charges, derive(self.floor)) if self.layout.source else ()
+        return (
+            layout_differences(self.layout.charges, derive_charges(self.floor)) if self.layout.source else ()
+        )
 
 
-def middle_of(poses: Sequence[Pose]) -> tuple[float, float]:
+def mean_position(poses: Sequence[Pose]) -> tuple[float, float]:
     return (
         math.fsum(pose.x for pose in poses) / len(poses),
         math.fsum(pose.y for pose in poses) / len(poses),
@@ -121,10 +123,10 @@ def _common_heading(poses: Sequence[Pose]) -> float | None:
     apart = wrap_angle(right.theta - left.theta)
     heading = left.theta + 0.5 * apart
     abeam = wrap_angle(math.atan2(left.y - right.y, left.x - right.x) - math.pi / 2 - heading)
-    return heading if max(abs(apart), abs(abeam)) <= ABREAST else None
+    return heading if max(abs(apart), abs(abeam)) <= MAX_START_ANGLE else None
 
 
-def _model(world: World, name: str) -> Model:
+def _find_model(world: World, name: str) -> Model:
     for model in world.models:
         if model.name == name:
             return model
@@ -132,7 +134,7 @@ def _model(world: World, name: str) -> Model:
     raise LookupError(f"{world.file}: there is no model {name} to drive: {suggestion(name, names)}")
 
 
-def _robot(model: Model) -> Robot:
+def _driven_robot(model: Model) -> DrivenRobot:
     drive = next((plugin for plugin in model.plugins if plugin.type == "DiffDrive"), None)
     if drive is None or not isinstance(drive.params, Mapping):
         raise LookupError(
@@ -147,9 +149,9 @@ def _robot(model: Model) -> Robot:
     points = [
         (*body.pose.transform_point(*corner), radius)
         for body in model.bodies
-        for corner, radius in _corners(body.footprints)
+        for corner, radius in _corner_points(body.footprints)
     ]
-    return Robot(
+    return DrivenRobot(
         model.name,
         odometry=model.topic(str(drive.params.get("odom_pub", "odometry/filtered"))),
         commands=model.topic(str(drive.params.get("twist_sub", "cmd_vel"))),
@@ -159,7 +161,7 @@ def _robot(model: Model) -> Robot:
     )
 
 
-def _corners(footprints: Sequence[Footprint]) -> Iterator[tuple[tuple[float, float], float]]:
+def _corner_points(footprints: Sequence[Footprint]) -> Iterator[tuple[tuple[float, float], float]]:
     """Points of a body, with what lies around each of them [m]."""
     for shape in (footprint.shape for footprint in footprints):
         if isinstance(shape, Circle):

@@ -13,66 +13,68 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from kit.fields.charges import Charge, CompositeCharge, LineCharge, PointCharge, members
-from kit.fields.occupancy_grid import Floor
+from kit.fields.charges import Charge, CompositeCharge, LineCharge, PointCharge, iter_members
+from kit.fields.occupancy_grid import OccupancyGrid
 
 Point = tuple[float, float]
 
-SAME: Final = 6
+SAME_DECIMALS: Final = 6
 """Decimals [m] to which ends that meet agree."""
-STRAIGHT: Final = 1e-3
+MIN_CORNER_ANGLE: Final = 1e-3
 """A corner that turns by less [rad] is none."""
-LIKE: Final = 0.005
+SAME_DISTANCE: Final = 0.005
 """Lines of two layouts whose ends are nearer [m] are the same."""
-NEAR: Final = 0.05
+MATCH_DISTANCE: Final = 0.05
 """And when nearer than this [m] meant to be."""
 
 
-def derive(floor: Floor) -> tuple[Charge, ...]:
+def derive_charges(floor: OccupancyGrid) -> tuple[Charge, ...]:
     """Charges of strength 1 for all walls that the floor's inside ends at."""
     faces: list[list[float]] = floor.faces().tolist()
     meeting: dict[Point, list[int]] = defaultdict(list)
     for number, (ax, ay, bx, by) in enumerate(faces):
-        meeting[_same(ax, ay)].append(number)
-        meeting[_same(bx, by)].append(number)
+        meeting[_rounded_point(ax, ay)].append(number)
+        meeting[_rounded_point(bx, by)].append(number)
     group = list(range(len(faces)))
     corners: dict[Point, int] = {}
     for place, numbers in meeting.items():
-        if _stands_out(place, [faces[number] for number in numbers], floor):
+        if _is_convex_corner(place, [faces[number] for number in numbers], floor):
             for number in numbers[1:]:
-                _join(group, numbers[0], number)
+                _merge_groups(group, numbers[0], number)
             corners[place] = numbers[0]
-    return tuple(_charges(faces, [_head(group, number) for number in range(len(faces))], corners, group))
+    return tuple(
+        _build_charges(faces, [_find_root(group, number) for number in range(len(faces))], corners, group)
+    )
 
 
-def differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> tuple[str, ...]:
+def layout_differences(charges: Sequence[Charge], derived: Sequence[Charge]) -> tuple[str, ...]:
     """Where a layout differs from the one derived from the walls, in words."""
-    own, others = list(members(charges)), list(members(derived))
+    own, others = list(iter_members(charges)), list(iter_members(derived))
     said = []
     for charge in own:
-        nearest = min(others, key=lambda other: _gap(charge, other), default=None)
-        gap = math.inf if nearest is None else _gap(charge, nearest)
-        if nearest is None or gap > NEAR:
-            said.append(f"{_words(charge)} stands at no wall")
-        elif gap > LIKE:
-            said.append(f"{_words(charge)} is {gap:.3f} m off {_words(nearest)}")
+        nearest = min(others, key=lambda other: _charge_distance(charge, other), default=None)
+        gap = math.inf if nearest is None else _charge_distance(charge, nearest)
+        if nearest is None or gap > MATCH_DISTANCE:
+            said.append(f"{_describe_charge(charge)} stands at no wall")
+        elif gap > SAME_DISTANCE:
+            said.append(f"{_describe_charge(charge)} is {gap:.3f} m off {_describe_charge(nearest)}")
     said += [
-        f"{_words(other)} has no charge"
+        f"{_describe_charge(other)} has no charge"
         for other in others
-        if min((_gap(charge, other) for charge in own), default=math.inf) > NEAR
+        if min((_charge_distance(charge, other) for charge in own), default=math.inf) > MATCH_DISTANCE
     ]
     return tuple(said)
 
 
-def _charges(
+def _build_charges(
     faces: list[list[float]], heads: list[int], corners: dict[Point, int], group: list[int]
 ) -> Iterator[Charge]:
     points: dict[int, list[Point]] = defaultdict(list)
     for place, number in corners.items():
-        points[_head(group, number)].append(place)
+        points[_find_root(group, number)].append(place)
     lines: dict[int, list[LineCharge]] = defaultdict(list)
     for (ax, ay, bx, by), head in zip(faces, heads, strict=True):
-        lines[head].append(LineCharge(*_same(ax, ay), *_same(bx, by)))
+        lines[head].append(LineCharge(*_rounded_point(ax, ay), *_rounded_point(bx, by)))
     for head, those in lines.items():
         if points[head]:
             yield CompositeCharge(tuple(those), tuple(PointCharge(*place) for place in points[head]))
@@ -80,15 +82,15 @@ def _charges(
             yield from those
 
 
-def _stands_out(place: Point, walls: list[list[float]], floor: Floor) -> bool:
+def _is_convex_corner(place: Point, walls: list[list[float]], floor: OccupancyGrid) -> bool:
     """Whether more than half a turn around the place is free, and floor."""
-    directions = sorted(_from(place, wall) for wall in walls)
+    directions = sorted(_direction_from(place, wall) for wall in walls)
     gaps = [
         (after - before, before)
         for before, after in zip(directions, [*directions[1:], directions[0] + math.tau], strict=True)
     ]
     widest, before = max(gaps)
-    if widest <= math.pi + STRAIGHT:
+    if widest <= math.pi + MIN_CORNER_ANGLE:
         return False
     middle = before + 0.5 * widest
     aside = 2.0 * floor.cell
@@ -97,29 +99,29 @@ def _stands_out(place: Point, walls: list[list[float]], floor: Floor) -> bool:
     )
 
 
-def _from(place: Point, wall: list[float]) -> float:
+def _direction_from(place: Point, wall: list[float]) -> float:
     """The direction [rad] in which a wall leaves one of its ends."""
     ax, ay, bx, by = wall
-    if _same(ax, ay) == place:
+    if _rounded_point(ax, ay) == place:
         return math.atan2(by - ay, bx - ax)
     return math.atan2(ay - by, ax - bx)
 
 
-def _same(x: float, y: float) -> Point:
-    return round(x, SAME) + 0.0, round(y, SAME) + 0.0
+def _rounded_point(x: float, y: float) -> Point:
+    return round(x, SAME_DECIMALS) + 0.0, round(y, SAME_DECIMALS) + 0.0
 
 
-def _head(group: list[int], number: int) -> int:
+def _find_root(group: list[int], number: int) -> int:
     while group[number] != number:
         number = group[number]
     return number
 
 
-def _join(group: list[int], one: int, other: int) -> None:
-    group[_head(group, other)] = _head(group, one)
+def _merge_groups(group: list[int], one: int, other: int) -> None:
+    group[_find_root(group, other)] = _find_root(group, one)
 
 
-def _gap(one: PointCharge | LineCharge, other: PointCharge | LineCharge) -> float:
+def _charge_distance(one: PointCharge | LineCharge, other: PointCharge | LineCharge) -> float:
     """How far apart [m] two charges of a kind are: the larger distance of their ends."""
     if isinstance(one, PointCharge) and isinstance(other, PointCharge):
         return math.hypot(one.x - other.x, one.y - other.y)
@@ -129,7 +131,7 @@ def _gap(one: PointCharge | LineCharge, other: PointCharge | LineCharge) -> floa
     return math.inf
 
 
-def _words(charge: PointCharge | LineCharge) -> str:
+def _describe_charge(charge: PointCharge | LineCharge) -> str:
     if isinstance(charge, PointCharge):
         return f"the point ({charge.x:g}, {charge.y:g})"
     return f"the line ({charge.ax:g}, {charge.ay:g})-({charge.bx:g}, {charge.by:g})"

@@ -23,20 +23,28 @@ from typing import Final
 
 from numpy.typing import ArrayLike
 
-from kit.fields.charges import Charge, CompositeCharge, Field, Floats, Handover, LineCharge, PointCharge
-from kit.fields.derived_charges import derive
-from kit.fields.occupancy_grid import Floor, wall_depth
+from kit.fields.charges import (
+    Charge,
+    ChargeField,
+    CompositeCharge,
+    FloatArray,
+    Handover,
+    LineCharge,
+    PointCharge,
+)
+from kit.fields.derived_charges import derive_charges
+from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-FILE: Final = "charges.yaml"
+LAYOUT_FILE: Final = "charges.yaml"
 
-JOINED: Final = 1e-6
+SAME_CORNER_DISTANCE: Final = 1e-6
 """Ends nearer than this [m] are one corner."""
-DEEPEST: Final = 0.03
+MAX_WALL_DEPTH: Final = 0.03
 """A charge no farther [m] behind a wall's face lies on it: drawings are not exact."""
 
 HANDOVERS: Final = MappingProxyType({each.value: each for each in Handover})
@@ -57,41 +65,41 @@ class Intensities:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Layout:
+class ChargeLayout:
     """Charges of strength 1 and the intensities that scale them: a changed intensity needs no new field."""
 
     charges: tuple[Charge, ...]
     intensities: Intensities
     source: Path | None
     """The file they were read from; None: derived from the walls."""
-    field: Field
+    field: ChargeField
 
-    def with_intensities(self, intensities: Intensities) -> Layout:
+    def with_intensities(self, intensities: Intensities) -> ChargeLayout:
         return replace(self, intensities=intensities)
 
-    def wall_forces(self, points: ArrayLike) -> Floats:
+    def wall_forces(self, points: ArrayLike) -> FloatArray:
         """Of all charges but the target's, at ``points`` (..., 2), in that shape [N]."""
         return self.intensities.walls * self.field.forces(points)
 
-    def forces(self, points: ArrayLike, target: tuple[float, float]) -> Floats:
+    def forces(self, points: ArrayLike, target: tuple[float, float]) -> FloatArray:
         """Of all charges, the target's too, at ``points`` (..., 2), in that shape [N]."""
         pull = PointCharge(*target, self.intensities.target).force(points)
         return self.wall_forces(points) + pull
 
 
-def layout_of(world_file: Path, floor: Floor) -> Layout:
+def load_layout(world_file: Path, floor: OccupancyGrid) -> ChargeLayout:
     """The layout beside a world file, or the one derived from its walls. Raises WorldError."""
-    file = world_file.parent / FILE
+    file = world_file.parent / LAYOUT_FILE
     return read_layout(file, floor) if file.is_file() else derived_layout(floor)
 
 
-def derived_layout(floor: Floor) -> Layout:
+def derived_layout(floor: OccupancyGrid) -> ChargeLayout:
     """From the walls that the floor is bounded by, with the dissertation's intensities."""
-    charges = derive(floor)
-    return Layout(charges, Intensities(), None, Field.of(charges))
+    charges = derive_charges(floor)
+    return ChargeLayout(charges, Intensities(), None, ChargeField.of(charges))
 
 
-def read_layout(file: Path, floor: Floor | None = None) -> Layout:
+def read_layout(file: Path, floor: OccupancyGrid | None = None) -> ChargeLayout:
     """What a charge file describes; with ``floor`` also whether its charges lie where charges can.
 
     Raises WorldError with all that is wrong.
@@ -103,23 +111,23 @@ def read_layout(file: Path, floor: Floor | None = None) -> Layout:
     charges: tuple[Charge, ...] = ()
     intensities = Intensities()
     if section is not None:
-        intensities = _intensities(section.section("intensities"))
-        ground = None if floor is None else _Ground(floor, floor.faces())
-        charges = tuple(_charges(section.sections("charges"), ground))
+        intensities = _read_intensities(section.section("intensities"))
+        ground = None if floor is None else _WallSurface(floor, floor.faces())
+        charges = tuple(_read_charges(section.sections("charges"), ground))
         section.finish()
     problems.raise_if_any()
-    return Layout(charges, intensities, file, Field.of(charges))
+    return ChargeLayout(charges, intensities, file, ChargeField.of(charges))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Ground:
+class _WallSurface:
     """Where charges may stand."""
 
-    floor: Floor
-    faces: Floats
+    floor: OccupancyGrid
+    faces: FloatArray
 
 
-def _intensities(section: Section) -> Intensities:
+def _read_intensities(section: Section) -> Intensities:
     usual = Intensities()
     read = Intensities(
         walls=section.number("walls", usual.walls),
@@ -133,86 +141,94 @@ def _intensities(section: Section) -> Intensities:
     return read
 
 
-def _charges(sections: Iterable[Section], ground: _Ground | None) -> Iterator[Charge]:
+def _read_charges(sections: Iterable[Section], ground: _WallSurface | None) -> Iterator[Charge]:
     for section in sections:
         times = section.number("times", 1.0)
         if section.has("composite"):
             parts = section.sections("composite", at_least=1)
             handover = section.choice("handover", HANDOVERS, Handover.NEAREST.value)
-            yield _composite(section, parts, times, handover, ground)
+            yield _read_composite(section, parts, times, handover, ground)
         else:
-            charge = _member(section, times, ground)
+            charge = _read_member(section, times, ground)
             if charge is not None:
                 yield charge
         section.finish()
 
 
-def _member(section: Section, times: float, ground: _Ground | None) -> LineCharge | PointCharge | None:
+def _read_member(
+    section: Section, times: float, ground: _WallSurface | None
+) -> LineCharge | PointCharge | None:
     if section.has("line"):
         ax, ay, bx, by = section.numbers("line", length=4)
         line = LineCharge(ax, ay, bx, by, times)
         if line.length == 0:
             section.error("the line has no length: its ends are the same point", "line")
         elif ground is not None:
-            _check_place(section, "line", _along(line), ground)
+            _check_not_in_wall(section, "line", _points_along(line), ground)
         return line
     if section.has("point"):
         point = PointCharge(*section.point("point"), times)
         if ground is not None:
-            _check_place(section, "point", [(point.x, point.y)], ground)
+            _check_not_in_wall(section, "point", [(point.x, point.y)], ground)
         return point
     section.error("a charge is one of: line, point, composite")
     return None
 
 
-def _composite(
-    section: Section, parts: tuple[Section, ...], times: float, handover: Handover, ground: _Ground | None
+def _read_composite(
+    section: Section,
+    parts: tuple[Section, ...],
+    times: float,
+    handover: Handover,
+    ground: _WallSurface | None,
 ) -> CompositeCharge:
     found = []
     for part in parts:
-        found.append(_member(part, times, ground))
+        found.append(_read_member(part, times, ground))
         part.finish()
     lines = tuple(each for each in found if isinstance(each, LineCharge))
     points = tuple(each for each in found if isinstance(each, PointCharge))
-    _check_closed(section, lines, points)
+    _check_corners(section, lines, points)
     return CompositeCharge(lines, points, handover)
 
 
-def _check_closed(section: Section, lines: tuple[LineCharge, ...], points: tuple[PointCharge, ...]) -> None:
+def _check_corners(section: Section, lines: tuple[LineCharge, ...], points: tuple[PointCharge, ...]) -> None:
     """Every line of a composite meets a corner, and where two lines meet there is one: else nothing acts in the
     gap between their strips."""
     corners = [(point.x, point.y) for point in points]
     ends = [end for line in lines for end in line.ends]
     for line in lines:
-        if not any(math.dist(end, corner) <= JOINED for end in line.ends for corner in corners):
+        if not any(math.dist(end, corner) <= SAME_CORNER_DISTANCE for end in line.ends for corner in corners):
             section.error(
-                f"the composite is open: the line {_text(*line.ends[0], *line.ends[1])} ends at none of its "
+                f"the composite is open: the line {_format_numbers(*line.ends[0], *line.ends[1])} ends at none of its "
                 "points. Add the corner as a point, or take the line out",
                 "composite",
             )
     for number, end in enumerate(ends):
-        meets = any(math.dist(end, other) <= JOINED for other in ends[number + 1 :])
-        if meets and not any(math.dist(end, corner) <= JOINED for corner in corners):
+        meets = any(math.dist(end, other) <= SAME_CORNER_DISTANCE for other in ends[number + 1 :])
+        if meets and not any(math.dist(end, corner) <= SAME_CORNER_DISTANCE for corner in corners):
             section.error(
-                f"the composite is open: two lines meet at {_text(*end)}, and no point stands there, so that "
+                f"the composite is open: two lines meet at {_format_numbers(*end)}, and no point stands there, so that "
                 "nothing acts between their strips",
                 "composite",
             )
 
 
-def _check_place(section: Section, key: str, places: list[tuple[float, float]], ground: _Ground) -> None:
+def _check_not_in_wall(
+    section: Section, key: str, places: list[tuple[float, float]], ground: _WallSurface
+) -> None:
     for x, y in places:
         depth = wall_depth(ground.floor, ground.faces, x, y)
-        if depth > DEEPEST:
+        if depth > MAX_WALL_DEPTH:
             section.error(
-                f"the charge lies inside a wall: {_text(x, y)} is {depth:.2f} m behind its face. "
+                f"the charge lies inside a wall: {_format_numbers(x, y)} is {depth:.2f} m behind its face. "
                 "Charges stand on the faces of walls, or in the free space",
                 key,
             )
             return
 
 
-def _along(line: LineCharge) -> list[tuple[float, float]]:
+def _points_along(line: LineCharge) -> list[tuple[float, float]]:
     """Places on a line, its ends not quite."""
     return [
         (line.ax + share * (line.bx - line.ax), line.ay + share * (line.by - line.ay))
@@ -220,5 +236,5 @@ def _along(line: LineCharge) -> list[tuple[float, float]]:
     ]
 
 
-def _text(*numbers: float) -> str:
+def _format_numbers(*numbers: float) -> str:
     return "[" + ", ".join(f"{number:g}" for number in numbers) + "]"

@@ -10,14 +10,14 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.layout import Layout
-from kit.fields.occupancy_grid import Floats, Floor
+from kit.fields.layout import ChargeLayout
+from kit.fields.occupancy_grid import FloatArray, OccupancyGrid
 
-STRIDE: Final = 3
+STEP_CELLS: Final = 3
 """Cells to a step, so that sixteen directions and more are told apart."""
 DOUBLINGS: Final = 14
 """Steps are followed 2 ** DOUBLINGS times: across any map."""
-TOGETHER: Final = 0.2
+TRAP_DISTANCE: Final = 0.2
 """Ends nearer than this [m] are one trap: around its bottom steps go to and fro."""
 
 
@@ -31,24 +31,26 @@ class Trap(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Flow:
+class ForceFlow:
     """Where one ends who follows the forces, from every cell of the floor."""
 
-    floor: Floor
+    floor: OccupancyGrid
     ends: NDArray[np.int64]
     """(rows, columns): the number of the cell; -1 off the floor."""
     target: tuple[float, float]
     radius: float
 
     @classmethod
-    def of(cls, layout: Layout, floor: Floor, target: tuple[float, float], radius: float = 0.25) -> Flow:
+    def of(
+        cls, layout: ChargeLayout, floor: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
+    ) -> ForceFlow:
         """``radius`` [m]: how near to the target counts as there."""
         return cls.following(layout.forces(floor.middles, target), floor, target, radius)
 
     @classmethod
     def following(
-        cls, forces: Floats, floor: Floor, target: tuple[float, float], radius: float = 0.25
-    ) -> Flow:
+        cls, forces: FloatArray, floor: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
+    ) -> ForceFlow:
         """The same for any forces (rows, columns, 2) at the floor's cells.
 
         Every cell points to the one a step along its force; pointing twice as far again and again leads to the end.
@@ -56,7 +58,7 @@ class Flow:
         rows, columns = floor.shape
         here = np.arange(rows * columns).reshape(rows, columns)
         strength = np.hypot(forces[..., 0], forces[..., 1])
-        step = np.rint(STRIDE * forces / np.where(strength > 0, strength, 1.0)[..., None]).astype(int)
+        step = np.rint(STEP_CELLS * forces / np.where(strength > 0, strength, 1.0)[..., None]).astype(int)
         row = np.clip(here // columns + step[..., 1], 0, rows - 1)
         column = np.clip(here % columns + step[..., 0], 0, columns - 1)
         after = row * columns + column
@@ -88,19 +90,19 @@ class Flow:
         elsewhere = np.hypot(*(places - self.target).T) > self.radius + self.floor.cell
         return tuple(
             sorted(
-                (trap for trap in _gathered(places[elsewhere], shares[elsewhere]) if trap.share >= least),
+                (trap for trap in _merge_ends(places[elsewhere], shares[elsewhere]) if trap.share >= least),
                 key=lambda trap: -trap.share,
             )
         )
 
 
-def _gathered(places: Floats, shares: Sequence[float] | Floats) -> list[Trap]:
+def _merge_ends(places: FloatArray, shares: Sequence[float] | FloatArray) -> list[Trap]:
     """Ends that lie together as one, at the middle of those that most leads to."""
     rest = list(range(len(places)))
     traps = []
     while rest:
         first = max(rest, key=lambda number: shares[number])
-        near = [number for number in rest if math.dist(places[number], places[first]) <= TOGETHER]
+        near = [number for number in rest if math.dist(places[number], places[first]) <= TRAP_DISTANCE]
         weights = np.array([shares[number] for number in near])
         x, y = (weights[:, None] * places[near]).sum(axis=0) / weights.sum()
         traps.append(Trap(float(x), float(y), float(weights.sum())))

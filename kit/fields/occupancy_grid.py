@@ -16,48 +16,52 @@ from kit.world.catalogue import allowed_root_of
 from kit.world.loading import load_world
 from kit.world.records import World
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 Cell = tuple[int, int]
 """Row and column."""
 
-CELL: Final = 0.025
+CELL_SIZE: Final = 0.025
 """Side of a cell [m], on maps that are not too large for it."""
-MOST_CELLS: Final = 120_000
+MAX_CELLS: Final = 120_000
 MARGIN: Final = 0.1
 """So much [m] around the walls belongs to the grid."""
-FAR: Final = 0.6
+MAX_CLEARANCE: Final = 0.6
 """Walls farther than this [m] are all alike: nothing that drives here is so large."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Floor:
+class OccupancyGrid:
     """Square cells; ``clearance[row, column]`` [m] is from a cell's middle to the nearest wall, at most FAR."""
 
-    walls: Floats
+    walls: FloatArray
     """(n, 4) ``x1 y1 x2 y2`` [m]"""
     corner: tuple[float, float]
     """The middle of the first cell."""
     cell: float
-    clearance: Floats
-    inside: Flags
+    clearance: FloatArray
+    inside: BoolArray
     """(rows, columns): where something thin gets to from where the models stand."""
 
     @classmethod
-    def of(cls, walls: Floats, starts: Iterable[tuple[float, float]]) -> Floor:
+    def of(cls, walls: FloatArray, starts: Iterable[tuple[float, float]]) -> OccupancyGrid:
         """The floor between walls (n, 4), n > 0, on which ``starts`` lie."""
         ends = walls.reshape(-1, 2)
         low, high = ends.min(axis=0) - MARGIN, ends.max(axis=0) + MARGIN
         width, height = (high - low).tolist()
-        cell = max(CELL, math.sqrt(width * height / MOST_CELLS))
+        cell = max(CELL_SIZE, math.sqrt(width * height / MAX_CELLS))
         shape = math.ceil(height / cell) + 1, math.ceil(width / cell) + 1
-        clearance = np.full(shape, FAR)
+        clearance = np.full(shape, MAX_CLEARANCE)
         x, y = low[0] + cell * np.arange(shape[1]), low[1] + cell * np.arange(shape[0])
         for ax, ay, bx, by in walls.tolist():
-            columns = _span(min(ax, bx) - FAR, max(ax, bx) + FAR, low[0], cell, shape[1])
-            rows = _span(min(ay, by) - FAR, max(ay, by) + FAR, low[1], cell, shape[0])
+            columns = _index_range(
+                min(ax, bx) - MAX_CLEARANCE, max(ax, bx) + MAX_CLEARANCE, low[0], cell, shape[1]
+            )
+            rows = _index_range(
+                min(ay, by) - MAX_CLEARANCE, max(ay, by) + MAX_CLEARANCE, low[1], cell, shape[0]
+            )
             near = clearance[rows, columns]
-            np.minimum(near, _distance(x[columns], y[rows], ax, ay, bx, by), out=near)
+            np.minimum(near, _segment_distance(x[columns], y[rows], ax, ay, bx, by), out=near)
         floor = cls(walls, (float(low[0]), float(low[1])), cell, clearance, np.zeros(shape, dtype=np.bool_))
         for start in starts:
             if not floor.inside[floor.cell_at(*start)]:
@@ -70,13 +74,13 @@ class Floor:
         return rows, columns
 
     @property
-    def middles(self) -> Floats:
+    def middles(self) -> FloatArray:
         """(rows, columns, 2): the cells' places."""
         rows, columns = self.shape
         x, y = (self.corner[0] + self.cell * np.arange(columns), self.corner[1] + self.cell * np.arange(rows))
         return np.stack(np.meshgrid(x, y), axis=-1)
 
-    def faces(self) -> Floats:
+    def faces(self) -> FloatArray:
         """(m, 4): the walls that have the inside on one of their sides, each once."""
         return np.array(
             [wall for wall in np.unique(self.walls, axis=0).tolist() if self._looks_inside(wall)]
@@ -106,7 +110,7 @@ class Floor:
     def middle(self, cell: Cell) -> tuple[float, float]:
         return self.corner[0] + self.cell * cell[1], self.corner[1] + self.cell * cell[0]
 
-    def reached(self, start: tuple[float, float], radius: float) -> Flags:
+    def reached(self, start: tuple[float, float], radius: float) -> BoolArray:
         """(rows, columns): where a disc of that radius [m] gets to from ``start``."""
         # Nothing slips through a wall where cells that it crosses are blocked.
         free = self.clearance > max(radius, self.cell * 0.75)
@@ -125,7 +129,7 @@ class Floor:
 
     def widest_way(self, start: tuple[float, float], goal: tuple[float, float]) -> float:
         """The radius [m] of the largest disc that gets from start to goal; 0 if not even the smallest does."""
-        low, high = 0.0, FAR
+        low, high = 0.0, MAX_CLEARANCE
         for _ in range(8):
             middle = 0.5 * (low + high)
             if self.reached(start, middle)[self.cell_at(*goal)]:
@@ -135,21 +139,21 @@ class Floor:
         return low if low > self.cell else 0.0
 
 
-def open_floor(world_file: Path) -> tuple[World, Floor]:
+def load_occupancy_grid(world_file: Path) -> tuple[World, OccupancyGrid]:
     """A world with its floor. Raises WorldError, and ValueError if it has no walls."""
     world = load_world(world_file, root=allowed_root_of(world_file))
-    return world, floor_of(world)
+    return world, occupancy_grid_of(world)
 
 
-def floor_of(world: World) -> Floor:
+def occupancy_grid_of(world: World) -> OccupancyGrid:
     """Raises ValueError if the world has no walls."""
     walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
     if not walls or not sum(map(len, walls)):
         raise ValueError(f"{world.file}: a world without walls has no floor to drive on.")
-    return Floor.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
+    return OccupancyGrid.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
 
 
-def wall_depth(floor: Floor, faces: Floats, x: float, y: float) -> float:
+def wall_depth(floor: OccupancyGrid, faces: FloatArray, x: float, y: float) -> float:
     """How far [m] a place lies behind the nearest of the floor's ``faces``; 0 before it, or on it."""
     if floor.inside[floor.cell_at(x, y)] or not len(faces):
         return 0.0
@@ -170,11 +174,11 @@ def wall_depth(floor: Floor, faces: Floats, x: float, y: float) -> float:
     return 0.0 if floor.inside[floor.cell_at(*before)] else depth
 
 
-def _span(low: float, high: float, origin: float, cell: float, count: int) -> slice:
+def _index_range(low: float, high: float, origin: float, cell: float, count: int) -> slice:
     return slice(max(0, math.floor((low - origin) / cell)), min(count, math.ceil((high - origin) / cell) + 1))
 
 
-def _distance(x: Floats, y: Floats, ax: float, ay: float, bx: float, by: float) -> Floats:
+def _segment_distance(x: FloatArray, y: FloatArray, ax: float, ay: float, bx: float, by: float) -> FloatArray:
     """(rows, columns): from the grid ``x``, ``y`` to a segment."""
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy

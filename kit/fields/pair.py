@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kit.fields.charges import PointCharge, TensionPoint
-from kit.fields.layout import Layout
+from kit.fields.layout import ChargeLayout
 from kit.geometry import Pose, wrap_angle
 
 Vector = tuple[float, float]
@@ -37,7 +37,7 @@ class PairSettings:
     """m: how far ahead of the middle the middle should be, at most."""
 
 
-class Command(NamedTuple):
+class VelocityCommand(NamedTuple):
     """m/s and rad/s."""
 
     forward: float
@@ -45,7 +45,7 @@ class Command(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class PairControl:
     """What the controller makes of two robots' poses, with the steps between."""
 
     middle: Vector
@@ -55,32 +55,34 @@ class Decision:
     """Where each robot should be."""
     forces: tuple[Vector, ...]
     """N: on each robot."""
-    commands: tuple[Command, ...]
+    commands: tuple[VelocityCommand, ...]
 
 
-def decide(
-    poses: Sequence[Pose], target: Vector, layout: Layout, settings: PairSettings = PairSettings()
-) -> Decision:
+def control_step(
+    poses: Sequence[Pose], target: Vector, layout: ChargeLayout, settings: PairSettings = PairSettings()
+) -> PairControl:
     """One step of the controller for the left and the right robot, or for one alone."""
     middle = (
         math.fsum(pose.x for pose in poses) / len(poses),
         math.fsum(pose.y for pose in poses) / len(poses),
     )
-    force = _vector(layout.forces(middle, target))
+    force = _as_vector(layout.forces(middle, target))
     if len(poses) == 1:
-        return Decision(middle, force, (target,), (force,), commands(poses, (force,), settings))
-    targets = _targets(middle, force, settings)
+        return PairControl(middle, force, (target,), (force,), drive_commands(poses, (force,), settings))
+    targets = _robot_targets(middle, force, settings)
     walls = layout.wall_forces([pose[:2] for pose in poses])
     forces = []
     for number, pose in enumerate(poses):
         other = poses[1 - number]
         tension = TensionPoint(*targets[number], layout.intensities.tension).force(pose[:2])
         push = PointCharge(other.x, other.y, layout.intensities.robot).force(pose[:2])
-        forces.append(_vector(walls[number] + tension + push))
-    return Decision(middle, force, targets, tuple(forces), commands(poses, forces, settings))
+        forces.append(_as_vector(walls[number] + tension + push))
+    return PairControl(middle, force, targets, tuple(forces), drive_commands(poses, forces, settings))
 
 
-def commands(poses: Sequence[Pose], forces: Sequence[Vector], settings: PairSettings) -> tuple[Command, ...]:
+def drive_commands(
+    poses: Sequence[Pose], forces: Sequence[Vector], settings: PairSettings
+) -> tuple[VelocityCommand, ...]:
     """Turn first, then drive: nobody drives before all face along their forces. The stronger force drives at full
     speed, the other in proportion (equations 4.14, 4.15)."""
     errors = [
@@ -90,15 +92,15 @@ def commands(poses: Sequence[Pose], forces: Sequence[Vector], settings: PairSett
     if any(abs(error) > settings.tolerance for error in errors):
         turns = [settings.turn_gain * error if abs(error) > settings.tolerance else 0.0 for error in errors]
         most = settings.turn_rate
-        return tuple(Command(0.0, min(max(turn, -most), most)) for turn in turns)
+        return tuple(VelocityCommand(0.0, min(max(turn, -most), most)) for turn in turns)
     strengths = [math.hypot(*force) for force in forces]
     strongest = max(strengths)
     if strongest == 0.0:
-        return tuple(Command(0.0, 0.0) for _ in poses)
-    return tuple(Command(settings.speed * strength / strongest, 0.0) for strength in strengths)
+        return tuple(VelocityCommand(0.0, 0.0) for _ in poses)
+    return tuple(VelocityCommand(settings.speed * strength / strongest, 0.0) for strength in strengths)
 
 
-def _targets(middle: Vector, force: Vector, settings: PairSettings) -> tuple[Vector, Vector]:
+def _robot_targets(middle: Vector, force: Vector, settings: PairSettings) -> tuple[Vector, Vector]:
     """Left and right of a point ahead of the middle, along the force."""
     strength = math.hypot(*force)
     ahead = (force[0] / strength, force[1] / strength) if strength else (0.0, 0.0)
@@ -108,5 +110,5 @@ def _targets(middle: Vector, force: Vector, settings: PairSettings) -> tuple[Vec
     return (x + aside[0], y + aside[1]), (x - aside[0], y - aside[1])
 
 
-def _vector(force: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Vector:
+def _as_vector(force: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Vector:
     return float(force[0]), float(force[1])

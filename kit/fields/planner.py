@@ -15,29 +15,29 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.occupancy_grid import FAR, Cell, Floats, Floor
+from kit.fields.occupancy_grid import MAX_CLEARANCE, Cell, FloatArray, OccupancyGrid
 
-ROOM: Final = 0.15
+COMFORTABLE_ROOM: Final = 0.15
 """More room than this [m] on either side costs nothing less."""
-DEAREST: Final = 8.0
+MAX_PRICE: Final = 8.0
 """What a metre costs, beside a metre with all that room, where there is none."""
-SPACING: Final = 0.03
+POINT_SPACING: Final = 0.03
 """m between the points of a way."""
-MOST_POINTS: Final = 600
+MAX_POINTS: Final = 600
 """Of a way; longer ones have them farther apart."""
-ROUNDS: Final = 300
+SMOOTHING_ROUNDS: Final = 300
 """Of bending a way straighter."""
 STIFFNESSES: Final = (1500.0, 300.0, 60.0, 8.0)
 """The stiffest way that fits is taken. So stiff a way turns within (stiffness / 0.05) ** 0.25 points or so."""
 TENSION: Final = 0.2
-PUSH: Final = 0.02
+WALL_PUSH: Final = 0.02
 """How far walls that are too near push a way in one round [m]."""
-STRAIGHT_START: Final = 3
+STRAIGHT_START_POINTS: Final = 3
 """So many points of a way lie straight ahead of where it starts, if the heading is given."""
-ENDS: Final = 0.3
+END_RADIUS: Final = 0.3
 """So near [m] to its ends a way may pass where its width does not fit, if only its length does."""
 
-BESIDE: Final = tuple(
+NEIGHBOURS: Final = tuple(
     (row, column, math.hypot(row, column)) for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column
 )
 
@@ -47,7 +47,7 @@ class Unreachable(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Size:
+class VehicleSize:
     """Of what drives."""
 
     radius: float
@@ -60,21 +60,23 @@ class Size:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ways:
+class CostToGo:
     """The least cost to one target from every cell, for something of some size; inf where no way leads."""
 
-    floor: Floor
+    floor: OccupancyGrid
     target: tuple[float, float]
-    size: Size
-    cost: Floats
+    size: VehicleSize
+    cost: FloatArray
     """(rows, columns): metres, dearer ones near walls counted for more."""
     after: NDArray[np.int32]
     """(rows, columns): the number of the next cell on the way; the target's is its own."""
 
     @classmethod
-    def to(cls, floor: Floor, target: tuple[float, float], size: Size, start: tuple[float, float]) -> Ways:
+    def to(
+        cls, floor: OccupancyGrid, target: tuple[float, float], size: VehicleSize, start: tuple[float, float]
+    ) -> CostToGo:
         """``start``: where it stands now, and so fits."""
-        price = _price(floor, size, (start, target)).tolist()
+        price = _travel_price(floor, size, (start, target)).tolist()
         rows, columns = floor.shape
         cost = [math.inf] * (rows * columns)
         after = np.full((rows, columns), -1, dtype=np.int32)
@@ -90,7 +92,7 @@ class Ways:
                 continue
             row, column = divmod(number, columns)
             here = price[row][column]
-            for down, right, length in BESIDE:
+            for down, right, length in NEIGHBOURS:
                 y, x = row + down, column + right
                 if not (0 <= y < rows and 0 <= x < columns):
                     continue
@@ -101,14 +103,14 @@ class Ways:
                     heapq.heappush(waiting, (through, y * columns + x))
         return cls(floor, target, size, np.array(cost).reshape(rows, columns), after)
 
-    def directions(self) -> Floats:
+    def directions(self) -> FloatArray:
         """(rows, columns, 2): the unit vector from each cell to the next; zero where no way leads on."""
         rows, columns = self.floor.shape
         here = np.arange(rows * columns).reshape(rows, columns)
         there = np.where(self.after >= 0, self.after, here)
         step = np.stack((there % columns - here % columns, there // columns - here // columns), axis=-1)
         length = np.hypot(step[..., 0], step[..., 1])[..., None]
-        unit: Floats = step / np.where(length > 0, length, 1.0)
+        unit: FloatArray = step / np.where(length > 0, length, 1.0)
         return unit
 
     def check(self, start: tuple[float, float]) -> None:
@@ -130,7 +132,7 @@ class Ways:
             f"where it is narrowest, the widest leaves {2 * widest:.2f} m."
         )
 
-    def way(self, start: tuple[float, float], heading: float | None = None) -> Floats:
+    def way(self, start: tuple[float, float], heading: float | None = None) -> FloatArray:
         """(k, 2): a smooth way from ``start`` to the target, evenly spaced; at first along ``heading`` [rad].
 
         Call ``check`` first.
@@ -142,28 +144,30 @@ class Ways:
             cell = divmod(number, columns)
             cells.append(cell)
         corners = np.array([start, *(self.floor.middle(each) for each in cells[1:-1]), self.target])
-        spacing = max(SPACING, float(np.hypot(*np.diff(corners, axis=0).T).sum()) / MOST_POINTS)
-        rough = evenly(corners, spacing)
-        if len(rough) <= STRAIGHT_START + 2:
+        spacing = max(POINT_SPACING, float(np.hypot(*np.diff(corners, axis=0).T).sum()) / MAX_POINTS)
+        rough = resample_path(corners, spacing)
+        if len(rough) <= STRAIGHT_START_POINTS + 2:
             return rough
         fixed = 1
         if heading is not None:
-            fixed = STRAIGHT_START
+            fixed = STRAIGHT_START_POINTS
             ahead = start + spacing * np.outer(range(fixed), (math.cos(heading), math.sin(heading)))
-            rough = np.concatenate((ahead, evenly(rough[fixed:], spacing)))
+            rough = np.concatenate((ahead, resample_path(rough[fixed:], spacing)))
         for stiffness in STIFFNESSES:
-            way = evenly(self._bent(rough, fixed, stiffness), spacing)
+            way = resample_path(self._bent(rough, fixed, stiffness), spacing)
             if self._fits(way):
                 return way
         return rough
 
-    def _fits(self, way: Floats) -> bool:
+    def _fits(self, way: FloatArray) -> bool:
         """Whether all along the way there is as much room as it was planned with."""
-        near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < ENDS
+        near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < END_RADIUS
         needed = np.where(near_end, self.size.shortest, self.size.radius)
-        return bool((sampled(self.floor, self.floor.clearance, way) >= needed - 0.5 * self.floor.cell).all())
+        return bool(
+            (interpolate_grid(self.floor, self.floor.clearance, way) >= needed - 0.5 * self.floor.cell).all()
+        )
 
-    def _bent(self, rough: Floats, fixed: int, stiffness: float) -> Floats:
+    def _bent(self, rough: FloatArray, fixed: int, stiffness: float) -> FloatArray:
         """The way as an elastic band: stiffness straightens it, walls that are too near push it away.
 
         Solved as an active contour (Kass, Witkin and Terzopoulos, 1988): implicit in the band's own forces,
@@ -177,28 +181,28 @@ class Ways:
         held[free] = False
         inverse = np.linalg.inv(np.eye(size)[free, free] + own[free, free])
         from_held = own[free][:, held] @ way[held]
-        wanted = min(self.size.radius + ROOM, FAR - self.floor.cell)
+        wanted = min(self.size.radius + COMFORTABLE_ROOM, MAX_CLEARANCE - self.floor.cell)
         slopes = np.gradient(self.floor.clearance, self.floor.cell)
-        for _ in range(ROUNDS):
+        for _ in range(SMOOTHING_ROUNDS):
             some = way[free]
-            lack = np.clip(1.0 - sampled(self.floor, self.floor.clearance, some) / wanted, 0.0, 1.0)
-            away = np.column_stack([sampled(self.floor, slope, some) for slope in slopes[::-1]])
-            way[free] = inverse @ (some + PUSH * lack[:, None] * away - from_held)
+            lack = np.clip(1.0 - interpolate_grid(self.floor, self.floor.clearance, some) / wanted, 0.0, 1.0)
+            away = np.column_stack([interpolate_grid(self.floor, slope, some) for slope in slopes[::-1]])
+            way[free] = inverse @ (some + WALL_PUSH * lack[:, None] * away - from_held)
         return way
 
 
-def _price(floor: Floor, size: Size, ends: Iterable[tuple[float, float]]) -> Floats:
+def _travel_price(floor: OccupancyGrid, size: VehicleSize, ends: Iterable[tuple[float, float]]) -> FloatArray:
     """(rows, columns): what a metre costs there; inf where it does not fit."""
-    lack = np.clip(1.0 - (floor.clearance - size.radius) / ROOM, 0.0, 1.0)
-    price: Floats = 1.0 + (DEAREST - 1.0) * lack**2
+    lack = np.clip(1.0 - (floor.clearance - size.radius) / COMFORTABLE_ROOM, 0.0, 1.0)
+    price: FloatArray = 1.0 + (MAX_PRICE - 1.0) * lack**2
     needed = np.full(floor.shape, size.radius)
     for end in ends:
-        needed[np.hypot(*np.moveaxis(floor.middles - end, -1, 0)) < ENDS] = size.shortest
+        needed[np.hypot(*np.moveaxis(floor.middles - end, -1, 0)) < END_RADIUS] = size.shortest
     price[(floor.clearance < np.maximum(needed, 0.75 * floor.cell)) | ~floor.inside] = math.inf
     return price
 
 
-def sampled(floor: Floor, values: Floats, places: Floats) -> Floats:
+def interpolate_grid(floor: OccupancyGrid, values: FloatArray, places: FloatArray) -> FloatArray:
     """(k): a grid's values at places (k, 2), between the four nearest cells."""
     rows, columns = values.shape
     u = np.clip((places[:, 0] - floor.corner[0]) / floor.cell, 0.0, columns - 1.001)
@@ -207,11 +211,11 @@ def sampled(floor: Floor, values: Floats, places: Floats) -> Floats:
     u, v = u - column, v - row
     below = (1 - u) * values[row, column] + u * values[row, column + 1]
     above = (1 - u) * values[row + 1, column] + u * values[row + 1, column + 1]
-    found: Floats = (1 - v) * below + v * above
+    found: FloatArray = (1 - v) * below + v * above
     return found
 
 
-def evenly(way: Floats, spacing: float) -> Floats:
+def resample_path(way: FloatArray, spacing: float) -> FloatArray:
     """The same way with points at even distances, about ``spacing`` [m]; its ends stay."""
     steps = np.hypot(*np.diff(way, axis=0).T)
     kept = np.concatenate(([True], steps > 1e-9))

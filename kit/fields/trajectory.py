@@ -10,18 +10,18 @@ from typing import Final
 
 import numpy as np
 
-from kit.fields.occupancy_grid import Floats
-from kit.fields.pair import Command
+from kit.fields.occupancy_grid import FloatArray
+from kit.fields.pair import VelocityCommand
 from kit.geometry import Pose, wrap_angle
 
-TICK: Final = 0.1
+STEP_S: Final = 0.1
 """s: as often as odometry comes."""
-ALIGNED: Final = 0.05
+ALIGNMENT_TOLERANCE: Final = 0.05
 """A robot no farther off its place [m] and heading [rad] need not line up first."""
 
 
 @dataclass(frozen=True, slots=True)
-class Comfort:
+class ComfortLimits:
     """What a passenger bears, in a chair a quarter as large as a real one."""
 
     speed: float = 0.3
@@ -40,7 +40,7 @@ class Comfort:
 
 
 @dataclass(frozen=True, slots=True)
-class Gains:
+class TrackingGains:
     """Of following a moving reference (Kanayama and others, IROS 1990, equation 11)."""
 
     along: float = 1.0
@@ -54,25 +54,25 @@ class Gains:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ride:
+class Trajectory:
     """Where each robot should be at every tick."""
 
-    poses: Floats
+    poses: FloatArray
     """(ticks, robots, 3) ``x y theta``"""
 
     @property
     def seconds(self) -> float:
-        return (len(self.poses) - 1) * TICK
+        return (len(self.poses) - 1) * STEP_S
 
-    def tracks(self) -> tuple[Floats, ...]:
+    def tracks(self) -> tuple[FloatArray, ...]:
         """One (ticks, 2) for each robot."""
         return tuple(self.poses[:, robot, :2] for robot in range(self.poses.shape[1]))
 
 
-class Follower:
+class TrajectoryTracker:
     """Keeps robots on a ride. Nobody is left behind: the ride's clock waits for whoever is not at its place."""
 
-    def __init__(self, ride: Ride, gains: Gains = Gains()) -> None:
+    def __init__(self, ride: Trajectory, gains: TrackingGains = TrackingGains()) -> None:
         self._ride = ride
         self._gains = gains
         self.tick = 0
@@ -81,7 +81,7 @@ class Follower:
     def is_over(self) -> bool:
         return self.tick >= len(self._ride.poses) - 1
 
-    def commands(self, poses: Sequence[Pose]) -> tuple[Command, ...]:
+    def commands(self, poses: Sequence[Pose]) -> tuple[VelocityCommand, ...]:
         """For the tick that begins now, with the robots where they are."""
         here = [Pose(*place) for place in self._ride.poses[self.tick].tolist()]
         late = max(math.dist(pose[:2], place[:2]) for pose, place in zip(poses, here, strict=True))
@@ -90,38 +90,40 @@ class Follower:
         self.tick += moves
         return tuple(self._command(pose, *places) for pose, *places in zip(poses, here, there, strict=True))
 
-    def _command(self, pose: Pose, here: Pose, there: Pose) -> Command:
-        forward, turn = twist_between(here, there, TICK)
+    def _command(self, pose: Pose, here: Pose, there: Pose) -> VelocityCommand:
+        forward, turn = twist_between(here, there, STEP_S)
         error = pose.relative(here)
         heading = wrap_angle(error.theta)
         gains = self._gains
-        return Command(
+        return VelocityCommand(
             forward * math.cos(heading) + gains.along * error.x,
             turn + gains.aside * forward * error.y + gains.heading * math.sin(heading),
         )
 
 
-def plan_ride(way: Floats, robots: Sequence[Pose], gap: float, limits: Comfort = Comfort()) -> Ride:
+def plan_trajectory(
+    way: FloatArray, robots: Sequence[Pose], gap: float, limits: ComfortLimits = ComfortLimits()
+) -> Trajectory:
     """Along a way (k, 2), one robot on it or two beside it, the left one first, ``gap`` [m] apart.
 
     Robots that do not stand where it begins, or do not face along it, first turn and drive there, one turn, one
     straight, one turn.
     """
     offsets = [0.0] if len(robots) == 1 else [gap / 2, -gap / 2]
-    middle = _timed(way, max(offsets), limits)
-    together = np.stack([_beside(middle, offset) for offset in offsets], axis=1)
+    middle = _time_path(way, max(offsets), limits)
+    together = np.stack([_offset_path(middle, offset) for offset in offsets], axis=1)
     first = [Pose(*place) for place in together[0].tolist()]
     lines = [_line_up(robot, place, limits) for robot, place in zip(robots, first, strict=True)]
     longest = max(map(len, lines))
     if longest == 1:
-        return Ride(together)
+        return Trajectory(together)
     lined = np.stack(
         [np.concatenate([line, np.repeat(line[-1:], longest - len(line), axis=0)]) for line in lines], axis=1
     )
-    return Ride(np.concatenate((lined, together[1:])))
+    return Trajectory(np.concatenate((lined, together[1:])))
 
 
-def _timed(way: Floats, aside: float, limits: Comfort) -> Floats:
+def _time_path(way: FloatArray, aside: float, limits: ComfortLimits) -> FloatArray:
     """(ticks, 3): poses along the way at each tick, for something that reaches ``aside`` [m] to both sides."""
     steps = np.diff(way, axis=0)
     along = np.concatenate(([0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))))
@@ -140,12 +142,12 @@ def _timed(way: Floats, aside: float, limits: Comfort) -> Floats:
             np.sqrt(limits.turn_acceleration / (change + small)),
         ]
     )
-    speeds = _ramped(along, speed, limits.acceleration / wider)
-    at = _eased(along, speeds, limits.easing)
+    speeds = _limit_acceleration(along, speed, limits.acceleration / wider)
+    at = _smooth_speed(along, speeds, limits.easing)
     return np.column_stack([np.interp(at, along, values) for values in (way[:, 0], way[:, 1], heading)])
 
 
-def _ramped(along: Floats, most: Floats, acceleration: Floats) -> Floats:
+def _limit_acceleration(along: FloatArray, most: FloatArray, acceleration: FloatArray) -> FloatArray:
     """Speeds that begin and end at rest, below ``most``, and change by no more than the acceleration allows."""
     speeds: list[float] = most.tolist()
     speeds[0] = speeds[-1] = 0.0
@@ -157,62 +159,62 @@ def _ramped(along: Floats, most: Floats, acceleration: Floats) -> Floats:
     return np.array(speeds)
 
 
-def _eased(along: Floats, speeds: Floats, easing: float) -> Floats:
+def _smooth_speed(along: FloatArray, speeds: FloatArray, easing: float) -> FloatArray:
     """Where along the way one is at each tick. Speed over time is averaged over ``easing``, which leaves the way as
     long as it is and takes the corners off the acceleration."""
     length = np.diff(along)
     mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), 1e-3)
     times = np.concatenate(([0.0], np.cumsum(length / mean)))
-    window = max(1, round(easing / TICK))
-    ticks = np.arange(0.0, times[-1] + TICK, TICK)
+    window = max(1, round(easing / STEP_S))
+    ticks = np.arange(0.0, times[-1] + STEP_S, STEP_S)
     at = np.interp(ticks, times, along)
     padded = np.concatenate((np.zeros(window), at, np.full(window, along[-1])))
     return np.convolve(padded, np.ones(window) / window, mode="valid")
 
 
-def _beside(middle: Floats, offset: float) -> Floats:
+def _offset_path(middle: FloatArray, offset: float) -> FloatArray:
     """(ticks, 3): to the left of the way by ``offset`` [m]."""
     x, y, theta = middle.T
     return np.column_stack((x - offset * np.sin(theta), y + offset * np.cos(theta), theta))
 
 
-def _line_up(robot: Pose, place: Pose, limits: Comfort) -> Floats:
+def _line_up(robot: Pose, place: Pose, limits: ComfortLimits) -> FloatArray:
     """(ticks, 3): a turn, a straight, a turn; one row alone where none is needed."""
     poses = [tuple(robot)]
     away = math.dist(robot[:2], place[:2])
     heading = robot.theta
-    if away > ALIGNED:
+    if away > ALIGNMENT_TOLERANCE:
         towards = math.atan2(place.y - robot.y, place.x - robot.x)
-        poses += _turned(poses[-1], towards, limits)
+        poses += _turn_on_spot(poses[-1], towards, limits)
         x, y, heading = poses[-1]
-        for way in _straight(away, limits.speed, limits.acceleration, limits.easing):
+        for way in _rest_to_rest(away, limits.speed, limits.acceleration, limits.easing):
             poses.append((x + way * math.cos(towards), y + way * math.sin(towards), heading))
-    if abs(wrap_angle(place.theta - heading)) > ALIGNED:
-        poses += _turned(poses[-1], place.theta, limits)
+    if abs(wrap_angle(place.theta - heading)) > ALIGNMENT_TOLERANCE:
+        poses += _turn_on_spot(poses[-1], place.theta, limits)
     return np.array(poses)
 
 
-def _turned(pose: tuple[float, ...], to: float, limits: Comfort) -> list[tuple[float, ...]]:
+def _turn_on_spot(pose: tuple[float, ...], to: float, limits: ComfortLimits) -> list[tuple[float, ...]]:
     """On the spot, to a heading."""
     x, y, theta = pose
     angle = wrap_angle(to - theta)
     sign = math.copysign(1.0, angle)
-    turns = _straight(abs(angle), limits.turn_rate, limits.turn_acceleration, limits.easing)
+    turns = _rest_to_rest(abs(angle), limits.turn_rate, limits.turn_acceleration, limits.easing)
     return [(x, y, theta + sign * turn) for turn in turns]
 
 
-def _straight(length: float, speed: float, acceleration: float, easing: float) -> list[float]:
+def _rest_to_rest(length: float, speed: float, acceleration: float, easing: float) -> list[float]:
     """How far one is at each tick after the first, from rest to rest."""
     along = np.linspace(0.0, length, 50)
-    speeds = _ramped(along, np.full(50, speed), np.full(50, acceleration))
-    return [float(way) for way in _eased(along, speeds, easing)[1:]]
+    speeds = _limit_acceleration(along, np.full(50, speed), np.full(50, acceleration))
+    return [float(way) for way in _smooth_speed(along, speeds, easing)[1:]]
 
 
-def twist_between(here: Pose, there: Pose, seconds: float) -> Command:
+def twist_between(here: Pose, there: Pose, seconds: float) -> VelocityCommand:
     """The constant twist that leads from one pose to the other, or nearly: along the arc over their chord."""
     step = here.relative(there)
     half = 0.5 * wrap_angle(step.theta)
     stretch = half / math.sin(half) if abs(half) > 1e-9 else 1.0
-    return Command(
+    return VelocityCommand(
         math.copysign(math.hypot(step.x, step.y), step.x) * stretch / seconds, 2.0 * half / seconds
     )

@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from kit.fields.charges import LineCharge, PointCharge, members
-from kit.fields.controller_setup import Course
+from kit.fields.charges import LineCharge, PointCharge, iter_members
+from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import Intensities
-from kit.fields.minima import Flow, Trap
-from kit.fields.pair import Decision, decide
+from kit.fields.minima import ForceFlow, Trap
+from kit.fields.pair import PairControl, control_step
 from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.scene import FloatArray, Mark, Path, Scene
@@ -31,7 +31,7 @@ FORCE_LENGTH: Final = 0.25
 class FieldPicture:
     """The field of one course, in pictures. Another intensity scales what was computed once."""
 
-    def __init__(self, course: Course) -> None:
+    def __init__(self, course: ControllerSetup) -> None:
         self._course = course
         places = course.floor.middles
         self._walls = course.layout.field.forces(places)
@@ -40,7 +40,7 @@ class FieldPicture:
         self.intensities = course.layout.intensities
 
     @property
-    def course(self) -> Course:
+    def course(self) -> ControllerSetup:
         """With the intensities as they are now."""
         return replace(self._course, layout=self._course.layout.with_intensities(self.intensities))
 
@@ -53,7 +53,7 @@ class FieldPicture:
     def traps(self) -> tuple[Trap, ...]:
         """Where the forces lead, but for the target."""
         course = self._course
-        return Flow.following(self.forces, course.floor, course.target, course.target_radius).traps()
+        return ForceFlow.following(self.forces, course.floor, course.target, course.target_radius).traps()
 
     def directions(self, start: tuple[float, float]) -> FloatArray:
         """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""
@@ -78,18 +78,18 @@ class FieldPicture:
 
     def marks(self, traps: Sequence[Trap]) -> tuple[Mark, ...]:
         """Charges and traps."""
-        places = [_middle(charge) for charge in members(self._course.layout.charges)]
+        places = [_middle(charge) for charge in iter_members(self._course.layout.charges)]
         return (
             *(Mark(x, y, CHARGE) for x, y in places),
             *(Mark(trap.x, trap.y, TRAP) for trap in traps),
         )
 
-    def decision(self, poses: Sequence[Pose]) -> Decision:
+    def decision(self, poses: Sequence[Pose]) -> PairControl:
         """What the potential fields' controller makes of the robots where they are."""
-        return decide(poses, self._course.target, self.course.layout)
+        return control_step(poses, self._course.target, self.course.layout)
 
 
-def force_lines(decision: Decision, poses: Sequence[Pose]) -> tuple[Path, ...]:
+def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[Path, ...]:
     """From each robot along the force on it, and from the middle along its own."""
     starts = [*(pose[:2] for pose in poses), *([decision.middle] if len(poses) > 1 else [])]
     forces = [*decision.forces, *([decision.middle_force] if len(poses) > 1 else [])]

@@ -20,17 +20,17 @@ from kit.school.report.expertise import WAYS
 from kit.school.report.inference import summary
 from kit.school.report.measures import Measure, Quiz
 from kit.school.survey.questions import Phase, Purpose
-from kit.study.evaluation_data import Printed, Study
+from kit.study.evaluation_data import EvaluationData, PrintedTable
 
-Grid = dict[str, tuple[float, ...]]
+TableRows = dict[str, tuple[float, ...]]
 """The numbers of a table by the labels of its rows."""
 
-HALF_A_DIGIT: Final = 0.005 + 1e-9
+ROUNDING_TOLERANCE: Final = 0.005 + 1e-9
 """A number printed with two decimals lies no farther from what was computed."""
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class PrintDifference:
     """A printed number that the raw answers do not give."""
 
     table: str
@@ -40,7 +40,7 @@ class Difference:
     ours: float
 
 
-def setting_of(study: Study) -> Setting:
+def setting_of(study: EvaluationData) -> Setting:
     """The dissertation's subjects as a class, divided at the mean score."""
     names = tuple(f"subject {number}" for number in range(1, study.subjects + 1))
     data = ClassData(
@@ -57,55 +57,55 @@ def setting_of(study: Study) -> Setting:
     return set_up(data)
 
 
-def recompute(study: Study) -> Mapping[str, Grid]:
+def recompute_tables(study: EvaluationData) -> Mapping[str, TableRows]:
     """Every printed table from the raw answers, by its number."""
     setting = setting_of(study)
     return {printed.id: _TABLES[printed.id](setting) for printed in study.printed}
 
 
-def differences(study: Study) -> tuple[Difference, ...]:
+def print_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
     """All numbers that differ by more than rounding, known slips and others."""
-    ours = recompute(study)
+    ours = recompute_tables(study)
     return tuple(
-        Difference(table.id, row, column, printed, computed)
+        PrintDifference(table.id, row, column, printed, computed)
         for table in study.printed
         for row, numbers in table.rows.items()
         for column, printed, computed in zip(table.columns, numbers, ours[table.id][row], strict=True)
-        if abs(printed - computed) > HALF_A_DIGIT
+        if abs(printed - computed) > ROUNDING_TOLERANCE
     )
 
 
-def unexplained(study: Study) -> tuple[Difference, ...]:
+def unexplained_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
     """Those that are not known as slips, or are known with another value."""
     known = {(slip.table, cell.row, cell.column): cell.ours for slip in study.slips for cell in slip.cells}
     return tuple(
         each
-        for each in differences(study)
-        if abs(known.get((each.table, each.row, each.column), np.inf) - each.ours) > HALF_A_DIGIT
+        for each in print_differences(study)
+        if abs(known.get((each.table, each.row, each.column), np.inf) - each.ours) > ROUNDING_TOLERANCE
     )
 
 
-def order_of_scores(setting: Setting) -> list[int]:
+def score_order(setting: Setting) -> list[int]:
     """The subjects, from 0, in the order of Table 5.4: the highest score first."""
     assert setting.score is not None  # everybody rated the six topics
     return [int(i) for i in np.argsort(-setting.score, kind="stable")]
 
 
-def _scores(setting: Setting) -> Grid:
+def _score_table(setting: Setting) -> TableRows:
     """Table 5.4. An expert is 1, a beginner 0."""
     assert setting.score is not None
     found = {each.id: each.experts.members for each in setting.divisions}
     return {
         str(place): (float(setting.score[i]), *(float(found[way][i]) for way in WAYS))
-        for place, i in enumerate(order_of_scores(setting), 1)
+        for place, i in enumerate(score_order(setting), 1)
     }
 
 
-def _divisions(setting: Setting) -> Grid:
+def _division_table(setting: Setting) -> TableRows:
     """Table 5.5."""
     assert setting.score is not None
     names = {"scale": "at 3.5", "half": "in half", "mean": "at M"}
-    grid: Grid = {}
+    grid: TableRows = {}
     for each in setting.divisions:
         numbers: list[float] = []
         for group in each.groups:
@@ -115,9 +115,9 @@ def _divisions(setting: Setting) -> Grid:
     return grid
 
 
-def _spread(setting: Setting, measures: Sequence[Float64Array]) -> Grid:
+def _mean_and_sd_rows(setting: Setting, measures: Sequence[Float64Array]) -> TableRows:
     """M and SD of each group, a column for each measure."""
-    grid: Grid = {}
+    grid: TableRows = {}
     for group in setting.groups:
         found = [summary(values[group.members]) for values in measures]
         grid[f"{group.name} M"] = tuple(each.mean for each in found)
@@ -125,17 +125,17 @@ def _spread(setting: Setting, measures: Sequence[Float64Array]) -> Grid:
     return grid
 
 
-def _outcomes(topic: str) -> Callable[[Setting], Grid]:
+def _outcome_table(topic: str) -> Callable[[Setting], TableRows]:
     """Tables 5.6 and 5.7."""
 
-    def table(setting: Setting) -> Grid:
+    def table(setting: Setting) -> TableRows:
         measures = setting.data.ratings.of_topic(Purpose.OUTCOME, Phase.AFTER, topic)
-        return _spread(setting, [each.values for each in measures])
+        return _mean_and_sd_rows(setting, [each.values for each in measures])
 
     return table
 
 
-def _questions(setting: Setting) -> Grid:
+def _question_table(setting: Setting) -> TableRows:
     """Table 5.8."""
     quiz = setting.data.quiz
     return {
@@ -144,21 +144,23 @@ def _questions(setting: Setting) -> Grid:
     }
 
 
-def _quiz_topics(setting: Setting) -> Grid:
+def _quiz_topic_table(setting: Setting) -> TableRows:
     """Table 5.9."""
     quiz = setting.data.quiz
-    return _spread(setting, [*(quiz.share(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score])
+    return _mean_and_sd_rows(
+        setting, [*(quiz.share(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
+    )
 
 
-def _text(setting: Setting) -> Grid:
+def _text_table(setting: Setting) -> TableRows:
     """The numbers of the running text of 5.3.1 to 5.3.4."""
     ratings = setting.data.ratings
     prior = _by_topic(ratings.by_topic(Purpose.EXPERIENCE, Phase.BEFORE))
     gained = _by_topic(ratings.by_topic(Purpose.GAINED, Phase.AFTER))
     hard = _by_topic(ratings.by_topic(Purpose.DIFFICULTY, Phase.AFTER))
     told = _by_topic(ratings.by_topic(Purpose.EXPLANATION, Phase.AFTER))
-    of = {"prior": _mean(prior), "gained": _mean(gained)}
-    of |= {"difficulty": _mean(hard), "explanation": _mean(told)}
+    of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
+    of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(told)}
     assert setting.score is not None
     rows: dict[str, Float64Array] = {
         "prior, Robotics": prior["robotics"],
@@ -179,24 +181,24 @@ def _by_topic(measures: Sequence[Measure]) -> dict[str, Float64Array]:
     return {each.id: each.values for each in measures}
 
 
-def _mean(measures: Mapping[str, Float64Array]) -> Float64Array:
+def _mean_over_topics(measures: Mapping[str, Float64Array]) -> Float64Array:
     """Each subject's mean over topics; nobody left one of these blank."""
     mean: Float64Array = np.stack(list(measures.values())).mean(axis=0)
     return mean
 
 
-_TABLES: Final[Mapping[str, Callable[[Setting], Grid]]] = {
-    "5.4": _scores,
-    "5.5": _divisions,
-    "5.6": _outcomes("teleop"),
-    "5.7": _outcomes("rl"),
-    "5.8": _questions,
-    "5.9": _quiz_topics,
-    "text": _text,
+_TABLES: Final[Mapping[str, Callable[[Setting], TableRows]]] = {
+    "5.4": _score_table,
+    "5.5": _division_table,
+    "5.6": _outcome_table("teleop"),
+    "5.7": _outcome_table("rl"),
+    "5.8": _question_table,
+    "5.9": _quiz_topic_table,
+    "text": _text_table,
 }
 
 
-def is_slip(study: Study, table: Printed, row: str) -> tuple[str, ...]:
+def is_slip(study: EvaluationData, table: PrintedTable, row: str) -> tuple[str, ...]:
     """The columns of a row in which the print is known to be wrong."""
     return tuple(
         cell.column

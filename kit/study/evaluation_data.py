@@ -20,17 +20,17 @@ from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-FILE: Final = Path(__file__).with_name("evaluation.yaml")
+DATA_FILE: Final = Path(__file__).with_name("evaluation.yaml")
 
-MISSING: Final = "-"
+BLANK_ANSWER: Final = "-"
 
-_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
-_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
+_TOPIC_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
+_GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
 _PURPOSES: Final = {each.value: each for each in Purpose}
 
 
 @dataclass(frozen=True, slots=True)
-class Printed:
+class PrintedTable:
     """A table as the dissertation prints it."""
 
     id: str
@@ -40,7 +40,7 @@ class Printed:
 
 
 @dataclass(frozen=True, slots=True)
-class SlipCell:
+class MisprintCell:
     """One printed number that is wrong."""
 
     row: str
@@ -50,45 +50,45 @@ class SlipCell:
 
 
 @dataclass(frozen=True, slots=True)
-class Slip:
+class Misprint:
     """Printed numbers that are wrong for one reason."""
 
     table: str
     why: str
-    cells: tuple[SlipCell, ...]
+    cells: tuple[MisprintCell, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Study:
+class EvaluationData:
     """All that is known of the evaluation."""
 
     subjects: int
     ratings: Ratings
     quiz: Quiz
-    printed: tuple[Printed, ...]
-    slips: tuple[Slip, ...]
+    printed: tuple[PrintedTable, ...]
+    slips: tuple[Misprint, ...]
 
 
-def read_study(file: Path = FILE) -> Study:
+def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
     """Raises WorldError with all mistakes of the file."""
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     subjects = section.integer("subjects", minimum=2)
-    study = Study(
+    study = EvaluationData(
         subjects,
-        _ratings(section.sections("ratings", at_least=1), subjects),
-        _quiz(section.sections("quiz", at_least=1), subjects),
-        tuple(_printed(each) for each in section.sections("printed")),
-        tuple(_slip(each) for each in section.sections("slips")),
+        _read_ratings(section.sections("ratings", at_least=1), subjects),
+        _read_quiz(section.sections("quiz", at_least=1), subjects),
+        tuple(_read_printed_table(each) for each in section.sections("printed")),
+        tuple(_read_misprint(each) for each in section.sections("slips")),
     )
     section.finish()
     problems.raise_if_any()
     return study
 
 
-def _ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
+def _read_ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
     questions: list[Question] = []
     values: dict[tuple[Phase, str], Float64Array] = {}
     for section in sections:
@@ -104,63 +104,65 @@ def _ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
             phases=(phase,),
         )
         questions.append(made)
-        answers = _answers(section, subjects, HIGHEST)
+        answers = _read_answers(section, subjects, HIGHEST)
         values[phase, made.id] = np.array([np.nan if each is None else float(each) for each in answers])
         section.finish()
     return Ratings(tuple(questions), values)
 
 
-def _quiz(sections: tuple[Section, ...], subjects: int) -> Quiz:
+def _read_quiz(sections: tuple[Section, ...], subjects: int) -> Quiz:
     items: list[Item] = []
     replies: dict[str, tuple[Reply | None, ...]] = {}
     for section in sections:
         topic = section.name("topic")
-        item = Item(f"{_TITLES.get(topic, topic)} {section.name('question')}", topic)
+        item = Item(f"{_TOPIC_TITLES.get(topic, topic)} {section.name('question')}", topic)
         keys = {int(word) for word in section.name("keys").split() if word.isdigit()}
         items.append(item)
         replies[item.id] = tuple(
             BLANK if each is None else Reply(Outcome.RIGHT if each in keys else Outcome.WRONG, each - 1)
-            for each in _answers(section, subjects, 4)
+            for each in _read_answers(section, subjects, 4)
         )
         section.finish()
     return Quiz(tuple(items), replies)
 
 
-def _answers(section: Section, subjects: int, highest: int) -> list[int | None]:
+def _read_answers(section: Section, subjects: int, highest: int) -> list[int | None]:
     """One for each subject; None for a blank."""
     words = section.name("answers").split()
-    right = [word == MISSING or (word.isdigit() and LOWEST <= int(word) <= highest) for word in words]
+    right = [word == BLANK_ANSWER or (word.isdigit() and LOWEST <= int(word) <= highest) for word in words]
     if len(words) != subjects or not all(right):
         section.error(
-            f'"answers" must be {subjects} numbers from {LOWEST} to {highest}, or {quoted(MISSING)}',
+            f'"answers" must be {subjects} numbers from {LOWEST} to {highest}, or {quoted(BLANK_ANSWER)}',
             "answers",
         )
         return [None] * subjects
-    return [None if word == MISSING else int(word) for word in words]
+    return [None if word == BLANK_ANSWER else int(word) for word in words]
 
 
-def _printed(section: Section) -> Printed:
+def _read_printed_table(section: Section) -> PrintedTable:
     columns = section.texts("columns", at_least=1)
     rows: dict[str, tuple[float, ...]] = {}
     for row in section.texts("rows", at_least=1):
         label, _, rest = row.partition("|")
         try:
-            numbers = tuple(_LETTERS[word] if word in _LETTERS else float(word) for word in rest.split())
+            numbers = tuple(
+                _GROUP_LETTERS[word] if word in _GROUP_LETTERS else float(word) for word in rest.split()
+            )
         except ValueError:
             numbers = ()
         if len(numbers) != len(columns):
             section.error(f"{quoted(row)} must be LABEL | {len(columns)} numbers", "rows")
         rows[label.strip()] = numbers
-    made = Printed(section.name("id"), section.name("title"), columns, rows)
+    made = PrintedTable(section.name("id"), section.name("title"), columns, rows)
     section.finish()
     return made
 
 
-def _slip(section: Section) -> Slip:
+def _read_misprint(section: Section) -> Misprint:
     cells = []
     for each in section.sections("cells", at_least=1):
-        cells.append(SlipCell(each.name("row"), each.name("column"), each.number("ours")))
+        cells.append(MisprintCell(each.name("row"), each.name("column"), each.number("ours")))
         each.finish()
-    made = Slip(section.name("table"), section.name("why"), tuple(cells))
+    made = Misprint(section.name("table"), section.name("why"), tuple(cells))
     section.finish()
     return made

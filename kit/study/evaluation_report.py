@@ -17,59 +17,66 @@ from kit.school.report.items import analyse
 from kit.school.report.normality import shapiro_wilk
 from kit.school.survey.questions import Purpose
 from kit.study.evaluation import (
-    Difference,
-    Grid,
-    differences,
-    order_of_scores,
-    recompute,
+    PrintDifference,
+    TableRows,
+    print_differences,
+    recompute_tables,
+    score_order,
     setting_of,
-    unexplained,
+    unexplained_differences,
 )
-from kit.study.evaluation_data import Printed, Study
+from kit.study.evaluation_data import EvaluationData, PrintedTable
 
-LETTERS: Final = ("B", "E")
-WITH_GROUPS: Final = "5.4"
-COUNTS: Final = ("B n", "E n")
-WIDE: Final = 4
+GROUP_LETTERS: Final = ("B", "E")
+GROUP_TABLE: Final = "5.4"
+COUNT_COLUMNS: Final = ("B n", "E n")
+STACKED_COLUMNS: Final = 4
 """Columns from which print and ours stand one below the other."""
 
 
-def study_report(study: Study, *, whole: bool = False) -> Report:
+def evaluation_report(study: EvaluationData, *, whole: bool = False) -> Report:
     """``whole``: also every chapter that a class gets, from the dissertation's raw answers."""
     setting = setting_of(study)
     more = chapters(setting) if whole else ()
     return Report(
         "The dissertation's evaluation, from its raw answers (appendix B.3)",
-        (_beside(study, setting), _slips(study), _bearing(study, setting), *more),
+        (
+            _comparison_chapter(study, setting),
+            _misprint_chapter(study),
+            _limits_chapter(study, setting),
+            *more,
+        ),
     )
 
 
-def _beside(study: Study, setting: Setting) -> Chapter:
-    ours = recompute(study)
+def _comparison_chapter(study: EvaluationData, setting: Setting) -> Chapter:
+    ours = recompute_tables(study)
     blocks: list[Block] = [
         Text(
             "Each table as printed, and as the raw answers give it. SD is of the sample (n - 1); a blank of the quiz "
             "counts as not right; both as the dissertation has it."
         )
     ]
-    wrong = differences(study)
-    blocks += [_table(table, ours[table.id], wrong, setting) for table in study.printed]
+    wrong = print_differences(study)
+    blocks += [_comparison_table(table, ours[table.id], wrong, setting) for table in study.printed]
     return Chapter("printed", "Printed and computed", tuple(blocks))
 
 
-def _table(table: Printed, ours: Grid, wrong: Sequence[Difference], setting: Setting) -> Table:
+def _comparison_table(
+    table: PrintedTable, ours: TableRows, wrong: Sequence[PrintDifference], setting: Setting
+) -> Table:
     name = f"Table {table.id}" if table.id != "text" else "Text"
     identity = f"table-{table.id.replace('.', '-')}"
     title = f"{name}. {table.title}"
-    letters = table.id == WITH_GROUPS
+    letters = table.id == GROUP_TABLE
     found = {(each.row, each.column) for each in wrong if each.table == table.id}
 
     def cells(row: tuple[float, ...]) -> Iterator[Cell]:
         for value, column in zip(row, table.columns, strict=True):
             if letters and column != table.columns[0]:
-                yield LETTERS[int(value)]
+                yield GROUP_LETTERS[int(value)]
             else:
-                yield int(value) if column in COUNTS else value
+                yield int(value) if column in COUNT_COLUMNS else value
 
     def verdict(row: str) -> str:
         slips = [column for column in table.columns if (row, column) in found]
@@ -79,7 +86,7 @@ def _table(table: Printed, ours: Grid, wrong: Sequence[Difference], setting: Set
         Column(column, Style.TEXT if letters and i else Style.NUMBER)
         for i, column in enumerate(table.columns)
     )
-    if len(columns) >= WIDE and not letters:
+    if len(columns) >= STACKED_COLUMNS and not letters:
         # One below the other: side by side they would not fit 80 columns.
         rows = [
             line
@@ -97,15 +104,15 @@ def _table(table: Printed, ours: Grid, wrong: Sequence[Difference], setting: Set
     ]
     note = "Left of the bar as printed, right of it ours."
     if letters:
-        order = order_of_scores(setting)
+        order = score_order(setting)
         note += f" Users 1 to {len(order)} are the subjects {', '.join(str(i + 1) for i in order)}."
     heads = (Column("user" if letters else "", Style.TEXT), *columns, bar, *columns, Column("", Style.TEXT))
     return Table(identity, title, heads, tuple(rows), note)
 
 
-def _slips(study: Study) -> Chapter:
+def _misprint_chapter(study: EvaluationData) -> Chapter:
     total = sum(len(row) for table in study.printed for row in table.rows.values())
-    wrong, unknown = differences(study), unexplained(study)
+    wrong, unknown = print_differences(study), unexplained_differences(study)
     blocks: list[Block] = [
         Text(
             f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
@@ -156,18 +163,18 @@ def _slips(study: Study) -> Chapter:
     return Chapter("slips", "Where the print is wrong", tuple(blocks))
 
 
-def _places(wrong: Sequence[Difference]) -> str:
+def _places(wrong: Sequence[PrintDifference]) -> str:
     names = list(
         dict.fromkeys("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
     )
     return " and ".join((", ".join(names[:-1]), names[-1]) if len(names) > 1 else names) or "no table"
 
 
-def _named(each: Difference) -> str:
+def _named(each: PrintDifference) -> str:
     return "text" if each.table == "text" else f"table {each.table}"
 
 
-def _bearing(study: Study, setting: Setting) -> Chapter:
+def _limits_chapter(study: EvaluationData, setting: Setting) -> Chapter:
     """What a reader of the dissertation has to know and it does not say."""
     first = people.experience(setting)
     weights = (
@@ -186,11 +193,11 @@ def _bearing(study: Study, setting: Setting) -> Chapter:
         blocks += [each for each in together.blocks if isinstance(each, Table | Text)]
     if questions is not None:
         blocks += [each for each in questions.blocks if not isinstance(each, Caution)]
-    blocks += [_shape(study), _blanks(study), _layers(study)]
+    blocks += [_normality_text(study), _blank_text(study), _layers_text(study)]
     return Chapter("bearing", "What these numbers bear", tuple(blocks))
 
 
-def _shape(study: Study) -> Text:
+def _normality_text(study: EvaluationData) -> Text:
     w, p = shapiro_wilk(study.quiz.score)
     return Text(
         f"The dissertation takes the quiz scores for normally distributed. Shapiro and Wilk's W = {w:.2f}, "
@@ -199,7 +206,7 @@ def _shape(study: Study) -> Text:
     )
 
 
-def _blanks(study: Study) -> Text:
+def _blank_text(study: EvaluationData) -> Text:
     blanks = study.quiz.count(Outcome.BLANK)
     most = int(np.argmax(blanks))
     return Text(
@@ -208,7 +215,7 @@ def _blanks(study: Study) -> Text:
     )
 
 
-def _layers(study: Study) -> Text:
+def _layers_text(study: EvaluationData) -> Text:
     question = next(each for each in study.ratings.questions if each.topic == "layers")
     phase = question.phases[0]
     found = summary(study.ratings.values[phase, question.id])

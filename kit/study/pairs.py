@@ -12,7 +12,7 @@ import numpy as np
 
 from kit.controllers import ControllerFile
 from kit.fields import adjacency
-from kit.fields.controller_setup import Course, middle_of
+from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.geometry import Pose
 from kit.render.scene import Body
 from kit.render.world_text import nearest_wall
@@ -23,18 +23,18 @@ from kit.run.scenario import Place
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
 
-SAMPLE: Final = 10
+SAMPLE_TICKS: Final = 10
 """Ticks from one look at the robots to the next: ten looks a second, as often as they look themselves."""
-LONGEST_S: Final = 180.0
+TIME_LIMIT_S: Final = 180.0
 STUCK_S: Final = 20.0
-STUCK_M: Final = 0.05
+STUCK_DISTANCE_M: Final = 0.05
 """Robots whose middle is no farther [m] from where it was so long [s] ago are stuck."""
-NUDGE: Final = (0.02, 0.02, 0.05)
+START_SHIFT: Final = (0.02, 0.02, 0.05)
 """Starts differ by up to so much [m, m, rad] from one run to the next; those of the first run are exact."""
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class PairRunResult:
     """One run."""
 
     end: str
@@ -56,7 +56,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class PairSummary:
     """Several runs of one case with one controller: means, but for what says otherwise."""
 
     case: str
@@ -75,11 +75,11 @@ class Summary:
     """For each way to fail: how many runs failed so, and how the first of them did."""
 
     @classmethod
-    def of(cls, case: str, controller: str, outcomes: list[Outcome]) -> Summary:
+    def of(cls, case: str, controller: str, outcomes: list[PairRunResult]) -> PairSummary:
         def mean(name: str) -> float:
             return float(np.mean([getattr(outcome, name) for outcome in outcomes]))
 
-        failed: dict[str, list[Outcome]] = {}
+        failed: dict[str, list[PairRunResult]] = {}
         for each in outcomes:
             if each.end != "reached":
                 failed.setdefault(each.end, []).append(each)
@@ -99,27 +99,27 @@ class Summary:
         )
 
 
-def repeat(
+def run_repeatedly(
     place: Place,
     controller: ControllerFile,
     *,
     runs: int,
     seed: int = 0,
-    on_run: Callable[[int, Outcome], None] = lambda number, outcome: None,
-) -> Summary:
-    """``runs`` runs, each with another start nearby and other noise. Raises what ``try_once`` raises."""
+    on_run: Callable[[int, PairRunResult], None] = lambda number, outcome: None,
+) -> PairSummary:
+    """``runs`` runs, each with another start nearby and other noise. Raises what ``run_once`` raises."""
     outcomes = []
     for number in range(runs):
-        outcomes.append(try_once(nudged(place, seed, number), controller, seed=seed + number))
+        outcomes.append(run_once(shift_starts(place, seed, number), controller, seed=seed + number))
         on_run(number, outcomes[-1])
     name = place.case.name if place.case is not None else place.name
-    return Summary.of(name, controller.name, outcomes)
+    return PairSummary.of(name, controller.name, outcomes)
 
 
-def nudged(place: Place, seed: int, number: int) -> Place:
+def shift_starts(place: Place, seed: int, number: int) -> Place:
     """The place with its robots a little beside where they start; exactly there in run 0."""
     generator = np.random.default_rng((seed, number))
-    shift = {name: generator.uniform(-1, 1, 3) * NUDGE * (number > 0) for name in place.partners}
+    shift = {name: generator.uniform(-1, 1, 3) * START_SHIFT * (number > 0) for name in place.partners}
     models = tuple(
         replace(model, pose=Pose(*(np.array(model.pose) + shift[model.name]).tolist()))
         if model.name in shift
@@ -129,37 +129,37 @@ def nudged(place: Place, seed: int, number: int) -> Place:
     return replace(place, world=replace(place.world, models=models))
 
 
-def try_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> Outcome:
+def run_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
     """One run to its end. Raises LookupError for a place without a target, WorldError for a wrong layout."""
     if place.case is None:
         raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
     case = place.case
-    course = Course.open(
+    course = ControllerSetup.open(
         place.world.file, place.partners, case.target, case.target_radius, charges=place.charges
     )
     with Session(place, seed=seed, watched=True) as session:
-        log = _Log(place)
+        log = _PairObserver(place)
         session.runner.observers.append(log)
         session.drive_with(controller)
         session.wait_until_driven()
         run_until(session.runner, ends=(when(lambda: log.end is not None), when_failed(session)))
         session.look_around()
-        return log.outcome(log.end or "failed", _why(log, session, course))
+        return log.outcome(log.end or "failed", _failure_reason(log, session, course))
 
 
-def _why(log: _Log, session: Session, course: Course) -> str:
+def _failure_reason(log: _PairObserver, session: Session, course: ControllerSetup) -> str:
     """Why a run did not reach the target; empty if it did."""
     refusals = [record.text for record in session.messages if record.text.startswith("Not driving")]
     return {
         None: str(session.failure),
-        "stuck": " ".join(refusals) or _trap(course, log.middle),
+        "stuck": " ".join(refusals) or _describe_stuck(course, log.middle),
         "collided": log.touched,
-        "late": f"still on the way after {LONGEST_S:.0f} s",
+        "late": f"still on the way after {TIME_LIMIT_S:.0f} s",
         "reached": "",
     }[log.end]
 
 
-def _trap(course: Course, middle: tuple[float, float]) -> str:
+def _describe_stuck(course: ControllerSetup, middle: tuple[float, float]) -> str:
     traps = course.flow.traps()
     near = min(traps, key=lambda trap: math.dist(trap[:2], middle), default=None)
     place = f"no progress at ({middle[0]:.2f}, {middle[1]:.2f})"
@@ -171,7 +171,7 @@ def _trap(course: Course, middle: tuple[float, float]) -> str:
     )
 
 
-class _Log(Observer):
+class _PairObserver(Observer):
     """Watches a run, as one of the runner's observers, until it is over."""
 
     def __init__(self, place: Place) -> None:
@@ -198,22 +198,25 @@ class _Log(Observer):
         self._metrics.on_step(simulation)
         if self._metrics.total_bumps:
             self.end, self.touched = "collided", self._contact(simulation)
-        if simulation.tick % SAMPLE:
+        if simulation.tick % SAMPLE_TICKS:
             return
         poses = [simulation.pose(name) for name in self._names]
         self._poses.append(poses)
-        self._recent.append(middle_of(poses))
+        self._recent.append(mean_position(poses))
         if len(poses) == 2:
             self._sides.append(self._beside(simulation, *poses))
         self._nearest = min(self._nearest, self._wall_distance(simulation))
         if self._metrics.all_reached_s is not None:
             self.end = self.end or "reached"
-        elif len(self._recent) == self._recent.maxlen and math.dist(self._recent[0], self.middle) < STUCK_M:
+        elif (
+            len(self._recent) == self._recent.maxlen
+            and math.dist(self._recent[0], self.middle) < STUCK_DISTANCE_M
+        ):
             self.end = self.end or "stuck"
-        elif simulation.time_ns / 1e9 >= LONGEST_S:
+        elif simulation.time_ns / 1e9 >= TIME_LIMIT_S:
             self.end = self.end or "late"
 
-    def outcome(self, end: str, why: str) -> Outcome:
+    def outcome(self, end: str, why: str) -> PairRunResult:
         poses = np.array(self._poses, dtype=float).reshape(-1, len(self._names), 3)
         steps = np.diff(poses[..., :2], axis=0)
         ahead = np.stack((np.cos(poses[:-1, :, 2]), np.sin(poses[:-1, :, 2])), axis=-1)
@@ -221,7 +224,7 @@ class _Log(Observer):
         jerk = np.diff(np.concatenate((np.zeros((1, len(self._names))), speeds)), 2, axis=0) * 100
         sides = np.array(self._sides, dtype=float).reshape(-1, 3)
         shares = sides.mean(axis=0) if len(sides) else np.full(3, math.nan)
-        return Outcome(
+        return PairRunResult(
             end,
             why,
             len(poses) / 10,
@@ -240,8 +243,12 @@ class _Log(Observer):
             for name, which in zip(self._names, adjacency.SIDE_RAYS, strict=True)
             if name in views and len(views[name]) == 91
         ]
-        by_rays = len(rays) == 2 and bool(adjacency.by_rays(*rays))
-        return bool(adjacency.by_geometry(left, right)), by_rays, float(adjacency.graded(left, right))
+        by_rays = len(rays) == 2 and bool(adjacency.is_adjacent_by_rays(*rays))
+        return (
+            bool(adjacency.is_adjacent_by_poses(left, right)),
+            by_rays,
+            float(adjacency.adjacency_score(left, right)),
+        )
 
     def _wall_distance(self, simulation: Simulation) -> float:
         hulls: dict[str, list[Any]] = {name: [] for name in self._names}
@@ -264,7 +271,7 @@ class _Log(Observer):
 
 
 @dataclass(frozen=True, slots=True)
-class Printed:
+class PrintedPairResult:
     """What the dissertation has for a case; None where it left it out."""
 
     title: str
@@ -275,30 +282,30 @@ class Printed:
 
 
 TABLE_46: Final = (
-    Printed("straight", "pair_straight", "pair_straight", 1.0, 1.0),
-    Printed("turn left 90", "pair_turn_90", "pair_turn_left_90", 1.0, 0.54),
-    Printed("turn right 90", "pair_turn_90", "pair_turn_right_90", 1.0, 0.62),
-    Printed("curve left 90", "pair_curve_90", "pair_curve_left_90", None, None),
-    Printed("curve right 90", "pair_curve_90", "pair_curve_right_90", None, None),
-    Printed("turn left 180", "pair_turn_180", "pair_turn_left_180", 0.0, 0.04),
-    Printed("turn right 180", "pair_turn_180", "pair_turn_right_180", 0.0, 0.07),
-    Printed("curve left 180", "pair_curve_180", "pair_curve_left_180", None, None),
-    Printed("curve right 180", "pair_curve_180", "pair_curve_right_180", None, None),
+    PrintedPairResult("straight", "pair_straight", "pair_straight", 1.0, 1.0),
+    PrintedPairResult("turn left 90", "pair_turn_90", "pair_turn_left_90", 1.0, 0.54),
+    PrintedPairResult("turn right 90", "pair_turn_90", "pair_turn_right_90", 1.0, 0.62),
+    PrintedPairResult("curve left 90", "pair_curve_90", "pair_curve_left_90", None, None),
+    PrintedPairResult("curve right 90", "pair_curve_90", "pair_curve_right_90", None, None),
+    PrintedPairResult("turn left 180", "pair_turn_180", "pair_turn_left_180", 0.0, 0.04),
+    PrintedPairResult("turn right 180", "pair_turn_180", "pair_turn_right_180", 0.0, 0.07),
+    PrintedPairResult("curve left 180", "pair_curve_180", "pair_curve_left_180", None, None),
+    PrintedPairResult("curve right 180", "pair_curve_180", "pair_curve_right_180", None, None),
 )
 """The columns APF of Table 4.6."""
 
 TABLE_53: Final = (
-    Printed("right turn", "pair_turn", "pair_turn_a_to_b", 1.0, 0.62),
-    Printed("left turn", "pair_turn", "pair_turn_b_to_a", 1.0, 0.54),
+    PrintedPairResult("right turn", "pair_turn", "pair_turn_a_to_b", 1.0, 0.62),
+    PrintedPairResult("left turn", "pair_turn", "pair_turn_b_to_a", 1.0, 0.54),
 )
 
 
-def rows(
+def run_tables(
     runs: int, seed: int, controllers: tuple[ControllerFile, ...]
-) -> Iterator[tuple[Printed, tuple[Summary, ...]]]:
+) -> Iterator[tuple[PrintedPairResult, tuple[PairSummary, ...]]]:
     """Both tables, row by row, as they are done."""
     from kit.run.scenario import find_place
 
     for printed in (*TABLE_46, *TABLE_53):
         place = find_place(printed.map, printed.case)
-        yield printed, tuple(repeat(place, each, runs=runs, seed=seed) for each in controllers)
+        yield printed, tuple(run_repeatedly(place, each, runs=runs, seed=seed) for each in controllers)

@@ -12,10 +12,10 @@ from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:  # the learning side takes a moment to import: the frame is drawn first
-    from kit.learning.policies.demonstration import Demonstration, Moment
-    from kit.learning.training.events import Event
-    from kit.learning.training.run_status import Plan, Standing
-    from kit.learning.training.runs import Order, Run
+    from kit.learning.policies.demonstration import Demonstration, DemonstrationView
+    from kit.learning.training.events import TrainingEvent
+    from kit.learning.training.run_status import RunPlan, RunStatus
+    from kit.learning.training.runs import RunCommand, TrainingRun
 
 POLL_S: Final = 0.5
 """Between two looks at the run's files, which may lie on a slow network drive."""
@@ -28,10 +28,10 @@ class TrainingFollower:
 
     def __init__(
         self,
-        run: Run,
+        run: TrainingRun,
         *,
-        on_standing: Callable[[Standing], None],
-        on_moment: Callable[[Moment], None],
+        on_standing: Callable[[RunStatus], None],
+        on_moment: Callable[[DemonstrationView], None],
         on_error: Callable[[str], None],
     ) -> None:
         self._run = run
@@ -50,7 +50,7 @@ class TrainingFollower:
     def start(self) -> None:
         self._reader.start()
 
-    def send_order(self, order: Order) -> None:
+    def send_order(self, order: RunCommand) -> None:
         """Tells the learner, which obeys between two updates."""
         self._jobs.put(lambda: self._run.ask(order))
 
@@ -58,9 +58,9 @@ class TrainingFollower:
         """Starts a learner that goes on where the last one left off."""
 
         def job() -> None:
-            from kit.learning.training.worker import start
+            from kit.learning.training.worker import start_worker
 
-            start(self._run)
+            start_worker(self._run)
 
         self._jobs.put(job)
 
@@ -88,20 +88,20 @@ class TrainingFollower:
         from kit.learning.environment.tasks import UnknownTask
         from kit.learning.training.algorithms import UnknownAlgorithm
         from kit.learning.training.events import EventReader
-        from kit.learning.training.run_status import Logbook, plan_of
+        from kit.learning.training.run_status import RunTracker, plan_of_run
         from kit.learning.training.runs import RunError
 
         try:
-            plan = plan_of(self._run.config())
+            plan = plan_of_run(self._run.config())
         except (RunError, UnknownTask, UnknownAlgorithm) as error:
             self._on_error(str(error))
             return
-        tracker, reader, shown = Logbook(plan), EventReader(self._run.events_file), None
+        tracker, reader, shown = RunTracker(plan), EventReader(self._run.events_file), None
         while not self._closed.is_set():
             try:
                 # Asked first: whatever is written before the end is read below.
                 present = self._run.alive, self._run.asked()
-                new: list[Event] = list(reader.new())
+                new: list[TrainingEvent] = list(reader.new())
             except OSError as error:  # a network drive that is away comes back
                 self._report_once(f"{self._run.folder}: {error.strerror}. Looking again.")
             else:
@@ -135,13 +135,13 @@ class TrainingFollower:
             self._last_error = trouble
             self._on_error(trouble)
 
-    def _start_driver(self, plan: Plan) -> None:
+    def _start_driver(self, plan: RunPlan) -> None:
         self._driver = threading.Thread(target=self._drive, args=(plan,), name="driver", daemon=True)
         self._driver.start()
 
     # The driver's thread
 
-    def _drive(self, plan: Plan) -> None:
+    def _drive(self, plan: RunPlan) -> None:
         from kit.learning.policies.demonstration import Demonstration
         from kit.learning.policies.policies import PolicyError
         from kit.learning.training.runs import RunError

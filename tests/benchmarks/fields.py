@@ -13,11 +13,11 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.fields.charges import CompositeCharge, Field, LineCharge, PointCharge
-from kit.fields.controller_setup import Course
+from kit.fields.charges import ChargeField, CompositeCharge, LineCharge, PointCharge
+from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import derived_layout
-from kit.fields.minima import Flow
-from kit.fields.occupancy_grid import open_floor
+from kit.fields.minima import ForceFlow
+from kit.fields.occupancy_grid import load_occupancy_grid
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, changed, with_field
 from kit.render.scene import Scene
@@ -60,28 +60,28 @@ def print_map(name: str) -> None:
     place = find_place(name)
     assert place.case is not None
     target, world = place.case.target, place.world.file
-    course = Course.open(world, place.partners, target)
-    opening = milliseconds(lambda: Course.open(world, place.partners, target), 3)
-    flowing = milliseconds(lambda: Flow.of(course.layout, course.floor, target), 3)
+    course = ControllerSetup.open(world, place.partners, target)
+    opening = milliseconds(lambda: ControllerSetup.open(world, place.partners, target), 3)
+    flowing = milliseconds(lambda: ForceFlow.of(course.layout, course.floor, target), 3)
     riding = milliseconds(lambda: course.ride(place.starts), 3)
     print(f"{name}: floor and layout {opening:.0f} ms, traps {flowing:.0f} ms, a ride {riding:.0f} ms")
 
 
 def main() -> int:
     generator = np.random.default_rng(0)
-    obstacles = Field.of([obstacle(generator) for _ in range(125)])
+    obstacles = ChargeField.of([obstacle(generator) for _ in range(125)])
     taken = milliseconds(partial(obstacles.forces, grid(10, 10)))
     kept = taken < PROMISED_MS
     print(f"{GRID} x {GRID} places, 500 walls: {taken:.1f} ms (promised: below {PROMISED_MS:.0f})")
     for name in ("house", "roundabout", "forest"):
-        floor = open_floor(find_place(name).world.file)[1]
+        floor = load_occupancy_grid(find_place(name).world.file)[1]
         field = derived_layout(floor).field
         across, up = floor.walls.reshape(-1, 2).max(axis=0)
         taken = milliseconds(partial(field.forces, grid(across, up)))
         print(f"{GRID} x {GRID} places, {name}, {len(floor.walls)} walls: {taken:.1f} ms")
     place = find_place("pair_turn_180")
     assert place.case is not None
-    course = Course.open(place.world.file, place.partners, place.case.target)
+    course = ControllerSetup.open(place.world.file, place.partners, place.case.target)
     picture = FieldPicture(course)
     walls = Scene(walls=course.floor.walls)
     camera = Camera.fit(walls.bounds, 58, 20)

@@ -24,7 +24,7 @@ from kit.ros.node.node import create_graph_node
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.host.node_process import Guest
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe
@@ -93,7 +93,7 @@ def start_ms(make: Callable[[], Any]) -> float:
 
 
 def main() -> None:
-    controller = find("avoid").file
+    controller = find_controller("avoid").file
     own = steps_per_second(controller, level=None)
     print(f"steps per second, in this process            {own:10.0f}")
     levels = [rung.level for rung in probe() if rung.is_available]

@@ -20,15 +20,15 @@ from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.learning.environment.episode_stats import Episode
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.policies.evaluation import Examiner, Result
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.training.algorithms import ALGORITHMS
-from kit.learning.training.crosstable import crosstable, groups_of, rows_of
-from kit.learning.training.events import Ended, Examined
+from kit.learning.training.crosstable import case_groups, format_crosstable, train_crosstable
+from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
-from kit.learning.training.run_text import shares_of
-from kit.learning.training.runs import Run, RunConfig, new_run
+from kit.learning.training.run_text import success_shares
+from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import make_learner, train
 
@@ -49,11 +49,11 @@ def reward(reached, collided, timed_out, move):
 class Trained:
     """A run at its end, and the final test."""
 
-    run: Run
-    ended: Ended
+    run: TrainingRun
+    ended: TrainingEnded
     cpu: float
     """s of this process; less than the wall time where others keep the machine busy."""
-    result: Result
+    result: EvaluationResult
 
     @property
     def row(self) -> str:
@@ -64,14 +64,14 @@ class Trained:
         )
 
 
-def trained(config: RunConfig, folder: Path, episodes: int, test_on: TaskChoice | None = None) -> Trained:
-    run = new_run(folder, config)
+def trained(config: RunConfig, folder: Path, episodes: int, test_on: TaskSpec | None = None) -> Trained:
+    run = create_run(folder, config)
     began = time.process_time()
     ended = train(run)
     cpu = time.process_time() - began
     policy = run.policy()
     task = (test_on or policy.trained_on).resolve()
-    return Trained(run, ended, cpu, Examiner(task).test(policy, episodes, FINAL_TEST))
+    return Trained(run, ended, cpu, Evaluator(task).test(policy, episodes, FINAL_TEST))
 
 
 def several(config: RunConfig, folder: Path, seeds: int, episodes: int) -> list[Trained]:
@@ -86,14 +86,14 @@ def several(config: RunConfig, folder: Path, seeds: int, episodes: int) -> list[
 
 def turn(folder: Path, seeds: int) -> None:
     """All reach 0.95 in each direction over 1,000 fresh episodes; median training time under 5 s."""
-    found = several(RunConfig(TaskChoice("turn")), folder, seeds or 10, 1000)
+    found = several(RunConfig(TaskSpec("turn")), folder, seeds or 10, 1000)
     good = sum(each.result.worst.share >= 0.95 for each in found)
     print(f"  {good} of {len(found)} reach 0.95 in each direction")
 
 
 def turn_seed(folder: Path, seeds: int) -> None:
     """Table 5.2 (35,000, 20,000 and 45,000 steps to 0.8, 0.8, 1.0), as it goes; up to 100,000 steps."""
-    config = RunConfig(TaskChoice("turn-seed"), preset="seed", steps=100_000)
+    config = RunConfig(TaskSpec("turn-seed"), preset="seed", steps=100_000)
     found = several(config, folder, seeds or 10, 500)
     passed = [each for each in found if "accuracy" in each.ended.reason]
     print(f"  {len(passed)} of {len(found)} passed a test of 20 episodes with 0.8")
@@ -105,12 +105,12 @@ def turn_seed(folder: Path, seeds: int) -> None:
 
 def hallway(folder: Path, seeds: int) -> None:
     """Mean at least 0.99 and worst case at least 0.97 over 500 fresh episodes each, 5 of 5 seeds, under 90 s."""
-    _hallway(RunConfig(TaskChoice("hallway")), folder, seeds or 5)
+    _hallway(RunConfig(TaskSpec("hallway")), folder, seeds or 5)
 
 
 def hallway_axle(folder: Path, seeds: int) -> None:
     """The harder variant: the middle of the axle must come near the target."""
-    _hallway(RunConfig(TaskChoice("hallway", measured_to="axle")), folder, seeds or 1)
+    _hallway(RunConfig(TaskSpec("hallway", measured_to="axle")), folder, seeds or 1)
 
 
 def _hallway(config: RunConfig, folder: Path, seeds: int) -> None:
@@ -125,7 +125,7 @@ def left_out(folder: Path, seeds: int) -> None:
     mirror. (Right door is then known as the mirror image of left door; two doors is not.) Without a mirror it depends
     on the seed whether the robot ever looks to the right."""
     unseen = ("right_door", "two_doors", "curve_left_180")
-    every = TaskChoice("hallway")
+    every = TaskSpec("hallway")
     seen = tuple(case.name for _, case in every.resolve().courses() if case.name not in unseen)
     for mirrored in (True, False):
         for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
@@ -137,31 +137,31 @@ def left_out(folder: Path, seeds: int) -> None:
 
 def table(folder: Path, seeds: int) -> None:
     """Table 3.5: every column's mean above the dissertation's."""
-    config = RunConfig(TaskChoice("hallway"), seed=FIRST_SEED)
-    columns = crosstable(
-        folder / "table", config, groups_of(config), tell=lambda text: print(f"  {text}", flush=True)
+    config = RunConfig(TaskSpec("hallway"), seed=FIRST_SEED)
+    columns = train_crosstable(
+        folder / "table", config, case_groups(config), tell=lambda text: print(f"  {text}", flush=True)
     )
-    print("\n".join(f"  {row}" for row in rows_of(columns)))
+    print("\n".join(f"  {row}" for row in format_crosstable(columns)))
 
 
 def wheelchairs(folder: Path, seeds: int) -> None:
     """Success 0.96 in every case, adjacency 0.90 on the straight and 0.80 on turns and curves, with start noise."""
-    for each in several(RunConfig(TaskChoice("wheelchairs")), folder, seeds or 1, 500):
+    for each in several(RunConfig(TaskSpec("wheelchairs")), folder, seeds or 1, 500):
         print("\n".join(f"    {row}" for row in each.result.rows()))
 
 
 def forgetting(folder: Path, seeds: int) -> None:
     """Boltzmann DQN with the dissertation's network, trained on and on: tests go up, and down again."""
     for on in (("straight",), ("90_turns",)):
-        choice = TaskChoice("hallway-seed", on)
+        choice = TaskSpec("hallway-seed", on)
         for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
             config = RunConfig(choice, "boltzmann-dqn", "seed", seed, steps=100_000, keep_training=True)
-            run = new_run(folder, config)
+            run = create_run(folder, config)
             ended = train(run)
             tests = [
-                sum(shares_of(each).values()) / len(each.cases)
+                sum(success_shares(each).values()) / len(each.cases)
                 for each in run.events()
-                if isinstance(each, Examined)
+                if isinstance(each, Evaluated)
             ]
             print(f"  {choice.title}, seed {seed}, {ended.seconds:.0f} s; accuracy after each 10,000 steps:")
             print("    " + " ".join(f"{share:.2f}" for share in tests))
@@ -171,12 +171,12 @@ def forgetting(folder: Path, seeds: int) -> None:
 class _Onlooker:
     def between(self) -> None: ...
 
-    def saw(self, episode: Episode) -> None: ...
+    def saw(self, episode: EpisodeStats) -> None: ...
 
 
 def _rate(reward: StudentReward | None = None) -> tuple[float, float]:
     """Steps a second of wall time, and of this process's CPU time."""
-    choice = TaskChoice("turn")
+    choice = TaskSpec("turn")
     preset = replace(
         KIT_PPO_TURN,
         worlds=1024,  # the more, the less each call of a small network costs

@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import ground
+from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.env import TaskEnv
 from kit.learning.environment.rewards import PROGRESS
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Start, Task
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
 from kit.learning.environment.transition import Array, Transition
 from kit.world.catalogue import find_map
 
@@ -37,7 +37,7 @@ MAP = "slalom"
 RAYS = 91
 PEERS_AT_ONCE = 1024
 
-SLALOM = replace(TURN, maps=(MAP,), start=Start(noise=0.05, turned=3.1), reward=PROGRESS)
+SLALOM = replace(TURN, maps=(MAP,), start=StartVariation(noise=0.05, turned=3.1), reward=PROGRESS)
 """Tutorial 2's robot: 0.1 s and one look for collisions a step."""
 SLALOM_2 = replace(HALLWAY, maps=(MAP,))
 """The hallway study's: 0.2 s, two looks, 17 inputs, 7 actions, algorithm 1."""
@@ -75,7 +75,7 @@ def driving(batch: BatchEnv) -> Callable[[], object]:
     return lambda: batch.step(next(numbers))
 
 
-def ours(task: Task, n: int, reward: Callable[[Transition], Array] | None = None) -> float:
+def ours(task: LearningTask, n: int, reward: Callable[[Transition], Array] | None = None) -> float:
     return best(driving(BatchEnv(task, n, seed=0, reward=reward)), n)
 
 
@@ -112,7 +112,7 @@ def irsim(walls: NDArray[np.float64]) -> float | None:
         f"  - {{shape: {{name: linestring, vertices: [[{x1}, {y1}], [{x2}, {y2}]]}}}}"
         for x1, y1, x2, y2 in walls.tolist()
     )
-    start = ground(find_map(MAP)).starts[0]
+    start = load_batch_map(find_map(MAP)).starts[0]
     described = f"""\
 world: {{height: 12, width: 12, offset: [-4, -4], step_time: 0.1, sample_time: 0.1, collision_mode: stop}}
 robot:
@@ -170,7 +170,7 @@ def vmas(walls: NDArray[np.float64]) -> float | None:
                 turn = torch.tensor([np.arctan2(y2 - y1, x2 - x1)], dtype=torch.float32)
                 landmark.set_pos(middle, batch_index=env_index)
                 landmark.set_rot(turn, batch_index=env_index)
-            start = ground(find_map(MAP)).starts[0]
+            start = load_batch_map(find_map(MAP)).starts[0]
             self.world.agents[0].set_pos(torch.tensor([start.x, start.y]), batch_index=env_index)
 
         def observation(self, agent):
@@ -192,7 +192,7 @@ def shown(name: str, rate: float | None, base: float | None = None) -> None:
 
 
 def main() -> None:
-    walls = ground(find_map(MAP)).walls
+    walls = load_batch_map(find_map(MAP)).walls
     print(f"{len(walls)} walls, {RAYS} rays, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n")
     rates = {n: ours(SLALOM, n) for n in (1, 64, 256, 1024, 4096, 16384)}
     for n, rate in rates.items():

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.cli.plain import Plain, obey, play_plainly
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.recording import load, rerun
 from kit.run.scenario import find_place
 
@@ -48,7 +48,7 @@ def file(tmp_path: Path) -> Path:
 @pytest.fixture
 def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
     """Says a line to a kit on the simple map, driven by ``file``, and returns the answer."""
-    plain = Plain(find_place("simple"), find(str(file)), seed=0, folder=file.parent)
+    plain = Plain(find_place("simple"), find_controller(str(file)), seed=0, folder=file.parent)
 
     def answer(line: str) -> str:
         capsys.readouterr()
@@ -146,7 +146,7 @@ def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
 
 def test_without_any_standard_input_it_just_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", None)
-    plain = Plain(find_place("simple"), find("forward"), seed=0, folder=tmp_path)
+    plain = Plain(find_place("simple"), find_controller("forward"), seed=0, folder=tmp_path)
     play_plainly(plain)
     assert plain.is_over is False
 

@@ -7,28 +7,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.fields.charges import CompositeCharge, LineCharge, PointCharge, members
-from kit.fields.derived_charges import derive, differences
-from kit.fields.layout import FILE, Intensities, derived_layout, layout_of, read_layout
-from kit.fields.occupancy_grid import Floor, open_floor
+from kit.fields.charges import CompositeCharge, LineCharge, PointCharge, iter_members
+from kit.fields.derived_charges import derive_charges, layout_differences
+from kit.fields.layout import LAYOUT_FILE, Intensities, derived_layout, load_layout, read_layout
+from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 
 CARDS = {card.name: card for card in all_maps()}
-DRAWN = sorted(name for name, card in CARDS.items() if (card.folder / FILE).is_file())
+DRAWN = sorted(name for name, card in CARDS.items() if (card.folder / LAYOUT_FILE).is_file())
 GOOD = "intensities: {walls: -1, target: 15}\n"
 
 
-def floor(name: str) -> Floor:
-    return open_floor(CARDS[name].world_file)[1]
+def floor(name: str) -> OccupancyGrid:
+    return load_occupancy_grid(CARDS[name].world_file)[1]
 
 
-def box(*walls: tuple[float, float, float, float], inside: tuple[float, float]) -> Floor:
-    return Floor.of(np.array(walls, dtype=float), [inside])
+def box(*walls: tuple[float, float, float, float], inside: tuple[float, float]) -> OccupancyGrid:
+    return OccupancyGrid.of(np.array(walls, dtype=float), [inside])
 
 
 def problems(tmp_path: Path, text: str) -> list[str]:
-    file = tmp_path / FILE
+    file = tmp_path / LAYOUT_FILE
     file.write_text(text)
     with pytest.raises(WorldError) as error:
         read_layout(file, floor("pair_turn"))
@@ -36,7 +36,7 @@ def problems(tmp_path: Path, text: str) -> list[str]:
 
 
 def test_tutorial_3_as_its_author_drew_it() -> None:
-    layout = layout_of(CARDS["pair_turn"].world_file, floor("pair_turn"))
+    layout = load_layout(CARDS["pair_turn"].world_file, floor("pair_turn"))
     assert layout.intensities == Intensities(walls=-1, target=15, robot=-1, tension=100)
     lines = [charge for charge in layout.charges if isinstance(charge, LineCharge)]
     (composite,) = (charge for charge in layout.charges if isinstance(charge, CompositeCharge))
@@ -50,8 +50,8 @@ def test_tutorial_3_as_its_author_drew_it() -> None:
 @pytest.mark.parametrize("name", DRAWN)
 def test_a_layout_drawn_by_hand_says_what_the_walls_say_to_the_centimetre(name: str) -> None:
     ground = floor(name)
-    layout = layout_of(CARDS[name].world_file, ground)
-    said = differences(layout.charges, derive(ground))
+    layout = load_layout(CARDS[name].world_file, ground)
+    said = layout_differences(layout.charges, derive_charges(ground))
     assert all("0.010 m off" in each for each in said)
     assert len(said) == (3 if name == "pair_turn" else 0)
 
@@ -70,7 +70,7 @@ def test_every_map_has_a_layout_that_pushes_off_its_walls(name: str) -> None:
 def test_a_pillar_is_one_composite_of_four_lines_and_four_corners() -> None:
     room = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
     pillar = [(1, 1, 2, 1), (2, 1, 2, 2), (2, 2, 1, 2), (1, 2, 1, 1)]
-    charges = derive(box(*room, *pillar, inside=(3, 3)))
+    charges = derive_charges(box(*room, *pillar, inside=(3, 3)))
     (composite,) = (charge for charge in charges if isinstance(charge, CompositeCharge))
     assert (len(composite.lines), len(composite.points)) == (4, 4)
     assert len(charges) == 5
@@ -80,7 +80,7 @@ def test_a_pillar_is_one_composite_of_four_lines_and_four_corners() -> None:
 
 def test_a_slanting_wall_that_ends_in_the_room_has_corners_at_its_ends() -> None:
     room = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
-    charges = derive(box(*room, (1, 1, 2, 2), inside=(3, 1)))
+    charges = derive_charges(box(*room, (1, 1, 2, 2), inside=(3, 1)))
     (composite,) = (charge for charge in charges if isinstance(charge, CompositeCharge))
     assert {(point.x, point.y) for point in composite.points} == {(1, 1), (2, 2)}
 
@@ -88,7 +88,7 @@ def test_a_slanting_wall_that_ends_in_the_room_has_corners_at_its_ends() -> None
 def test_walls_that_look_onto_nothing_but_the_outside_get_no_charge() -> None:
     inner = [(0, 0, 2, 0), (2, 0, 2, 2), (2, 2, 0, 2), (0, 2, 0, 0)]
     outer = [(-0.1, -0.1, 2.1, -0.1), (2.1, -0.1, 2.1, 2.1), (2.1, 2.1, -0.1, 2.1), (-0.1, 2.1, -0.1, -0.1)]
-    assert len(list(members(derive(box(*inner, *outer, inside=(1, 1)))))) == 4
+    assert len(list(iter_members(derive_charges(box(*inner, *outer, inside=(1, 1)))))) == 4
 
 
 @pytest.mark.parametrize(
@@ -132,5 +132,5 @@ def test_an_intensity_scales_the_field_without_a_new_one() -> None:
 
 
 def test_a_charge_may_count_for_more(tmp_path: Path) -> None:
-    (tmp_path / FILE).write_text(f"{GOOD}charges:\n  - point: [0, 0]\n    times: 2\n")
-    assert read_layout(tmp_path / FILE).wall_forces((1, 0)) == pytest.approx([2, 0])
+    (tmp_path / LAYOUT_FILE).write_text(f"{GOOD}charges:\n  - point: [0, 0]\n    times: 2\n")
+    assert read_layout(tmp_path / LAYOUT_FILE).wall_forces((1, 0)) == pytest.approx([2, 0])

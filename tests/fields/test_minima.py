@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from kit.fields.charges import Field, LineCharge
-from kit.fields.controller_setup import Course, middle_of
-from kit.fields.layout import Intensities, Layout
-from kit.fields.minima import Flow
-from kit.fields.occupancy_grid import Floor
+from kit.fields.charges import ChargeField, LineCharge
+from kit.fields.controller_setup import ControllerSetup, mean_position
+from kit.fields.layout import ChargeLayout, Intensities
+from kit.fields.minima import ForceFlow
+from kit.fields.occupancy_grid import OccupancyGrid
 from kit.run.scenario import find_place
 
 ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
@@ -19,9 +19,11 @@ ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
 
 def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
     """A target of 4 at (0, 2) behind a line along y = 1: 4 / (2 - y)^2 = 1 / (1 - y)^2 at y = 0."""
-    floor = Floor.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    floor = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
     charges = (LineCharge(-1.9, 1, 1.9, 1),)
-    flow = Flow.of(Layout(charges, Intensities(target=4), None, Field.of(charges)), floor, (0.0, 2.0))
+    flow = ForceFlow.of(
+        ChargeLayout(charges, Intensities(target=4), None, ChargeField.of(charges)), floor, (0.0, 2.0)
+    )
     (trap,) = flow.traps(least=0.2)
     assert trap[:2] == pytest.approx((0, 0), abs=0.06)
     assert not flow.reaches(0.5, -1.0)
@@ -30,8 +32,8 @@ def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
 
 
 def test_a_target_alone_has_no_trap() -> None:
-    floor = Floor.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
-    flow = Flow.of(Layout((), Intensities(), None, Field.of(())), floor, (0.5, 2.0))
+    floor = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    flow = ForceFlow.of(ChargeLayout((), Intensities(), None, ChargeField.of(())), floor, (0.5, 2.0))
     assert flow.traps() == ()
     assert flow.reaches(-1.5, -1.5)
     assert flow.end(5, 5) is None
@@ -45,8 +47,10 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
         whole = name.replace("_90", f"_{case}_90").replace("_180", f"_{case}_180")
         place = find_place(name, whole)
         assert place.case is not None
-        course = Course.open(place.world.file, place.partners, place.case.target, place.case.target_radius)
-        reaches = course.flow.reaches(*middle_of(place.starts))
+        course = ControllerSetup.open(
+            place.world.file, place.partners, place.case.target, place.case.target_radius
+        )
+        reaches = course.flow.reaches(*mean_position(place.starts))
         assert reaches is ("180" not in name)
         assert bool(course.flow.traps()) is ("180" in name)
 
@@ -54,9 +58,9 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
 def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
     place = find_place("pair_turn_180")
     assert place.case is not None
-    course = Course.open(place.world.file, ["left"], place.case.target)
+    course = ControllerSetup.open(place.world.file, ["left"], place.case.target)
     ways = course.ways((0.63, 0.5))
-    flow = Flow.following(ways.directions(), course.floor, place.case.target)
+    flow = ForceFlow.following(ways.directions(), course.floor, place.case.target)
     reachable = np.argwhere(np.isfinite(ways.cost))
     ends = [flow.end(*course.floor.middle((int(row), int(column)))) for row, column in reachable[::37]]
     assert all(end is not None and math.dist(end, place.case.target) < 0.3 for end in ends)

@@ -9,16 +9,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.fields.controller_setup import Course
-from kit.fields.occupancy_grid import Floor, wall_depth
-from kit.fields.planner import Size, Unreachable, Ways, evenly, sampled
-from kit.fields.trajectory import TICK, Comfort, Follower, Ride, plan_ride, twist_between
+from kit.fields.controller_setup import ControllerSetup
+from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
+from kit.fields.planner import CostToGo, Unreachable, VehicleSize, interpolate_grid, resample_path
+from kit.fields.trajectory import (
+    STEP_S,
+    ComfortLimits,
+    Trajectory,
+    TrajectoryTracker,
+    plan_trajectory,
+    twist_between,
+)
 from kit.geometry import Pose, wrap_angle
 from kit.run.scenario import Place, find_place
 from kit.world.catalogue import all_maps
 
-LIMITS = Comfort()
-SMALL = Size(0.14, 0.14)
+LIMITS = ComfortLimits()
+SMALL = VehicleSize(0.14, 0.14)
 CASES = [
     pytest.param(card.name, case.name, id=case.name)
     for card in all_maps()
@@ -33,14 +40,14 @@ PAIRS = [
 ]
 
 
-def course(place: Place) -> Course:
+def course(place: Place) -> ControllerSetup:
     assert place.case is not None
-    return Course.open(place.world.file, place.partners, place.case.target, place.case.target_radius)
+    return ControllerSetup.open(place.world.file, place.partners, place.case.target, place.case.target_radius)
 
 
-def room(*walls: tuple[float, float, float, float]) -> Floor:
+def room(*walls: tuple[float, float, float, float]) -> OccupancyGrid:
     around = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
-    return Floor.of(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
+    return OccupancyGrid.of(np.array([*around, *walls], dtype=float), [(0.5, 0.5)])
 
 
 @pytest.mark.parametrize(("name", "case"), CASES)
@@ -53,7 +60,10 @@ def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str
         assert math.dist(first[:2], start[:2]) < 0.06
         assert abs(wrap_angle(first[2] - start.theta)) < 0.06
     for robot, track in zip(here.robots, ride.tracks(), strict=True):
-        assert sampled(here.floor, here.floor.clearance, track).min() > robot.reach - 0.5 * here.floor.cell
+        assert (
+            interpolate_grid(here.floor, here.floor.clearance, track).min()
+            > robot.reach - 0.5 * here.floor.cell
+        )
     assert math.dist(ride.poses[-1, :, :2].mean(axis=0), place.case.target) < 0.02
 
 
@@ -65,7 +75,7 @@ def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) 
     assert np.hypot(*(left - right).T) == pytest.approx(np.full(len(left), 0.3), abs=0.02)
     commands = np.array(
         [
-            [twist_between(Pose(*now), Pose(*then), TICK) for now, then in zip(one, other, strict=True)]
+            [twist_between(Pose(*now), Pose(*then), STEP_S) for now, then in zip(one, other, strict=True)]
             for one, other in zip(ride.poses[:-1].tolist(), ride.poses[1:].tolist(), strict=True)
         ]
     )
@@ -73,20 +83,20 @@ def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) 
     assert speed.min() > -1e-3
     assert speed.max() <= LIMITS.speed * 1.03
     assert np.abs(turn).max() <= LIMITS.turn_rate * 1.1
-    assert np.abs(np.diff(speed, axis=0)).max() / TICK <= LIMITS.acceleration * 1.6
-    jerk = np.diff(speed, 2, axis=0) / TICK**2
+    assert np.abs(np.diff(speed, axis=0)).max() / STEP_S <= LIMITS.acceleration * 1.6
+    jerk = np.diff(speed, 2, axis=0) / STEP_S**2
     assert np.abs(jerk).max() <= 2 * LIMITS.acceleration / LIMITS.easing * 2
 
 
 def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
     floor = room((2, 0, 2, 3))
-    ways = Ways.to(floor, (3.5, 0.5), SMALL, (0.5, 0.5))
+    ways = CostToGo.to(floor, (3.5, 0.5), SMALL, (0.5, 0.5))
     ways.check((0.5, 0.5))
     way = ways.way((0.5, 0.5))
     length = float(np.hypot(*np.diff(way, axis=0).T).sum())
     shortest = 2 * math.hypot(1.5, 2.5)
     assert shortest < length < 1.12 * shortest
-    assert sampled(floor, floor.clearance, way).min() >= 0.125
+    assert interpolate_grid(floor, floor.clearance, way).min() >= 0.125
 
 
 @pytest.mark.parametrize(
@@ -94,13 +104,13 @@ def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
     [
         ([(2, 0, 2, 4)], SMALL, "walls close it off"),
         ([(2, 0, 2, 1.9), (2, 2.1, 2, 4)], SMALL, "0.28 m wide: where it is narrowest, the widest leaves 0.2"),
-        ([(2, 0, 2, 1.8), (2, 2.2, 2, 4)], Size(0.25, 0.14, "the two"), "wide enough for the two, 0.50 m wide"),
+        ([(2, 0, 2, 1.8), (2, 2.2, 2, 4)], VehicleSize(0.25, 0.14, "the two"), "wide enough for the two, 0.50 m wide"),
     ],
 )  # fmt: skip
 def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
-    walls: list[tuple[float, float, float, float]], size: Size, said: str
+    walls: list[tuple[float, float, float, float]], size: VehicleSize, said: str
 ) -> None:
-    ways = Ways.to(room(*walls), (3.5, 2.0), size, (0.5, 2.0))
+    ways = CostToGo.to(room(*walls), (3.5, 2.0), size, (0.5, 2.0))
     with pytest.raises(Unreachable, match=said):
         ways.check((0.5, 2.0))
 
@@ -108,9 +118,9 @@ def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
 def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
     floor = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
     with pytest.raises(Unreachable, match="lies inside one"):
-        Ways.to(floor, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.to(floor, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
     with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too near to a wall for the robot"):
-        Ways.to(floor, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.to(floor, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
 
 
 def test_how_deep_inside_a_wall() -> None:
@@ -123,30 +133,30 @@ def test_how_deep_inside_a_wall() -> None:
 
 
 def test_who_stands_elsewhere_lines_up_first() -> None:
-    way = evenly(np.array([(0.0, 0.0), (2.0, 0.0)]), 0.03)
-    ride = plan_ride(way, [Pose(0, 0.15, 0), Pose(0.4, -0.6, 2.0)], 0.3)
+    way = resample_path(np.array([(0.0, 0.0), (2.0, 0.0)]), 0.03)
+    ride = plan_trajectory(way, [Pose(0, 0.15, 0), Pose(0.4, -0.6, 2.0)], 0.3)
     assert ride.poses[0, 1] == pytest.approx([0.4, -0.6, 2.0])
     assert ride.poses[-1, 1, :2] == pytest.approx([2, -0.15], abs=1e-6)
     first = int(np.argmax(ride.poses[:, 0, 0] > 1e-6))
     assert ride.poses[first - 2, 1] == pytest.approx(
         [0, -0.15, 0], abs=0.01
     )  # there before the left one goes
-    assert np.hypot(*np.diff(ride.poses[:, 1, :2], axis=0).T).max() < LIMITS.speed * TICK * 1.05
+    assert np.hypot(*np.diff(ride.poses[:, 1, :2], axis=0).T).max() < LIMITS.speed * STEP_S * 1.05
 
 
 @given(st.floats(-0.05, 0.05), st.floats(-0.05, 0.05), st.floats(-0.4, 0.4))
 def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> None:
-    way = evenly(np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 0.5)]), 0.03)
-    ride = plan_ride(way, [Pose()], 0.3)
-    follower, pose = Follower(ride), Pose(x, y, theta)
+    way = resample_path(np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 0.5)]), 0.03)
+    ride = plan_trajectory(way, [Pose()], 0.3)
+    follower, pose = TrajectoryTracker(ride), Pose(x, y, theta)
     for _ in range(3 * len(ride.poses)):
         (command,) = follower.commands([pose])
-        half = pose.compose(Pose(0, 0, 0.5 * command.turn * TICK))
-        step = command.forward * TICK
+        half = pose.compose(Pose(0, 0, 0.5 * command.turn * STEP_S))
+        step = command.forward * STEP_S
         pose = Pose(
             pose.x + step * math.cos(half.theta),
             pose.y + step * math.sin(half.theta),
-            pose.theta + command.turn * TICK,
+            pose.theta + command.turn * STEP_S,
         )
         if follower.is_over:
             break
@@ -155,8 +165,8 @@ def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> 
 
 
 def test_who_falls_behind_is_waited_for() -> None:
-    ride = Ride(np.zeros((50, 2, 3)) + np.linspace(0, 1, 50)[:, None, None] * (1, 0, 0))
-    follower = Follower(ride)
+    ride = Trajectory(np.zeros((50, 2, 3)) + np.linspace(0, 1, 50)[:, None, None] * (1, 0, 0))
+    follower = TrajectoryTracker(ride)
     for _ in range(10):
         follower.commands([Pose(0.0, 0, 0), Pose(-0.5, 0, 0)])
     assert follower.tick == 0

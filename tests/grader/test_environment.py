@@ -12,7 +12,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.observations import NINE
+from kit.learning.environment.observations import NINE_NUMBERS
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
@@ -159,6 +159,6 @@ def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, 
 
 def test_the_sectors_are_those_that_agents_of_the_kit_see() -> None:
     ranges = [1.0 + 0.001 * ray for ray in range(91)]
-    wanted = [min(ranges[ray] for ray in range(91) if NINE.sectors[ray] == k) for k in range(9)]
+    wanted = [min(ranges[ray] for ray in range(91) if NINE_NUMBERS.sectors[ray] == k) for k in range(9)]
     assert sector_minima(ranges, 9, 2.0) == wanted
     assert sector_minima([math.nan] * 91, 9, 2.0) == [2.0] * 9

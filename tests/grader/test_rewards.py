@@ -22,7 +22,7 @@ from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER
 from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward
-from kit.learning.training.student_reward import columns_of
+from kit.learning.training.student_reward import reward_columns
 
 ROOM = GridTask(
     (
@@ -178,7 +178,7 @@ def test_the_model_drives_as_the_map_says() -> None:
 
 def test_every_fact_that_the_model_knows_is_told() -> None:
     steps = TransitionBatch.all(room(SMALL))
-    for name, column in columns_of(to_transition(steps), MODEL_FACTS).items():
+    for name, column in reward_columns(to_transition(steps), MODEL_FACTS).items():
         assert len(column) == len(steps), name
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from kit.kernels import kernels
 from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells, make_wall_blocks
-from kit.learning.environment.batch_map import FEW_WALLS, ground
+from kit.learning.environment.batch_map import FEW_WALLS, load_batch_map
 from kit.world.catalogue import find_map
 
 AUTHORS = [-3.14159265359 + i * 0.06981317007 for i in range(91)]
@@ -47,7 +47,7 @@ def test_a_lidar_without_rays_has_no_lines() -> None:
 
 @pytest.mark.parametrize("name", ["slalom", "hall_curve_180", "hall_two_doors", "turn", "maze"])
 def test_what_a_view_leaves_out_cannot_be_seen(name: str) -> None:
-    walls = ground(find_map(name)).walls if name != "maze" else _maze()
+    walls = load_batch_map(find_map(name)).walls if name != "maze" else _maze()
     made, rays = (
         make_visibility_cells([None, walls]),
         make_beams(np.linspace(-math.pi, math.pi, 720, endpoint=False)),

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.actions import Move
-from kit.learning.environment.batch import BatchEnv, Step
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Task
+from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask
 from kit.learning.environment.transition import Transition
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
@@ -27,7 +27,7 @@ def actions_of(batch: BatchEnv, chance: np.random.Generator) -> NDArray[np.int64
     return numbers @ len(batch.task.actions.moves) ** np.arange(robots - 1, -1, -1)
 
 
-def steps(batch: BatchEnv, count: int, seed: int = 0) -> Iterator[Step]:
+def steps(batch: BatchEnv, count: int, seed: int = 0) -> Iterator[BatchStep]:
     """What so many steps of chance give."""
     chance = np.random.default_rng(seed)
     for _ in range(count):
@@ -60,6 +60,6 @@ def joined(transitions: list[Transition]) -> Transition:
     return Transition(max_steps=transitions[0].max_steps, **columns)
 
 
-def short(task: Task, case: str) -> Task:
+def short(task: LearningTask, case: str) -> LearningTask:
     """The task on one case."""
     return replace(task, cases=(case,))

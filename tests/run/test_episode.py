@@ -15,7 +15,7 @@ from grader.evidence.environment import EnvironmentTask, examine_environment
 from grader.evidence.episodes import EpisodeSpec, run_episode
 from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_run import run_world
-from kit.controllers import ControllerFile, find
+from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.node_process import Guest
@@ -100,8 +100,8 @@ def test_a_controller_gets_the_same_arguments_everywhere(
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
     with Session(place) as session:
-        session.drive_with(find(str(file)))
-    race(level_on(map_name, case), find("random_walk"))
+        session.drive_with(find_controller(str(file)))
+    race(level_on(map_name, case), find_controller("random_walk"))
     run_episode(EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False), file, limits=DESK, level=DESK_LEVEL)
     task = EnvironmentTask("Env", place, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
     with pytest.raises(GuestError):
@@ -174,7 +174,7 @@ def test_the_same_metrics_and_end_everywhere(
 ) -> None:
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
-    own = at_the_desk(map_name, None, find(str(file)), seconds)
+    own = at_the_desk(map_name, None, find_controller(str(file)), seconds)
     assert own.end is end
 
     trial = trial_on(map_name, None, seconds)
@@ -185,7 +185,7 @@ def test_the_same_metrics_and_end_everywhere(
 
     case = trial.place.case
     assert case is not None
-    finish, recording = race(level_on(map_name, case.name, seconds / 6), find(str(file)))
+    finish, recording = race(level_on(map_name, case.name, seconds / 6), find_controller(str(file)))
     assert finish.failure is None
     assert finish.reached == (end is EndReason.REACHED)
     assert finish.seconds == own.metrics.time_s

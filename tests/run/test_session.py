@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.controllers import find, in_folder, shipped
-from kit.controllers.workspace_files import open_desk
+from kit.controllers import find_controller, kit_controllers, prepare_workspace, user_controllers
 from kit.run.headless import run_headless
 from kit.run.recording import load, rerun
 from kit.run.scenario import find_place, place_on_map
@@ -66,10 +65,10 @@ def speed(session: Session) -> float:
     return float(np.hypot(vx, vy))
 
 
-@pytest.mark.parametrize("name", [each.name for each in shipped()])
+@pytest.mark.parametrize("name", [each.name for each in kit_controllers()])
 def test_every_controller_of_the_kit_drives(name: str) -> None:
     with Session(place_on_map(find_map("simple")), seed=1) as session:
-        session.drive_with(find(name))
+        session.drive_with(find_controller(name))
         session.wait_until_driven()
         session.keys.publish(["p_up"])
         run(session, 8.0)  # some turn on the spot first
@@ -78,8 +77,8 @@ def test_every_controller_of_the_kit_drives(name: str) -> None:
 
 
 def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
-    desk = open_desk(tmp_path / "desk")
-    (mine,) = in_folder(desk.controllers)
+    desk = prepare_workspace(tmp_path / "desk")
+    (mine,) = user_controllers(desk.controllers)
     with Session(place_on_map(find_map("simple"))) as session:
         session.drive_with(mine)
         session.wait_until_driven()
@@ -87,12 +86,16 @@ def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
         assert session.failure is None
         assert session.metrics.metrics.distance_m == 0.0
     mine.file.write_text("# mine\n")
-    assert in_folder(open_desk(tmp_path / "desk").controllers)[0].file.read_text() == "# mine\n"
+    assert (
+        user_controllers(prepare_workspace(tmp_path / "desk").controllers)[0].file.read_text() == "# mine\n"
+    )
 
 
 def test_the_robot_stops_when_its_controller_does(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("simple"))) as session:
-        session.drive_with(find(str(write(tmp_path, 0.2, "if self.count == 10: raise ValueError('tired')"))))
+        session.drive_with(
+            find_controller(str(write(tmp_path, 0.2, "if self.count == 10: raise ValueError('tired')")))
+        )
         session.wait_until_driven()
         run(session, 0.3)
         assert speed(session) == pytest.approx(0.2, abs=1e-6)
@@ -105,7 +108,7 @@ def test_the_robot_stops_when_its_controller_does(tmp_path: Path) -> None:
 
 def test_nobody_drives_any_more(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("simple"))) as session:
-        session.drive_with(find(str(write(tmp_path))))
+        session.drive_with(find_controller(str(write(tmp_path))))
         session.wait_until_driven()
         run(session, 0.2)
         session.drive_with(None)
@@ -117,7 +120,7 @@ def test_nobody_drives_any_more(tmp_path: Path) -> None:
 def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("simple"))) as session:
         file = write(tmp_path, 0.1)
-        session.drive_with(find(str(file)))
+        session.drive_with(find_controller(str(file)))
         session.wait_until_driven()
         run(session, 0.2)
         file.write_text("def broken(:\n")
@@ -132,7 +135,7 @@ def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) ->
 def test_what_a_controller_prints_and_logs_is_heard(tmp_path: Path) -> None:
     more = "print('by hand') if self.count == 1 else self.get_logger().warning('by the logger')"
     with Session(place_on_map(find_map("simple"))) as session:
-        session.drive_with(find(str(write(tmp_path, 0.1, more))))
+        session.drive_with(find_controller(str(write(tmp_path, 0.1, more))))
         session.wait_until_driven()
         run(session, 0.5, until=lambda: len(session.messages) > 3)
         heard = {(record.name, record.severity.name, record.text) for record in session.messages}
@@ -143,7 +146,7 @@ def test_what_a_controller_prints_and_logs_is_heard(tmp_path: Path) -> None:
 def test_keys_pressed_before_the_listener_came_are_told_to_it() -> None:
     with Session(place_on_map(find_map("simple"))) as session:
         session.keys.publish(["p_up", "p_left", "r_left"])
-        session.drive_with(find("teleop"))
+        session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         run(session, 0.3)
         assert speed(session) == pytest.approx(0.5, abs=1e-6)
@@ -154,7 +157,7 @@ def test_keys_pressed_before_the_listener_came_are_told_to_it() -> None:
 
 def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
     with Session(place_on_map(find_map("maze"))) as session:
-        session.drive_with(find("teleop"))
+        session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         start = session.runner.simulation.pose("serp")
         session.keys.publish(["p_up"])
@@ -174,7 +177,7 @@ def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
 
 def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("simple"))) as session:
-        session.drive_with(find(str(write(tmp_path, 0.3))))
+        session.drive_with(find_controller(str(write(tmp_path, 0.3))))
         session.wait_until_driven()
         run(session, 1.0)
         assert session.metrics.metrics.distance_m > 0.2
@@ -187,14 +190,16 @@ def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
 
 def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
     def fingerprint(seed: int) -> str:
-        return run_headless(find_place("maze"), find("random_walk"), steps=1500, seed=seed).fingerprint
+        return run_headless(
+            find_place("maze"), find_controller("random_walk"), steps=1500, seed=seed
+        ).fingerprint
 
     assert fingerprint(3) == fingerprint(3) != fingerprint(4)
 
 
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_place("maze"), find("random_walk"), steps=1200, seed=2, record=file)
+    run_headless(find_place("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
     recording = load(file)
     again = rerun(recording, find_place(recording.place, recording.case).world)
     assert np.array_equal(again.poses, recording.poses)
@@ -202,7 +207,7 @@ def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
 
 def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
     place = find_place("hall_straight")
-    summary = run_headless(place, find(str(write(tmp_path, 0.3))), steps=2000, until_reached=True)
+    summary = run_headless(place, find_controller(str(write(tmp_path, 0.3))), steps=2000, until_reached=True)
     assert place.case is not None
     assert summary.metrics.reached_s is not None
     assert summary.metrics.target_m == pytest.approx(place.case.target_radius, abs=0.01)
@@ -214,11 +219,11 @@ def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
 
 def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("pair_straight"))) as session:
-        session.drive_with(find(str(write(tmp_path))))
+        session.drive_with(find_controller(str(write(tmp_path))))
         session.wait_until_driven()
         run(session, 1.0)
         assert session.metrics.metrics.distance_m == pytest.approx(0.2, abs=0.03)
-        session.drive_with(find("teleop"))
+        session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         session.keys.publish(["p_up"])
         run(session, 0.5)
@@ -232,7 +237,7 @@ def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> No
         "self.right.publish(command)"
     )
     with Session(place_on_map(find_map("pair_straight"))) as session:
-        session.drive_with(find(str(write(tmp_path, 0.2, both))))
+        session.drive_with(find_controller(str(write(tmp_path, 0.2, both))))
         session.wait_until_driven()
         run(session, 0.5)
         assert abs(session.runner.simulation.state().bodies[1].velocity[1]) > 0.1
@@ -246,7 +251,7 @@ def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> No
 
 def test_hanging_up_frees_a_tick_that_waits_for_a_controller(tmp_path: Path) -> None:
     with Session(place_on_map(find_map("simple"))) as session:
-        session.drive_with(find(str(write(tmp_path, 0.2, "while self.count == 3: pass"))))
+        session.drive_with(find_controller(str(write(tmp_path, 0.2, "while self.count == 3: pass"))))
         session.wait_until_driven()
         timer = threading.Timer(0.5, session.hang_up)
         timer.start()

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.scenario import Place, find_place
 from kit.run.recording import Recorder, Recording, save
 from kit.run.session import Session
@@ -53,7 +53,7 @@ def driven(place: Place, legs: Sequence[Leg], seed: int = 0) -> Recording:
         case = place.case.name if place.case else None
         recorder = Recorder(place.name, case, session.runner.simulation)
         session.runner.observers.append(recorder)
-        session.drive_with(find("teleop"))
+        session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         for leg in legs:
             if leg == AGAIN:

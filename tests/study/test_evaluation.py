@@ -26,12 +26,19 @@ from kit.school.report.items import analyse, kr20
 from kit.school.report.measures import Ratings
 from kit.school.report.normality import shapiro_wilk
 from kit.school.report.robustness import of_difference
-from kit.study.evaluation import Grid, differences, order_of_scores, recompute, setting_of, unexplained
-from kit.study.evaluation_data import FILE, read_study
-from kit.study.evaluation_report import study_report
+from kit.study.evaluation import (
+    TableRows,
+    print_differences,
+    recompute_tables,
+    score_order,
+    setting_of,
+    unexplained_differences,
+)
+from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
+from kit.study.evaluation_report import evaluation_report
 from kit.world.problems import WorldError
 
-study = cache(read_study)
+study = cache(read_evaluation_data)
 
 
 @cache
@@ -40,8 +47,8 @@ def setting() -> Setting:
 
 
 @cache
-def ours() -> Mapping[str, Grid]:
-    return recompute(study())
+def ours() -> Mapping[str, TableRows]:
+    return recompute_tables(study())
 
 
 EXACT = ("5.4", "5.5", "5.7", "5.8", "5.9")
@@ -72,14 +79,14 @@ def test_these_tables_are_exact(table: str) -> None:
 def test_the_others_differ_in_the_known_cells_and_nowhere_else() -> None:
     found = {
         (each.table, each.row, each.column): (each.printed, round(each.ours, 2))
-        for each in differences(study())
+        for each in print_differences(study())
     }
     assert found == SLIPS
-    assert unexplained(study()) == ()
+    assert unexplained_differences(study()) == ()
 
 
 def test_a_slip_that_nobody_knows_is_unexplained() -> None:
-    assert len(unexplained(replace(study(), slips=study().slips[:1]))) == 2
+    assert len(unexplained_differences(replace(study(), slips=study().slips[:1]))) == 2
 
 
 @pytest.mark.parametrize("subject", range(1, 13))
@@ -90,12 +97,12 @@ def test_one_cell_explains_table_5_6(subject: int) -> None:
         for key, row in study().ratings.values.items()
     }
     changed = replace(study(), ratings=Ratings(study().ratings.questions, values))
-    left = [each for each in differences(changed) if each.table == "5.6"]
+    left = [each for each in print_differences(changed) if each.table == "5.6"]
     assert (not left) == (subject in (3, 4))
 
 
 def test_users_are_these_subjects() -> None:
-    assert [i + 1 for i in order_of_scores(setting())] == [1, 10, 8, 7, 12, 2, 6, 3, 5, 11, 4, 9]
+    assert [i + 1 for i in score_order(setting())] == [1, 10, 8, 7, 12, 2, 6, 3, 5, 11, 4, 9]
 
 
 def test_what_is_doubtful_about_the_divisions() -> None:
@@ -179,7 +186,7 @@ def test_no_difference_of_outcomes_is_more_than_chance() -> None:
 
 
 def test_the_report_names_every_slip() -> None:
-    report = study_report(study())
+    report = evaluation_report(study())
     slips = next(each for each in report.tables if each.id == "slips")
     assert len(slips.rows) == len(SLIPS)
     printed = [each for each in report.tables if each.id.startswith("table-")]
@@ -205,10 +212,10 @@ def test_the_verb_fits_eighty_columns_and_ascii() -> None:
     ],
 )
 def test_a_mistake_in_the_data_is_told(tmp_path: Path, old: str, new: str, words: str) -> None:
-    text = FILE.read_text()
+    text = DATA_FILE.read_text()
     assert old in text
     file = tmp_path / "evaluation.yaml"
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(WorldError) as caught:
-        read_study(file)
+        read_evaluation_data(file)
     assert words in str(caught.value)

@@ -8,22 +8,32 @@ from pathlib import Path
 
 import pytest
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.scenario import Place, find_place, place_in_file
-from kit.study.pairs import NUDGE, TABLE_46, TABLE_53, Outcome, Printed, Summary, nudged, repeat, try_once
+from kit.study.pairs import (
+    START_SHIFT,
+    TABLE_46,
+    TABLE_53,
+    PairRunResult,
+    PairSummary,
+    PrintedPairResult,
+    run_once,
+    run_repeatedly,
+    shift_starts,
+)
 from kit.world.catalogue import maps_folder
 
 NINETY = {"pair_turn_left_90": 0.54, "pair_turn_right_90": 0.62}
 """The dissertation's adjacency."""
 
 
-def at(printed: Printed) -> Place:
+def at(printed: PrintedPairResult) -> Place:
     return find_place(printed.map, printed.case)
 
 
 @pytest.mark.parametrize("printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53)])
-def test_abreast_reaches_every_target_side_by_side(printed: Printed) -> None:
-    found = try_once(at(printed), find("abreast"))
+def test_abreast_reaches_every_target_side_by_side(printed: PrintedPairResult) -> None:
+    found = run_once(at(printed), find_controller("abreast"))
     assert (found.end, found.why) == ("reached", "")
     assert found.by_rays >= 0.85  # noise in the lasers allows 0.96
     assert found.by_geometry == 1.0
@@ -35,8 +45,8 @@ def test_abreast_reaches_every_target_side_by_side(printed: Printed) -> None:
 @pytest.mark.parametrize(
     "printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53) if each.accuracy == 1.0]
 )
-def test_the_dissertations_controller_where_it_succeeds(printed: Printed) -> None:
-    found = try_once(at(printed), find("fields"))
+def test_the_dissertations_controller_where_it_succeeds(printed: PrintedPairResult) -> None:
+    found = run_once(at(printed), find_controller("fields"))
     assert found.end == "reached", found.why
     assert printed.adjacency is not None
     assert found.by_geometry == pytest.approx(printed.adjacency, abs=0.2)
@@ -46,7 +56,7 @@ def test_the_dissertations_controller_where_it_succeeds(printed: Printed) -> Non
 
 @pytest.mark.parametrize("case", ["pair_turn_left_180", "pair_turn_right_180"])
 def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown(case: str) -> None:
-    found = try_once(find_place("pair_turn_180", case), find("fields"))
+    found = run_once(find_place("pair_turn_180", case), find_controller("fields"))
     assert found.end == "stuck"
     assert "trap" in found.why
     assert "46%" in found.why
@@ -54,18 +64,20 @@ def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown
 
 
 def test_the_same_seed_is_the_same_run() -> None:
-    place = nudged(find_place("pair_straight"), 5, 1)
-    assert try_once(place, find("abreast"), seed=7) == try_once(place, find("abreast"), seed=7)
+    place = shift_starts(find_place("pair_straight"), 5, 1)
+    assert run_once(place, find_controller("abreast"), seed=7) == run_once(
+        place, find_controller("abreast"), seed=7
+    )
 
 
 def test_starts_differ_a_little_but_for_the_first() -> None:
     place = find_place("pair_turn")
-    assert nudged(place, 3, 0).starts == place.starts
-    moved = nudged(place, 3, 1)
-    assert moved.starts == nudged(place, 3, 1).starts
-    assert moved.starts != nudged(place, 4, 1).starts
+    assert shift_starts(place, 3, 0).starts == place.starts
+    moved = shift_starts(place, 3, 1)
+    assert moved.starts == shift_starts(place, 3, 1).starts
+    assert moved.starts != shift_starts(place, 4, 1).starts
     for one, other in zip(place.starts, moved.starts, strict=True):
-        assert all(0 < abs(a - b) <= most for a, b, most in zip(one, other, NUDGE, strict=True))
+        assert all(0 < abs(a - b) <= most for a, b, most in zip(one, other, START_SHIFT, strict=True))
 
 
 def test_a_collision_says_who_touched_what(tmp_path: Path) -> None:
@@ -84,7 +96,7 @@ def test_a_collision_says_who_touched_what(tmp_path: Path) -> None:
         "        for drive in self.drives:\n"
         "            drive.publish(command)\n"
     )
-    found = try_once(find_place("pair_turn"), find(str(straight)))
+    found = run_once(find_place("pair_turn"), find_controller(str(straight)))
     assert found.end == "collided"
     assert "touched a wall" in found.why
 
@@ -96,7 +108,7 @@ def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Pat
     text = pair.world.file.read_text()
     (tmp_path / "world.yaml").write_text(text.replace("../hall_straight/", "").replace("../robots/", ""))
     narrow = replace(place_in_file(tmp_path / "world.yaml"), case=pair.case, robot="left")
-    found = try_once(narrow, find("abreast"))
+    found = run_once(narrow, find_controller("abreast"))
     assert found.end == "stuck"
     assert "Not driving. No way" in found.why
     assert "wide enough for two robots side by side, 0.49 m wide" in found.why
@@ -104,9 +116,9 @@ def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Pat
 
 
 def test_a_summary_counts_ways_to_fail() -> None:
-    good = Outcome("reached", "", 10.0, 1.0, 0.9, 1.0, 3.0, 0.1, 0.2)
+    good = PairRunResult("reached", "", 10.0, 1.0, 0.9, 1.0, 3.0, 0.1, 0.2)
     bad = replace(good, end="stuck", why="there", nearest_wall_m=0.05, time_s=30.0)
-    found = Summary.of("case", "who", [good, bad, replace(bad, why="elsewhere"), good])
+    found = PairSummary.of("case", "who", [good, bad, replace(bad, why="elsewhere"), good])
     assert found.accuracy == 0.5
     assert found.failures == ((2, "stuck: there"),)
     assert found.nearest_wall_m == 0.05
@@ -115,8 +127,11 @@ def test_a_summary_counts_ways_to_fail() -> None:
 
 def test_runs_are_told_as_they_end() -> None:
     told: list[int] = []
-    found = repeat(
-        find_place("pair_straight"), find("abreast"), runs=2, on_run=lambda number, _: told.append(number)
+    found = run_repeatedly(
+        find_place("pair_straight"),
+        find_controller("abreast"),
+        runs=2,
+        on_run=lambda number, _: told.append(number),
     )
     assert told == [0, 1]
     assert (found.runs, found.accuracy) == (2, 1.0)

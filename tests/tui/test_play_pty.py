@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import kit as kit_package
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.run.headless import run_headless
 from kit.run.recording import load, rerun
 from kit.run.scenario import find_place
@@ -238,7 +238,7 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
 
 def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_place("maze"), find("random_walk"), steps=150, seed=2, record=file)
+    run_headless(find_place("maze"), find_controller("random_walk"), steps=150, seed=2, record=file)
     terminal = kit("replay", str(file))
     assert "run.npz" in terminal.text or "maze" in terminal.text
     terminal.until(lambda: "0:01.50" in terminal.text, "the end")

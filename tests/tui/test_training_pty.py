@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.training.runs import Run, all_runs
+from kit.learning.training.runs import TrainingRun, list_runs
 from tests.tui.test_play_pty import KIT, ROBOT, User, resize
 from tests.tui.widgets.test_world_view_pty import run_on
 
@@ -33,15 +33,15 @@ def kit() -> Iterator[Open]:
     yield run
     for terminal in made:
         terminal.close()
-    for training in all_runs(Path(os.environ["KIT_WORKSPACE"]) / "runs"):
+    for training in list_runs(Path(os.environ["KIT_WORKSPACE"]) / "runs"):
         training.ask("stop")
         end = time.monotonic() + 30
         while training.alive and time.monotonic() < end:
             time.sleep(0.05)
 
 
-def the_run(name: str = "mine") -> Run:
-    return Run(Path(os.environ["KIT_WORKSPACE"]) / "runs" / name)
+def the_run(name: str = "mine") -> TrainingRun:
+    return TrainingRun(Path(os.environ["KIT_WORKSPACE"]) / "runs" / name)
 
 
 def steps(terminal: User) -> int:

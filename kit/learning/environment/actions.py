@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-Integers = NDArray[np.int64]
+IntArray = NDArray[np.int64]
 
 
 class Move(IntEnum):
@@ -24,11 +24,11 @@ class Move(IntEnum):
     FORWARD_RIGHT = 6
 
 
-DIRECTIONS = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1)], dtype=np.float64)
+MOVE_DIRECTIONS = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1)], dtype=np.float64)
 """(7, 2): by which sign speed and turn rate count, move by move."""
 
 
-MIRRORED = {
+MIRRORED_MOVES = {
     Move.LEFT: Move.RIGHT,
     Move.RIGHT: Move.LEFT,
     Move.FORWARD_LEFT: Move.FORWARD_RIGHT,
@@ -55,7 +55,7 @@ class Actions:
             return spaces.Discrete(count**robots)
         return spaces.MultiDiscrete([count] * robots)
 
-    def chosen(self, actions: NDArray[np.integer], robots: int) -> Integers:
+    def chosen(self, actions: NDArray[np.integer], robots: int) -> IntArray:
         """(n, robots): each robot's place in ``moves``, from actions (n,) or (n, robots) of ``space``.
 
         Raises ValueError where an action is not in the space: a compiled loop would read past its tables.
@@ -69,32 +69,32 @@ class Actions:
             raise ValueError(f"an action is outside {self.space(robots)}: {actions}")
         return choices
 
-    def mirrored(self) -> Integers:
+    def mirrored(self) -> IntArray:
         """(k,) which of the moves each one is in a mirror. Raises ValueError where that is none of them."""
-        other = [MIRRORED.get(move, move) for move in self.moves]
+        other = [MIRRORED_MOVES.get(move, move) for move in self.moves]
         if not set(other) <= set(self.moves):
             raise ValueError("the moves to the two sides are not alike")
         return np.array([self.moves.index(move) for move in other], dtype=np.int64)
 
     @property
-    def codes(self) -> Integers:
+    def codes(self) -> IntArray:
         """(k,) the moves as numbers."""
         return np.array(self.moves, dtype=np.int64)
 
     @property
     def twists(self) -> NDArray[np.float64]:
         """(k, 2) forward [m/s] and turn [rad/s] of each move."""
-        return DIRECTIONS[list(self.moves)] * (self.speed, self.turn)
+        return MOVE_DIRECTIONS[list(self.moves)] * (self.speed, self.turn)
 
 
 QUARTER_TURN = 1.57079632679
 SIXTH_OF_A_TURN = 1.0471975512
 
-THREE = Actions((Move.FORWARD, Move.LEFT, Move.RIGHT), 0.5, QUARTER_TURN)
+THREE_MOVES = Actions((Move.FORWARD, Move.LEFT, Move.RIGHT), 0.5, QUARTER_TURN)
 """Tutorial 2 (dissertation, table 5.1)."""
 
-SEVEN = Actions(tuple(Move), 0.3, SIXTH_OF_A_TURN)
+SEVEN_MOVES = Actions(tuple(Move), 0.3, SIXTH_OF_A_TURN)
 """Hallways (table 3.2); for two robots 49."""
 
-FOUR = Actions((Move.STOP, Move.FORWARD, Move.LEFT, Move.RIGHT), 0.3, SIXTH_OF_A_TURN)
+FOUR_MOVES = Actions((Move.STOP, Move.FORWARD, Move.LEFT, Move.RIGHT), 0.3, SIXTH_OF_A_TURN)
 """Two wheelchairs (table 4.3): 16."""

@@ -8,28 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import Ground
-from kit.learning.environment.case_arrays import Courses
-from kit.learning.environment.observations import FAR_TARGET, RAYS
+from kit.learning.environment.batch_map import BatchMap
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.observations import MAX_TARGET_DISTANCE, RAY_COUNT
 from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
-from kit.learning.environment.tasks import Task
+from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import Array, Transition, bearing, distance
 from kit.world.catalogue import MapCard, MapCase
 
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
-Numbers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
+SingleArray = NDArray[np.float32]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
-EVERYONE = slice(None)
+ALL_WORLDS = slice(None)
 NO_MOVE = -1
 FULL_TURN = 2.0 * np.pi
 
-EPISODE = 32
+EPISODE_BITS = 32
 """Every episode of a world has 2 to the power of this many random numbers to itself."""
-START = 1 << 31
+START_DRAWS = 1 << 31
 """Those from here on are for its start, those before for the noise of its scans."""
-ROOM = -(-RAYS // 32) * 32
+SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
 
 
@@ -38,21 +38,21 @@ class RewardError(Exception):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class BatchStep:
     """What a step of all worlds gave. A world whose episode has ended is in its next one already.
 
     The arrays are the caller's to keep.
     """
 
-    observations: Singles
+    observations: SingleArray
     """(n, size): of the running episodes."""
-    rewards: Singles
+    rewards: SingleArray
     """(n,)"""
-    terminated: Flags
+    terminated: BoolArray
     """(n,)"""
-    truncated: Flags
+    truncated: BoolArray
     """(n,)"""
-    final_observations: Singles
+    final_observations: SingleArray
     """(n, size): what was seen before the reset; equal to ``observations`` where nothing has ended."""
     transition: Transition
     """Of n worlds, before the reset."""
@@ -60,40 +60,40 @@ class Step:
     """(n,) each: the reward by named term; empty for a student's reward."""
 
     @property
-    def ended(self) -> Flags:
+    def ended(self) -> BoolArray:
         """(n,)"""
         return self.terminated | self.truncated
 
 
 @dataclass(slots=True, eq=False)
-class State:
+class BatchState:
     """Where ``n`` worlds with r robots each are. A step makes a new one; only a reset writes into it."""
 
-    episode: Numbers
+    episode: IntArray
     """(n,)"""
-    case: Numbers
+    case: IntArray
     """(n,)"""
-    target: Floats
+    target: FloatArray
     """(n, 2)"""
-    step: Numbers
+    step: IntArray
     """(n,) steps of this episode so far."""
-    pose: Floats
+    pose: FloatArray
     """(n, r, 3)"""
-    free: Floats
+    free: FloatArray
     """(n, r): no wall is nearer [m], for sure; 0 where unknown."""
-    to_go: Floats
+    to_go: FloatArray
     """(n, r)"""
-    turned: Floats
+    turned: FloatArray
     """(n, r) rad, since the robot last turned to the other side."""
-    forward_steps: Floats
+    forward_steps: FloatArray
     """(n, r)"""
-    move: Numbers
+    move: IntArray
     """(n, r) the last one, NO_MOVE at the start."""
-    in_target: Flags
+    in_target: BoolArray
     """(n, r)"""
 
     @classmethod
-    def of(cls, n: int, robots: int) -> State:
+    def of(cls, n: int, robots: int) -> BatchState:
         """Room for so many."""
         shape = n, robots
         none, nowhere, no = np.zeros(n, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.bool_)
@@ -103,8 +103,8 @@ class State:
             *(nowhere.copy(), np.full(shape, NO_MOVE, dtype=np.int64), no),
         )
 
-    def copy(self) -> State:
-        return State(*(getattr(self, field.name).copy() for field in fields(self)))
+    def copy(self) -> BatchState:
+        return BatchState(*(getattr(self, field.name).copy() for field in fields(self)))
 
 
 class BatchEnv:
@@ -122,7 +122,7 @@ class BatchEnv:
 
     def __init__(
         self,
-        task: Task,
+        task: LearningTask,
         n: int,
         seed: int = 0,
         *,
@@ -137,22 +137,22 @@ class BatchEnv:
         self.observation_space = task.observation.space(task.robots)
         self.action_space = task.actions.space(task.robots)
         self._reward: RewardFunction = task.reward if reward is None else reward
-        self._courses = Courses(task)
+        self._courses = CaseArrays(task)
         self._single, self._sectors = task.observation.tables(task.robots)
         self._codes, self._twists = task.actions.codes, task.actions.twists
         self._first = first
         self._restart = restart
-        self._own: Numbers | None = (first + np.arange(n)) % len(self.cases) if stay else None
+        self._own: IntArray | None = (first + np.arange(n)) % len(self.cases) if stay else None
         self._keys = self._sown(seed)
-        self._state = State.of(n, task.robots)
+        self._state = BatchState.of(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
 
     @property
-    def state(self) -> State:
+    def state(self) -> BatchState:
         """Where every world is now; not to be written to."""
         return self._state
 
-    def place(self, case: int) -> tuple[MapCard, Ground]:
+    def place(self, case: int) -> tuple[MapCard, BatchMap]:
         """The map of a case, by its number."""
         return self._courses.places[case]
 
@@ -161,7 +161,7 @@ class BatchEnv:
         """Whether worlds stay with their cases."""
         return self._own is not None
 
-    def deal(self, shares: Floats) -> None:
+    def deal(self, shares: FloatArray) -> None:
         """Shares out anew the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
         change, each when its episode is over. ValueError where worlds do not stay."""
         if self._own is None:
@@ -179,7 +179,7 @@ class BatchEnv:
 
     # Beginning
 
-    def reset(self, seed: int | None = None, *, cases: Numbers | None = None) -> Singles:
+    def reset(self, seed: int | None = None, *, cases: IntArray | None = None) -> SingleArray:
         """(n, size) the first observations of new episodes, in every world.
 
         ``seed``: starts everything anew, else the worlds go on to their next episodes. ``cases``: (n,) numbers
@@ -192,20 +192,20 @@ class BatchEnv:
         else:
             self._state.episode += 1
         self._start(np.arange(self.n), cases)
-        return self._look(EVERYONE)[1]
+        return self._look(ALL_WORLDS)[1]
 
-    def _sown(self, seed: int) -> Numbers:
+    def _sown(self, seed: int) -> IntArray:
         """(n,) where each world's randomness comes from."""
         keys = [int(kernels.random_bits(seed, self._first + i)) >> 1 for i in range(self.n)]
         return np.array(keys, dtype=np.int64)
 
-    def _start(self, which: Numbers, cases: Numbers | None = None) -> None:
+    def _start(self, which: IntArray, cases: IntArray | None = None) -> None:
         """Puts the worlds ``which`` at the start of their present episodes."""
         state, courses = self._state, self._courses
         turns = (self._first + which + state.episode[which]) % len(self.cases)
         dealt = turns if self._own is None else self._own[which]
         case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
-        start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE) + START)
+        start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS)
         state.case[which] = case
         state.target[which] = start.targets
         state.step[which] = 0
@@ -219,7 +219,7 @@ class BatchEnv:
 
     # One step
 
-    def step(self, actions: NDArray[np.integer]) -> Step:
+    def step(self, actions: NDArray[np.integer]) -> BatchStep:
         """Every world does one step; ``actions``: (n,), or (n, robots) where the space is MultiDiscrete.
 
         Raises ValueError for actions that are not in the space, and RewardError.
@@ -233,9 +233,9 @@ class BatchEnv:
             terminated, truncated = terminated | truncated, np.zeros_like(truncated)
         over = np.flatnonzero(transition.ended)
         observations = self._restarted(over, final) if len(over) and self._restart else final
-        return Step(observations, rewards, terminated, truncated, final, transition, terms)
+        return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
-    def _advance(self, choices: Numbers) -> tuple[Transition, Singles]:
+    def _advance(self, choices: IntArray) -> tuple[Transition, SingleArray]:
         """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
         task, courses, old = self.task, self._courses, self._state
         twists = self._twists[choices]
@@ -244,7 +244,7 @@ class BatchEnv:
         for _ in range(task.checks):
             kernels.step_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
         turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
-        self._state = new = State(
+        self._state = new = BatchState(
             episode=old.episode,
             case=old.case,
             target=old.target,
@@ -257,7 +257,7 @@ class BatchEnv:
             move=move,
             in_target=self._arrived(pose, old.target),
         )
-        ranges, seen = self._look(EVERYONE)
+        ranges, seen = self._look(ALL_WORLDS)
         transition = Transition(
             case=new.case,
             step=new.step,
@@ -274,11 +274,11 @@ class BatchEnv:
             previous_to_go=old.to_go,
             full_turns=(np.abs(new.turned) / FULL_TURN).astype(np.int64),
             forward_steps=new.forward_steps,
-            ranges=ranges[:, :, :RAYS],
+            ranges=ranges[:, :, :RAY_COUNT],
         )
         return transition, seen
 
-    def _restarted(self, over: Numbers, final: Singles) -> Singles:
+    def _restarted(self, over: IntArray, final: SingleArray) -> SingleArray:
         """The observations, with those of the next episodes of the worlds ``over``."""
         self._state = self._state.copy()
         self._state.episode[over] += 1
@@ -287,7 +287,7 @@ class BatchEnv:
         observations[over] = self._look(over)[1]
         return observations
 
-    def _arrived(self, poses: Floats, targets: Floats) -> Flags:
+    def _arrived(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
         """(m, robots): who is in the target."""
         task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
         kernels.find_arrivals(
@@ -297,14 +297,14 @@ class BatchEnv:
 
     # What agents see and earn
 
-    def _look(self, which: Numbers | slice) -> tuple[Singles, Singles]:
+    def _look(self, which: IntArray | slice) -> tuple[SingleArray, SingleArray]:
         """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
         see of it."""
         seen, state, courses = self.task.observation, self._state, self._courses
         maps, poses = courses.map_of[state.case[which]], state.pose[which]
-        ranges = np.empty((*poses.shape[:2], ROOM), dtype=np.float32)
+        ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
         sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
-        drawn = (state.episode[which] << EPISODE) + state.step[which] * ranges.shape[1]
+        drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
         kernels.scan_worlds(
             *(courses.fleet, maps, poses, self._keys[which], drawn),
             *(seen.clip, self._single, self._sectors, ranges, sensed),
@@ -312,13 +312,13 @@ class BatchEnv:
         sensed *= np.float32(seen.scale)
         if seen.target:
             pose, target, first = state.pose[which], state.target[which], seen.size - seen.arrived - 2
-            sensed[:, :, first] = np.minimum(distance(pose, target), FAR_TARGET) * seen.scale
+            sensed[:, :, first] = np.minimum(distance(pose, target), MAX_TARGET_DISTANCE) * seen.scale
             sensed[:, :, first + 1] = bearing(pose, target) / np.pi
         if seen.arrived:
             sensed[:, :, -1] = state.in_target[which]
         return ranges, sensed.reshape(len(sensed), -1)
 
-    def _rewarded(self, transition: Transition) -> tuple[Singles, dict[str, Array]]:
+    def _rewarded(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
         """(n,) rewards, and what each term adds."""
         if isinstance(self._reward, Reward):
             terms = self._reward.terms(transition)

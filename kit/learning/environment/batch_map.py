@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
-from kit.learning.environment.wall_culling import within_reach
+from kit.learning.environment.wall_culling import cull_walls
 from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
@@ -25,18 +25,18 @@ from kit.world.records import Body, Layer, Model, Polygon, World
 FEW_WALLS = 64
 """So many are looked at one by one: to sort out those out of sight costs more. Measured."""
 
-Corners = tuple[tuple[float, float], ...]
+CornerPoints = tuple[tuple[float, float], ...]
 
 
-class Unsupported(ValueError):
+class UnsupportedWorld(ValueError):
     """The batch engine cannot represent a world; the message names the feature and where it stands."""
 
 
 @dataclass(frozen=True, slots=True)
-class Robot:
+class BatchRobot:
     """What must be alike for all robots of a batch."""
 
-    hull: tuple[Corners, ...]
+    hull: tuple[CornerPoints, ...]
     """Convex polygons, counter-clockwise, in the robot's frame [m]."""
     seen: tuple[bool, ...]
     """Which of them the other robot's lidar sees."""
@@ -47,52 +47,56 @@ class Robot:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ground:
+class BatchMap:
     """One map, as the batch engine sees it."""
 
     name: str
     walls: NDArray[np.float64]
     """(n, 4) ``x1 y1 x2 y2`` [m]: touched by every robot and seen by every lidar. Those that none can ever see or
     touch are left out."""
-    robot: Robot
+    robot: BatchRobot
     starts: tuple[Pose, ...]
     """Where the world file puts the robots."""
 
 
 @cache
-def ground(card: MapCard) -> Ground:
+def load_batch_map(card: MapCard) -> BatchMap:
     """The map's ground. Raises Unsupported, and WorldError if its files are wrong."""
-    return ground_of(load_world(card.world_file, root=card.root), card.name, (card.robot, card.partner))
+    return batch_map_of_world(
+        load_world(card.world_file, root=card.root), card.name, (card.robot, card.partner)
+    )
 
 
-def ground_of(world: World, name: str, robots: Sequence[str | None]) -> Ground:
+def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) -> BatchMap:
     """The same for a world, whose models ``robots`` drive."""
     driving = [model for wanted in robots if wanted for model in world.models if model.name == wanted]
     if len(driving) not in (1, 2):
-        raise Unsupported(f"{name}: the batch engine drives one robot or two, not {len(driving)}")
+        raise UnsupportedWorld(f"{name}: the batch engine drives one robot or two, not {len(driving)}")
     for plugin in world.plugins:
-        raise Unsupported(f"{plugin.location}: the batch engine has no {plugin.type} of the whole world")
+        raise UnsupportedWorld(f"{plugin.location}: the batch engine has no {plugin.type} of the whole world")
     for model in world.models:
         if model not in driving:
             _check_scenery(model)
     made = [_robot(model, watcher) for model, watcher in zip(driving, reversed(driving), strict=True)]
     if made[1:] and made[0] != made[1]:
-        raise Unsupported(f"{driving[1].location}: the batch engine wants two robots alike")
+        raise UnsupportedWorld(f"{driving[1].location}: the batch engine wants two robots alike")
     touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
     seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
-            raise Unsupported(f"{world.file}: the batch engine wants walls that every robot touches and sees")
+            raise UnsupportedWorld(
+                f"{world.file}: the batch engine wants walls that every robot touches and sees"
+            )
     if len(driving) == 2:
         _check_pair(driving[0], driving[1])
         _check_pair(driving[1], driving[0])
     ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
     starts = tuple(model.pose for model in driving)
-    walls = within_reach(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
-    return Ground(name, walls, made[0], starts)
+    walls = cull_walls(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
+    return BatchMap(name, walls, made[0], starts)
 
 
-def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.BatchGeometry:
+def build_fleet(grounds: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
     """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
 
     Raises Unsupported if the robots differ.
@@ -100,7 +104,7 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.B
     first = grounds[0]
     for other in grounds[1:]:
         if other.robot != first.robot or len(other.starts) != len(first.starts):
-            raise Unsupported(
+            raise UnsupportedWorld(
                 f"the batch engine wants robots alike: those of {first.name} and {other.name} differ"
             )
     parts = [
@@ -129,7 +133,7 @@ def fleet_of(grounds: Sequence[Ground], noise: float | None = None) -> kernels.B
     )
 
 
-def _hulls(robot: Robot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:
+def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, NDArray[np.int64]]:
     """Every robot's polygons in its own frame, and whose each corner is."""
     sizes = [len(polygon) for polygon in robot.hull]
     corners = np.array([corner for polygon in robot.hull for corner in polygon])
@@ -148,12 +152,12 @@ def _check_scenery(model: Model) -> None:
     """What neither moves nor touches may stand about: a beacon."""
     for body in model.bodies:
         if body.kind != "static":
-            raise Unsupported(
+            raise UnsupportedWorld(
                 f"{body.location}: the batch engine moves robots only, not the body {body.name}"
             )
         for footprint in body.footprints:
             if footprint.category:
-                raise Unsupported(
+                raise UnsupportedWorld(
                     f"{footprint.location}: the batch engine knows walls and robots, no {body.name}"
                 )
 
@@ -161,53 +165,55 @@ def _check_scenery(model: Model) -> None:
 def _body(model: Model) -> Body:
     if len(model.bodies) != 1 or model.joints:
         what = model.joints[0] if model.joints else model.bodies[1]
-        raise Unsupported(f"{what.location}: the batch engine has no joints, and one body to a robot")
+        raise UnsupportedWorld(f"{what.location}: the batch engine has no joints, and one body to a robot")
     return model.bodies[0]
 
 
 def _laser(model: Model) -> LaserParams:
     lasers = [plugin.params for plugin in model.plugins if isinstance(plugin.params, LaserParams)]
     if len(lasers) != 1:
-        raise Unsupported(
+        raise UnsupportedWorld(
             f"{model.location}: the batch engine wants a robot with one Laser, not {len(lasers)}"
         )
     return lasers[0]
 
 
-def _robot(model: Model, watcher: Model) -> Robot:
+def _robot(model: Model, watcher: Model) -> BatchRobot:
     """``watcher``: whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose() or laser.mount.origin != Pose():
-        raise Unsupported(
+        raise UnsupportedWorld(
             f"{body.location}: the batch engine wants a dynamic body with its lidar at the origin"
         )
     # A lidar does not see the hull in which it stands.
     watched = (footprint for footprint in body.footprints if footprint.category & laser.mount.bits)
     if not all(footprint_contains(footprint, laser.mount.origin) for footprint in watched):
-        raise Unsupported(f"{body.location}: the batch engine wants a robot whose lidar does not see itself")
+        raise UnsupportedWorld(
+            f"{body.location}: the batch engine wants a robot whose lidar does not see itself"
+        )
     drives = [plugin for plugin in model.plugins if isinstance(plugin.params, DiffDriveParams)]
     for plugin in model.plugins:
         if not isinstance(plugin.params, LaserParams | DiffDriveParams | BumperParams):
-            raise Unsupported(f"{plugin.location}: the batch engine has no {plugin.type}")
+            raise UnsupportedWorld(f"{plugin.location}: the batch engine has no {plugin.type}")
     if len(drives) != 1:
-        raise Unsupported(
+        raise UnsupportedWorld(
             f"{model.location}: the batch engine wants a robot with one DiffDrive, not {len(drives)}"
         )
     params = drives[0].params
     assert isinstance(params, DiffDriveParams)
     if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
-        raise Unsupported(f"{drives[0].location}: the batch engine's motors have no limits")
+        raise UnsupportedWorld(f"{drives[0].location}: the batch engine's motors have no limits")
     sight = _laser(watcher).mount.bits
     seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
-    return Robot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
+    return BatchRobot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
 
 
-def _polygons(body: Body) -> Iterator[Corners]:
+def _polygons(body: Body) -> Iterator[CornerPoints]:
     for footprint in body.footprints:
         if footprint.sensor or not footprint.mask:
-            raise Unsupported(f"{footprint.location}: the batch engine wants all footprints colliding")
+            raise UnsupportedWorld(f"{footprint.location}: the batch engine wants all footprints colliding")
         if not isinstance(footprint.shape, Polygon):
-            raise Unsupported(f"{footprint.location}: the batch engine has no round footprints")
+            raise UnsupportedWorld(f"{footprint.location}: the batch engine has no round footprints")
         yield footprint.shape.points
 
 
@@ -220,4 +226,4 @@ def _check_pair(one: Model, other: Model) -> None:
     mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).mount.bits
     touch = all(each.mask & part.mask for each in mine for part in theirs)
     if not touch or not any(sees & part.category for part in theirs):
-        raise Unsupported(f"{one.location}: the batch engine wants robots that touch and see each other")
+        raise UnsupportedWorld(f"{one.location}: the batch engine wants robots that touch and see each other")

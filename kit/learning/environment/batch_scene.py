@@ -8,15 +8,15 @@ from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
 from kit.render.scene import Body, Disc, FloatArray, Scene
 
-ROBOTS = ("left", "right")
+ROBOT_NAMES = ("left", "right")
 
 
-def scene_of(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
+def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
     """What there is to see of one world now. ``trails``: (k, 2) per robot, where each has been."""
     state = batch.state
     card, ground = batch.place(int(state.case[world]))
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]
-    names = (card.robot,) if len(poses) == 1 else ROBOTS
+    names = (card.robot,) if len(poses) == 1 else ROBOT_NAMES
     bodies = tuple(
         Body(
             name,

@@ -9,58 +9,63 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import Unsupported, fleet_of, ground
-from kit.learning.environment.distance_field import CELL, ways
-from kit.learning.environment.observations import RAYS
-from kit.learning.environment.tasks import Task
+from kit.learning.environment.batch_map import UnsupportedWorld, build_fleet, load_batch_map
+from kit.learning.environment.distance_field import CELL, compute_distance_field
+from kit.learning.environment.observations import RAY_COUNT
+from kit.learning.environment.tasks import LearningTask
 from kit.world.catalogue import MapCase
 
-Floats = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 SHARED_DRAWS = 5
 """A start takes so many random numbers for all robots together, and three more for each of them."""
 
 
-class Beginning(NamedTuple):
+class EpisodeStarts(NamedTuple):
     """Where episodes of ``m`` worlds begin."""
 
-    poses: Floats
+    poses: FloatArray
     """(m, robots, 3)"""
-    targets: Floats
+    targets: FloatArray
     """(m, 2)"""
 
 
-class Courses:
+class CaseArrays:
     """The cases of a task, numbered in the order of ``task.courses()``."""
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: LearningTask) -> None:
         """Raises Unsupported for a map that the batch engine cannot represent."""
         courses = task.courses()
         cards = list(dict.fromkeys(card for card, _ in courses))
-        grounds = [ground(card) for card in cards]
+        grounds = [load_batch_map(card) for card in cards]
         for each in grounds:
             if len(each.starts) != task.robots:
-                raise Unsupported(
+                raise UnsupportedWorld(
                     f"{each.name} has {len(each.starts)} robots, task {task.name} {task.robots}"
                 )
-            if len(each.robot.directions) != RAYS:
+            if len(each.robot.directions) != RAY_COUNT:
                 rays = len(each.robot.directions)
-                raise Unsupported(f"{each.name}: observations are made of {RAYS} rays, its lidar has {rays}")
+                raise UnsupportedWorld(
+                    f"{each.name}: observations are made of {RAY_COUNT} rays, its lidar has {rays}"
+                )
         self.task = task
-        self.fleet = fleet_of(grounds, task.lidar_noise)
-        self.map_of: Numbers = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
+        self.fleet = build_fleet(grounds, task.lidar_noise)
+        self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
         self.places = [(cards[number], grounds[number]) for number in self.map_of]
         """(cases): each case's map."""
         cases = [case for _, case in courses]
-        self._starts = np.array([_starts(case, task) for case in cases])
+        self._starts = np.array([_start_poses(case, task) for case in cases])
         self._targets = np.array([case.target for case in cases])
         shifted = task.start.shifted
         self._start_shift = np.array([case.start_shift for case in cases]) * shifted
         self._target_shift = np.array([case.target_shift for case in cases]) * shifted
         self._any_heading = np.array([case.is_heading_random and shifted for case in cases])
-        tables = [ways(grounds[number], case.target) for number, case in zip(self.map_of, cases, strict=True)]
+        tables = [
+            compute_distance_field(grounds[number], case.target)
+            for number, case in zip(self.map_of, cases, strict=True)
+        ]
         self._corners = np.array([table.corner for table in tables])
         rows, columns = (max(table.values.shape[axis] for table in tables) for axis in (0, 1))
         self._to_go = np.zeros((len(cases), rows, columns), dtype=np.float32)
@@ -68,7 +73,7 @@ class Courses:
             height, width = table.values.shape
             values[:height, :width] = table.values
 
-    def start(self, cases: Numbers, keys: Numbers, first: Numbers) -> Beginning:
+    def start(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
         robots = self.task.robots
         drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots))
@@ -80,21 +85,21 @@ class Courses:
         noise, most = self.task.start.noise, self.task.start.turned
         poses += drawn[:, SHARED_DRAWS:].reshape(-1, robots, 3) * (noise, noise, most)
         poses[:, :, 2] += turned[:, None]
-        return Beginning(poses, self._targets[cases] + drawn[:, 3:5] * self._target_shift[cases])
+        return EpisodeStarts(poses, self._targets[cases] + drawn[:, 3:5] * self._target_shift[cases])
 
-    def to_go(self, cases: Numbers, poses: Floats) -> Floats:
+    def to_go(self, cases: IntArray, poses: FloatArray) -> FloatArray:
         """(m, robots): the way to the targets' usual places [m], from ``poses`` (m, robots, 3)."""
         found = np.empty(poses.shape[:2])
         kernels.interpolate_tables(self._to_go, self._corners, CELL, cases, poses, found)
         return np.maximum(found, self.task.path_end)
 
 
-def _starts(case: MapCase, task: Task) -> list[tuple[float, float, float]]:
+def _start_poses(case: MapCase, task: LearningTask) -> list[tuple[float, float, float]]:
     """Where the case's robots start, as far apart as the task wants."""
     if task.robots == 1:
         return [(case.start.x, case.start.y, case.start.theta)]
     if case.partner_start is None:
-        raise Unsupported(f"case {case.name} does not say where the second robot starts")
+        raise UnsupportedWorld(f"case {case.name} does not say where the second robot starts")
     left, right = case.start, case.partner_start
     x, y = (left.x + right.x) / 2, (left.y + right.y) / 2
     wide = 1.0

@@ -9,20 +9,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch_map import Ground
+from kit.learning.environment.batch_map import BatchMap
 
-Grid = NDArray[np.float64]
+FloatGrid = NDArray[np.float64]
 
 CELL = 0.025
 """m"""
-CLEAR = 0.13
+CLEARANCE = 0.13
 """Nearer to a wall than this [m] a metre counts for more: the reach of the robot's hull."""
-DEAREST = 4.0
+WALL_PRICE = 4.0
 """How many metres one metre along a wall counts for."""
-STEPS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy)
+NEIGHBOURS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy)
 
 
-class Table(NamedTuple):
+class DistanceField(NamedTuple):
     """Lengths of ways, at the middles of square cells."""
 
     values: NDArray[np.float32]
@@ -32,9 +32,9 @@ class Table(NamedTuple):
 
 
 @cache
-def ways(
-    ground: Ground, target: tuple[float, float], clear: float = CLEAR, dearest: float = DEAREST
-) -> Table:
+def compute_distance_field(
+    ground: BatchMap, target: tuple[float, float], clear: float = CLEARANCE, dearest: float = WALL_PRICE
+) -> DistanceField:
     """The length of the way to ``target`` from everywhere on the map, keeping ``clear`` [m] of walls where it can.
 
     Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
@@ -51,10 +51,12 @@ def ways(
     lengths = np.full((rows, columns), math.inf)
     start = round((target[1] - corner[1]) / CELL), round((target[0] - corner[0]) / CELL)
     lengths[start] = 0.0
-    return Table(_filled(_relaxed(lengths, price)).astype(np.float32), (float(corner[0]), float(corner[1])))
+    return DistanceField(
+        _fill_walls(_relax(lengths, price)).astype(np.float32), (float(corner[0]), float(corner[1]))
+    )
 
 
-def _clearance(x: Grid, y: Grid, walls: Grid) -> Grid:
+def _clearance(x: FloatGrid, y: FloatGrid, walls: FloatGrid) -> FloatGrid:
     """(rows, columns): distance to the nearest wall."""
     nearest = np.full((len(y), len(x)), math.inf)
     for ax, ay, bx, by in walls.tolist():
@@ -67,7 +69,7 @@ def _clearance(x: Grid, y: Grid, walls: Grid) -> Grid:
     return nearest
 
 
-def _relaxed(lengths: Grid, price: Grid) -> Grid:
+def _relax(lengths: FloatGrid, price: FloatGrid) -> FloatGrid:
     """Every cell's least sum of a neighbour's length and the step to it, until nothing changes."""
     rows, columns = lengths.shape
     padded_price = np.pad(price, 1, constant_values=math.inf)
@@ -76,24 +78,24 @@ def _relaxed(lengths: Grid, price: Grid) -> Grid:
         * CELL
         * math.hypot(dx, dy)
         * (price + padded_price[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns])
-        for dx, dy in STEPS
+        for dx, dy in NEIGHBOURS
     ]
     padded = np.pad(lengths, 1, constant_values=math.inf)
     inner = padded[1:-1, 1:-1]
     while True:
         before = inner.copy()
-        for (dx, dy), toll in zip(STEPS, tolls, strict=True):
+        for (dx, dy), toll in zip(NEIGHBOURS, tolls, strict=True):
             np.minimum(inner, padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] + toll, out=inner)
         if np.array_equal(inner, before):
             return before
 
 
-def _filled(lengths: Grid) -> Grid:
+def _fill_walls(lengths: FloatGrid) -> FloatGrid:
     """Cells beside walls take their neighbours' lengths, so that one can interpolate there; others the greatest."""
     rows, columns = lengths.shape
     for _ in range(4):
         padded = np.pad(lengths, 1, constant_values=math.inf)
-        around = [padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] for dx, dy in STEPS]
-        lengths = np.where(np.isinf(lengths), np.min(around, axis=0) + DEAREST * CELL, lengths)
+        around = [padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] for dx, dy in NEIGHBOURS]
+        lengths = np.where(np.isinf(lengths), np.min(around, axis=0) + WALL_PRICE * CELL, lengths)
     finite = np.isfinite(lengths)
     return np.where(finite, lengths, lengths[finite].max())

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_scene import scene_of
-from kit.learning.environment.episode_stats import Outcome
+from kit.learning.environment.batch_scene import build_batch_scene
+from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Task, UnknownTask
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, UnknownTask
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw, image_camera
 from kit.render.trail import Trail
@@ -22,19 +22,19 @@ Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
 Action = np.int64 | NDArray[np.int64]
 
-PIXELS = (480, 480)
-CHARACTERS = (78, 22)
+IMAGE_SIZE = (480, 480)
+TEXT_SIZE = (78, 22)
 
 
 class TaskEnv(gymnasium.Env[Observation, Action]):
     """One world of a task. Subclasses are the registered environments; their docstrings are their task cards."""
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 5}  # noqa: RUF012 as gymnasium has it
-    default: ClassVar[Task] = TURN
+    default: ClassVar[LearningTask] = TURN
 
     def __init__(
         self,
-        task: Task | None = None,
+        task: LearningTask | None = None,
         *,
         reward: RewardFunction | None = None,
         render_mode: str | None = None,
@@ -83,7 +83,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         if self.task.robots > 1:
             info["adjacent"] = bool(transition.adjacent[0])
         if transition.ended[0]:
-            info["outcome"] = Outcome.of(transition, 0).value
+            info["outcome"] = EpisodeOutcome.of(transition, 0).value
         ends = bool(step.terminated[0]), bool(step.truncated[0])
         return step.final_observations[0], float(step.rewards[0]), *ends, info
 
@@ -91,10 +91,10 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         """(height, width, 3) uint8 for ``rgb_array``; for ``ansi`` a text: the world in characters, then in words."""
         if self.render_mode is None or self._batch is None:
             return None
-        scene = scene_of(self._batch, 0, tuple(trail.points for trail in self._trails))
+        scene = build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails))
         if self.render_mode == "rgb_array":
-            return draw(scene, image_camera(scene.bounds, *PIXELS))
-        return "\n".join((*plain_rows(scene, *CHARACTERS), report(scene), ""))
+            return draw(scene, image_camera(scene.bounds, *IMAGE_SIZE))
+        return "\n".join((*plain_rows(scene, *TEXT_SIZE), report(scene), ""))
 
     def _begun(self, seed: int | None) -> BatchEnv:
         """The world, which is built when it is first needed: an unseeded one by a seed of chance."""

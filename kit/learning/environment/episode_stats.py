@@ -8,11 +8,11 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch import BatchEnv, Step
+from kit.learning.environment.batch import BatchEnv, BatchStep
 from kit.learning.environment.transition import Transition
 
 
-class Outcome(Enum):
+class EpisodeOutcome(Enum):
     """How an episode ended."""
 
     REACHED = "reached"
@@ -20,7 +20,7 @@ class Outcome(Enum):
     TIMED_OUT = "timed out"
 
     @classmethod
-    def of(cls, transition: Transition, world: int) -> Outcome:
+    def of(cls, transition: Transition, world: int) -> EpisodeOutcome:
         """Of a world whose episode this transition ended."""
         if transition.collided[world]:
             return cls.COLLIDED
@@ -28,12 +28,12 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Episode:
+class EpisodeStats:
     """One episode, from start to end."""
 
     world: int
     case: str
-    outcome: Outcome
+    outcome: EpisodeOutcome
     steps: int
     reward: float
     """The sum over all steps."""
@@ -43,7 +43,7 @@ class Episode:
     """The share of steps in which two robots were side by side, as their rays tell."""
 
 
-class Tally:
+class EpisodeStatsRecorder:
     """Adds up what the worlds of a BatchEnv earn, and tells of the episodes that end.
 
     Begins where the worlds begin: make a new one after a reset.
@@ -56,7 +56,7 @@ class Tally:
         self._adjacent = np.zeros(batch.n)
         self._terms: dict[str, NDArray[np.float64]] = {}
 
-    def add(self, step: Step) -> list[Episode]:
+    def add(self, step: BatchStep) -> list[EpisodeStats]:
         """Takes one step of all worlds; returns the episodes that it ended."""
         self._reward += step.rewards
         for name, value in step.terms.items():
@@ -69,12 +69,12 @@ class Tally:
             sums[over] = 0.0
         return episodes
 
-    def _episode(self, world: int, transition: Transition) -> Episode:
+    def _episode(self, world: int, transition: Transition) -> EpisodeStats:
         steps = int(transition.step[world])
-        return Episode(
+        return EpisodeStats(
             world=world,
             case=self._names[int(transition.case[world])],
-            outcome=Outcome.of(transition, world),
+            outcome=EpisodeOutcome.of(transition, world),
             steps=steps,
             reward=float(self._reward[world]),
             terms={name: float(sums[world]) for name, sums in self._terms.items()},

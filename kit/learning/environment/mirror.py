@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch_map import Unsupported
-from kit.learning.environment.tasks import Task
+from kit.learning.environment.batch_map import UnsupportedWorld
+from kit.learning.environment.tasks import LearningTask
 
 
-class Mirror:
+class TaskMirror:
     """How a task's observations and actions look in a mirror. Raises Unsupported where its two sides are not alike."""
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: LearningTask) -> None:
         try:
             self._order, self._signs = task.observation.mirrored(task.robots)
             self._moves = task.actions.mirrored()
         except ValueError as error:
-            raise Unsupported(f"task {task.name} has no mirror image: {error}") from None
+            raise UnsupportedWorld(f"task {task.name} has no mirror image: {error}") from None
         self._task = task
 
     def observations(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from kit.fields.adjacency import SIDE_RAYS as SIDE_RAYS
 
-RAYS = 91
+RAY_COUNT = 91
 """The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
-AHEAD = 45
-FAR_TARGET = 4.0
+AHEAD_RAY = 45
+MAX_TARGET_DISTANCE = 4.0
 """A target's distance is given up to here [m]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Observation:
+class ObservationSpec:
     """One robot's numbers, in this order: single rays, side rays, sector minima, target, arrived. For two robots
     the left one's numbers come first, then the right one's."""
 
@@ -58,9 +58,9 @@ class Observation:
 
         Raises ValueError where the two sides are not alike.
         """
-        single, last = list(self.rays), RAYS - 1
+        single, last = list(self.rays), RAY_COUNT - 1
         sectors = [
-            {ray for ray in range(RAYS) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)
+            {ray for ray in range(RAY_COUNT) if self.sectors[ray] == k} for k in range(max(self.sectors) + 1)
         ]
         try:
             places = [single.index(last - ray) for ray in single]
@@ -80,17 +80,17 @@ class Observation:
         near, far = np.zeros(self.size), np.full(self.size, self.clip * self.scale)
         if self.target:
             first = self.size - self.arrived - 2
-            far[first], near[first + 1], far[first + 1] = FAR_TARGET * self.scale, -1.0, 1.0
+            far[first], near[first + 1], far[first + 1] = MAX_TARGET_DISTANCE * self.scale, -1.0, 1.0
         if self.arrived:
             far[-1] = 1.0
         low, high = (np.tile(bound, robots).astype(np.float32) for bound in (near, far))
         return spaces.Box(low, high, dtype=np.float32)
 
 
-def _twelve() -> tuple[int, ...]:
+def _twelve_sectors() -> tuple[int, ...]:
     """Three sectors of about 60 degrees behind, straight back first, then nine of 20 degrees in front; from the
     right to the left."""
-    table: NDArray[np.int64] = np.zeros(RAYS, dtype=np.int64)
+    table: NDArray[np.int64] = np.zeros(RAY_COUNT, dtype=np.int64)
     table[8:23] = 1
     for sector in range(9):
         table[23 + 5 * sector : 28 + 5 * sector] = 2 + sector
@@ -98,13 +98,19 @@ def _twelve() -> tuple[int, ...]:
     return tuple(table.tolist())
 
 
-NINE = Observation(rays=(), sectors=tuple(min(ray // 10, 8) for ray in range(RAYS)), clip=2.0, scale=0.5)
+NINE_NUMBERS = ObservationSpec(
+    rays=(), sectors=tuple(min(ray // 10, 8) for ray in range(RAY_COUNT)), clip=2.0, scale=0.5
+)
 """Tutorial 2 (dissertation, figure 5.4): eight sectors of 10 rays, one of 11."""
 
-SEVENTEEN = Observation(
-    rays=(AHEAD, AHEAD + 2, AHEAD - 2, AHEAD + 23, AHEAD - 23), sectors=_twelve(), scale=0.5
+SEVENTEEN_NUMBERS = ObservationSpec(
+    rays=(AHEAD_RAY, AHEAD_RAY + 2, AHEAD_RAY - 2, AHEAD_RAY + 23, AHEAD_RAY - 23),
+    sectors=_twelve_sectors(),
+    scale=0.5,
 )
 """Hallways (figure 3.3): ahead, 8 degrees to the left and right of it, left, right; 12 sectors."""
 
-NINETEEN = Observation(SEVENTEEN.rays, SEVENTEEN.sectors, side_rays=True, scale=0.5)
+NINETEEN_NUMBERS = ObservationSpec(
+    SEVENTEEN_NUMBERS.rays, SEVENTEEN_NUMBERS.sectors, side_rays=True, scale=0.5
+)
 """Two wheelchairs (figure 4.8): 38 numbers for both."""

@@ -12,10 +12,10 @@ from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.episode_stats import Episode, Outcome, Tally
-from kit.learning.environment.mirror import Mirror
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
+from kit.learning.environment.mirror import TaskMirror
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import Task
+from kit.learning.environment.tasks import LearningTask
 
 
 class BatchVecEnv(VecEnv):
@@ -29,7 +29,7 @@ class BatchVecEnv(VecEnv):
 
     def __init__(self, batch: BatchEnv) -> None:
         self.batch = batch
-        self._tally = Tally(batch)
+        self._tally = EpisodeStatsRecorder(batch)
         self._actions: NDArray[np.integer] = np.zeros(0, dtype=np.int64)
         self._started = time.perf_counter()
         super().__init__(batch.n, batch.observation_space, batch.action_space)
@@ -39,7 +39,7 @@ class BatchVecEnv(VecEnv):
         seed = self._seeds[0]
         self._reset_seeds()
         self._reset_options()
-        self._tally = Tally(self.batch)
+        self._tally = EpisodeStatsRecorder(self.batch)
         return self.batch.reset(None if seed is None else int(seed))
 
     def step_async(self, actions: NDArray[np.integer]) -> None:
@@ -55,13 +55,13 @@ class BatchVecEnv(VecEnv):
             info["TimeLimit.truncated"] = bool(step.truncated[episode.world])
         return step.observations, step.rewards, step.ended, infos
 
-    def _told(self, episode: Episode) -> dict[str, Any]:
+    def _told(self, episode: EpisodeStats) -> dict[str, Any]:
         seconds = time.perf_counter() - self._started
         told: dict[str, Any] = {
             "episode": {"r": episode.reward, "l": episode.steps, "t": seconds},
             "case": episode.case,
             "outcome": episode.outcome.value,
-            "is_success": episode.outcome is Outcome.REACHED,
+            "is_success": episode.outcome is EpisodeOutcome.REACHED,
             "terms": episode.terms,
         }
         return told | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
@@ -92,12 +92,12 @@ class BatchVecEnv(VecEnv):
         return [None] * self.num_envs
 
 
-class HalfMirrored(VecEnvWrapper):
+class HalfMirroredVecEnv(VecEnvWrapper):
     """Of every case, each second world is seen in a mirror, and driven so. The worlds themselves are as they were."""
 
     def __init__(self, venv: BatchVecEnv) -> None:
         super().__init__(venv)
-        self._mirror = Mirror(venv.batch.task)
+        self._mirror = TaskMirror(venv.batch.task)
         self._which = np.flatnonzero(np.arange(venv.num_envs) // len(venv.batch.cases) % 2)
 
     def _mirrored(self, observations: Any) -> NDArray[np.float32]:
@@ -121,8 +121,8 @@ class HalfMirrored(VecEnvWrapper):
         return self._mirrored(observations), rewards, dones, infos
 
 
-def make_vec(
-    task: Task, n: int, seed: int = 0, reward: RewardFunction | None = None, *, stay: bool = False
+def make_vec_env(
+    task: LearningTask, n: int, seed: int = 0, reward: RewardFunction | None = None, *, stay: bool = False
 ) -> BatchVecEnv:
     """``n`` worlds of the task for stable-baselines3; the rest as for ``BatchEnv``."""
     return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, stay=stay))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal
 
-from kit.learning.environment.rewards import REWARDS, SCALE
-from kit.learning.environment.tasks import Task, UnknownTask, find_task
+from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
+from kit.learning.environment.tasks import LearningTask, UnknownTask, find_task
 from kit.plain_text import quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)
-class TaskChoice:
+class TaskSpec:
     """A task of ``TASKS``, by name, and what is different from it. None leaves a setting as it is."""
 
     task: str
@@ -28,7 +28,7 @@ class TaskChoice:
     """Whether a pair's moves are one number."""
     timeout_terminal: bool | None = None
 
-    def resolve(self) -> Task:
+    def resolve(self) -> LearningTask:
         """The task. UnknownTask if something has no such name."""
         task = find_task(self.task)
         if self.on:
@@ -40,7 +40,7 @@ class TaskChoice:
                     f"there is no reward {quoted(self.reward)}: {suggestion(self.reward, REWARDS)}"
                 )
             other = REWARDS[self.reward]
-            scale = 1.0 if other.small else SCALE if reward.small else reward.scale
+            scale = 1.0 if other.small else REWARD_SCALE if reward.small else reward.scale
             reward = replace(other, scale=scale)
         if self.scale is not None:
             reward = replace(reward, scale=self.scale)
@@ -62,7 +62,7 @@ class TaskChoice:
         return {name: value for name, value in asdict(self).items() if value not in (None, ())}
 
     @classmethod
-    def from_dict(cls, data: Any) -> TaskChoice:
+    def from_dict(cls, data: Any) -> TaskSpec:
         """Of ``as_dict``. ValueError for anything else."""
         known = {field.name for field in fields(cls)}
         if not isinstance(data, dict) or "task" not in data or set(data) - known:

@@ -9,14 +9,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from kit.learning.environment.actions import FOUR, SEVEN, THREE, Actions
-from kit.learning.environment.observations import NINE, NINETEEN, SEVENTEEN, Observation
+from kit.learning.environment.actions import FOUR_MOVES, SEVEN_MOVES, THREE_MOVES, Actions
+from kit.learning.environment.observations import (
+    NINE_NUMBERS,
+    NINETEEN_NUMBERS,
+    SEVENTEEN_NUMBERS,
+    ObservationSpec,
+)
 from kit.learning.environment.rewards import (
     ALGORITHM_1,
     ALGORITHM_2,
     ALGORITHM_2_STOPPING,
     ALGORITHM_3,
-    SCALE,
+    REWARD_SCALE,
     SIDE_BY_SIDE,
     Reward,
 )
@@ -29,7 +34,7 @@ class UnknownTask(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class StartVariation:
     """How an episode's start and target differ from those on the map's card. Every draw is uniform."""
 
     shifted: bool = True
@@ -43,7 +48,7 @@ class Start:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class LearningTask:
     """What there is to learn: where, by which inputs and actions, for which reward, until when."""
 
     name: str
@@ -52,7 +57,7 @@ class Task:
     """Of the catalogue; all robots and laser beams alike."""
     robots: int
     actions: Actions
-    observation: Observation
+    observation: ObservationSpec
     reward: Reward
     cases: tuple[str, ...] = ()
     """Names of cases of these maps; all of them where empty."""
@@ -61,7 +66,7 @@ class Task:
     checks: int = 2
     """Into how many equal moves a step is divided; after each one, collisions are looked for."""
     max_steps: int = 200
-    start: Start = Start()
+    start: StartVariation = StartVariation()
     target_radius: float = 0.25
     """m"""
     measured_to: Literal["hull", "axle"] = "hull"
@@ -77,7 +82,7 @@ class Task:
 
     def courses(self) -> tuple[tuple[MapCard, MapCase], ...]:
         """Every case with its map, in order. UnknownTask if one of ``cases`` is none of them."""
-        found = tuple(_courses(self.maps))
+        found = tuple(_map_cases(self.maps))
         if not self.cases:
             return found
         by_name = {case.name: (card, case) for card, case in found}
@@ -86,7 +91,7 @@ class Task:
                 raise UnknownTask(f"task {self.name} has no case {quoted(name)}: {suggestion(name, by_name)}")
         return tuple(by_name[name] for name in self.cases)
 
-    def on(self, *names: str) -> Task:
+    def on(self, *names: str) -> LearningTask:
         """The same task on some of its cases, named one by one or by their groups.
 
         UnknownTask if nothing has such a name.
@@ -100,63 +105,63 @@ class Task:
         return replace(self, cases=chosen)
 
 
-def _courses(maps: tuple[str, ...]) -> Iterator[tuple[MapCard, MapCase]]:
+def _map_cases(maps: tuple[str, ...]) -> Iterator[tuple[MapCard, MapCase]]:
     for name in maps:
         card = find_map(name)
         for case in card.cases:
             yield card, case
 
 
-HALLS = tuple(
+HALL_MAPS = tuple(
     f"hall_{name}"
     for name in (
         *("straight", "left_door", "center_door", "right_door", "two_doors", "small_obstacle"),
         *("large_obstacle", "turn_90", "curve_90", "turn_180", "curve_180"),
     )
 )
-PAIRS = ("pair_straight", "pair_turn_90", "pair_curve_90", "pair_turn_180", "pair_curve_180")
+PAIR_MAPS = ("pair_straight", "pair_turn_90", "pair_curve_90", "pair_turn_180", "pair_curve_180")
 
-TURN = Task(
+TURN = LearningTask(
     "turn",
     "Round one corner and back again",
     ("turn",),
     robots=1,
-    actions=THREE,
-    observation=NINE,
-    reward=replace(ALGORITHM_3, scale=SCALE),
+    actions=THREE_MOVES,
+    observation=NINE_NUMBERS,
+    reward=replace(ALGORITHM_3, scale=REWARD_SCALE),
     step_time=0.1,
     checks=1,
     target_radius=0.2,
-    start=Start(noise=0.05, turned=0.2),
+    start=StartVariation(noise=0.05, turned=0.2),
 )
 TURN_SEED = replace(
     TURN,
     name="turn-seed",
     reward=ALGORITHM_3,
-    observation=replace(NINE, clip=10.0, scale=1.0),
-    start=Start(),
+    observation=replace(NINE_NUMBERS, clip=10.0, scale=1.0),
+    start=StartVariation(),
     timeout_terminal=True,
 )
-HALLWAY = Task(
+HALLWAY = LearningTask(
     "hallway",
     "Fifteen hallways with doors, obstacles and turns; one agent for all",
-    HALLS,
+    HALL_MAPS,
     robots=1,
-    actions=SEVEN,
-    observation=SEVENTEEN,
-    reward=replace(ALGORITHM_1, scale=SCALE),
+    actions=SEVEN_MOVES,
+    observation=SEVENTEEN_NUMBERS,
+    reward=replace(ALGORITHM_1, scale=REWARD_SCALE),
 )
 HALLWAY_SEED = replace(HALLWAY, name="hallway-seed", reward=ALGORITHM_1, timeout_terminal=True)
-WHEELCHAIRS = Task(
+WHEELCHAIRS = LearningTask(
     "wheelchairs",
     "Two wheelchairs side by side, driven by one agent",
-    PAIRS,
+    PAIR_MAPS,
     robots=2,
-    actions=replace(FOUR, one_number=False),
-    observation=replace(NINETEEN, scale=6.0),  # a centimetre decides whether two are side by side
+    actions=replace(FOUR_MOVES, one_number=False),
+    observation=replace(NINETEEN_NUMBERS, scale=6.0),  # a centimetre decides whether two are side by side
     reward=SIDE_BY_SIDE,
     max_steps=300,
-    start=Start(gap=0.4, noise=0.05, turned=0.1),
+    start=StartVariation(gap=0.4, noise=0.05, turned=0.1),
     target_radius=0.4,
     path_end=0.3,
 )
@@ -164,9 +169,9 @@ WHEELCHAIRS_SEED = replace(
     WHEELCHAIRS,
     name="wheelchairs-seed",
     reward=ALGORITHM_2_STOPPING,
-    actions=FOUR,
-    observation=NINETEEN,
-    start=Start(gap=0.4),
+    actions=FOUR_MOVES,
+    observation=NINETEEN_NUMBERS,
+    start=StartVariation(gap=0.4),
     path_end=0.0,
     timeout_terminal=True,
 )
@@ -174,15 +179,15 @@ WHEELCHAIRS_SEED_49 = replace(
     WHEELCHAIRS_SEED,
     name="wheelchairs-seed-49",
     reward=ALGORITHM_2,
-    actions=SEVEN,
-    start=Start(),
+    actions=SEVEN_MOVES,
+    start=StartVariation(),
     target_radius=0.25,
 )
 
 TASKS = (TURN, TURN_SEED, HALLWAY, HALLWAY_SEED, WHEELCHAIRS, WHEELCHAIRS_SEED, WHEELCHAIRS_SEED_49)
 
 
-def find_task(name: str) -> Task:
+def find_task(name: str) -> LearningTask:
     """The task of that name. UnknownTask if there is none."""
     by_name = {task.name: task for task in TASKS}
     if name not in by_name:

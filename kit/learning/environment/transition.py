@@ -8,13 +8,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import by_rays, graded
-from kit.learning.environment.observations import AHEAD, SIDE_RAYS
+from kit.fields.adjacency import adjacency_score, is_adjacent_by_rays
+from kit.learning.environment.observations import AHEAD_RAY, SIDE_RAYS
 
 Array: TypeAlias = Any
 """A numpy array; for one world, where nothing is left of its shape, numpy's number."""
 
-DIAGONAL = 2
+DIAGONAL_RAYS = 2
 """So many rays (8 degrees) beside straight ahead."""
 
 
@@ -85,17 +85,17 @@ class Transition:
     @cached_property
     def front(self) -> Array:
         """(..., R) range straight ahead."""
-        return self.ranges[..., AHEAD]
+        return self.ranges[..., AHEAD_RAY]
 
     @cached_property
     def front_left(self) -> Array:
         """(..., R) range 8 degrees to the left of ahead."""
-        return self.ranges[..., AHEAD + DIAGONAL]
+        return self.ranges[..., AHEAD_RAY + DIAGONAL_RAYS]
 
     @cached_property
     def front_right(self) -> Array:
         """(..., R)"""
-        return self.ranges[..., AHEAD - DIAGONAL]
+        return self.ranges[..., AHEAD_RAY - DIAGONAL_RAYS]
 
     @cached_property
     def nearest(self) -> Array:
@@ -129,7 +129,7 @@ class Transition:
         if self.robots == 1:
             return np.zeros(np.shape(self.step), dtype=np.bool_)
         left, right = self.ranges[..., 0, list(SIDE_RAYS[0])], self.ranges[..., 1, list(SIDE_RAYS[1])]
-        return by_rays(left, right)
+        return is_adjacent_by_rays(left, right)
 
     @cached_property
     def abreast(self) -> Array:
@@ -137,7 +137,7 @@ class Transition:
         other and both face the same way. 0 for one robot."""
         if self.robots == 1:
             return np.zeros(np.shape(self.step))
-        return graded(self.pose[..., 0, :], self.pose[..., 1, :])
+        return adjacency_score(self.pose[..., 0, :], self.pose[..., 1, :])
 
     def at(self, index: Any) -> Transition:
         """The transition of one world, or of some, out of many."""
@@ -145,7 +145,7 @@ class Transition:
         return Transition(**{name: v if name == "max_steps" else v[index] for name, v in values.items()})
 
 
-FACTS = tuple(
+TRANSITION_FIELDS = tuple(
     sorted(
         {field.name for field in fields(Transition)}
         | {name for name, value in vars(Transition).items() if isinstance(value, property | cached_property)}

@@ -10,20 +10,25 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.episode_stats import Tally
+from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import Task
+from kit.learning.environment.tasks import LearningTask
 
-Observations = NDArray[np.float32]
+ObservationArray = NDArray[np.float32]
 
 
-class BatchVectorEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
+class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]]):
     """``num_envs`` worlds of a task. A world resets itself in the step in which its episode ends (autoreset mode
     ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
     """
 
     def __init__(
-        self, num_envs: int, task: Task, *, reward: RewardFunction | None = None, seed: int | None = None
+        self,
+        num_envs: int,
+        task: LearningTask,
+        *,
+        reward: RewardFunction | None = None,
+        seed: int | None = None,
     ) -> None:
         """``reward``: instead of the task's own. ``seed``: by chance if None."""
         self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
@@ -34,20 +39,20 @@ class BatchVectorEnv(VectorEnv[Observations, NDArray[np.int64], NDArray[Any]]):
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._tally = Tally(self.batch)
+        self._tally = EpisodeStatsRecorder(self.batch)
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Observations, dict[str, Any]]:
+    ) -> tuple[ObservationArray, dict[str, Any]]:
         """Begins new episodes. One seed is enough: each world has its own randomness by its number."""
         if isinstance(seed, list):
             raise ValueError("give one seed: each world has its own randomness by its number")
-        self._tally = Tally(self.batch)
+        self._tally = EpisodeStatsRecorder(self.batch)
         return self.batch.reset(seed), {}
 
     def step(
         self, actions: NDArray[np.int64]
-    ) -> tuple[Observations, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+    ) -> tuple[ObservationArray, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         step = self.batch.step(np.asarray(actions))
         info: dict[str, Any] = {}
         for episode in self._tally.add(step):

@@ -11,34 +11,34 @@ import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Numbers = NDArray[np.intp]
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IndexArray = NDArray[np.intp]
 
-SAME = 9
+SAME_DECIMALS = 9
 """Decimals to which ends of walls must agree to be the same point."""
 
 
-def within_reach(walls: Floats, point: tuple[float, float]) -> Floats:
+def cull_walls(walls: FloatArray, point: tuple[float, float]) -> FloatArray:
     """Of the walls (n, 4) ``x1 y1 x2 y2``, those not wholly outside the smallest ring around ``point``; in their order.
 
     A ring is a closed chain of walls that share ends two by two. All walls where there is none.
     """
-    around = [ring for ring in _rings(walls) if _inside(np.array([point]), walls[ring])[0]]
+    around = [ring for ring in _find_rings(walls) if _is_inside(np.array([point]), walls[ring])[0]]
     if not around:
         return walls
     ring = min(around, key=lambda each: float(np.prod(np.ptp(walls[each].reshape(-1, 2), axis=0))))
-    kept = _inside(walls[:, :2], walls[ring]) | _inside(walls[:, 2:], walls[ring])
+    kept = _is_inside(walls[:, :2], walls[ring]) | _is_inside(walls[:, 2:], walls[ring])
     kept[ring] = True
     outside = np.flatnonzero(~kept)
-    kept[outside] = _crossing(walls[outside], walls[ring])
+    kept[outside] = _is_crossing(walls[outside], walls[ring])
     return walls[kept]
 
 
-def _rings(walls: Floats) -> Iterator[Numbers]:
+def _find_rings(walls: FloatArray) -> Iterator[IndexArray]:
     """The numbers of the walls of each ring."""
     graph = nx.MultiGraph()
-    for number, (x1, y1, x2, y2) in enumerate(walls.round(SAME).tolist()):
+    for number, (x1, y1, x2, y2) in enumerate(walls.round(SAME_DECIMALS).tolist()):
         graph.add_edge((x1, y1), (x2, y2), number=number)
     for part in nx.connected_components(graph):
         ring = graph.subgraph(part)
@@ -46,29 +46,29 @@ def _rings(walls: Floats) -> Iterator[Numbers]:
             yield np.array([number for *_, number in ring.edges(data="number")])
 
 
-def _inside(points: Floats, ring: Floats) -> Flags:
+def _is_inside(points: FloatArray, ring: FloatArray) -> BoolArray:
     """(n,) which of the points (n, 2) a ring (m, 4) encloses: a ray from there to the right meets it an odd number of
     times."""
     x, y = points[:, :1], points[:, 1:]
     x1, y1, x2, y2 = ring.T
     level = (y1 > y) != (y2 > y)
     rise = np.where(y2 == y1, 1.0, y2 - y1)
-    odd: Flags = (level & (x < x1 + (y - y1) / rise * (x2 - x1))).sum(axis=1) % 2 == 1
+    odd: BoolArray = (level & (x < x1 + (y - y1) / rise * (x2 - x1))).sum(axis=1) % 2 == 1
     return odd
 
 
-def _crossing(walls: Floats, ring: Floats) -> Flags:
+def _is_crossing(walls: FloatArray, ring: FloatArray) -> BoolArray:
     """(n,) which of the walls meet one of the ring's."""
     a, b = walls[:, None, :2], walls[:, None, 2:]
     c, d = ring[None, :, :2], ring[None, :, 2:]
     apart = (_side(a, b, c) * _side(a, b, d) > 0) | (_side(c, d, a) * _side(c, d, b) > 0)
-    meets: Flags = np.logical_not(apart.all(axis=1))
+    meets: BoolArray = np.logical_not(apart.all(axis=1))
     return meets
 
 
-def _side(a: Floats, b: Floats, c: Floats) -> Floats:
+def _side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
     """Positive where the points c lie to the left of the line from a to b, negative to the right."""
-    cross: Floats = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (
+    cross: FloatArray = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (
         c[..., 0] - a[..., 0]
     )
     return cross

@@ -12,45 +12,45 @@ from statistics import NormalDist
 from typing import NamedTuple
 
 
-class Interval(NamedTuple):
+class ConfidenceInterval(NamedTuple):
     """Where the true share lies."""
 
     low: float
     high: float
 
 
-def wilson(successes: int, trials: int, confidence: float = 0.95) -> Interval:
+def wilson_interval(successes: int, trials: int, confidence: float = 0.95) -> ConfidenceInterval:
     """The interval that holds the true share with this confidence; (0, 1) before any trial.
 
     ValueError if the numbers cannot be counts of one another, or the confidence is not between 0 and 1.
     """
     if not 0 <= successes <= trials:
         raise ValueError(f"{successes} of {trials} is no share")
-    return _wilson(successes, trials, NormalDist().inv_cdf(0.5 + _checked(confidence) / 2))
+    return _score_interval(successes, trials, NormalDist().inv_cdf(0.5 + _check_confidence(confidence) / 2))
 
 
-def at_least(successes: int, trials: int, confidence: float = 0.95) -> float:
+def lower_bound(successes: int, trials: int, confidence: float = 0.95) -> float:
     """What the true share is not below, with this confidence (one-sided)."""
     if not 0 <= successes <= trials:
         raise ValueError(f"{successes} of {trials} is no share")
-    return _wilson(successes, trials, NormalDist().inv_cdf(_checked(confidence))).low
+    return _score_interval(successes, trials, NormalDist().inv_cdf(_check_confidence(confidence))).low
 
 
-def _checked(confidence: float) -> float:
+def _check_confidence(confidence: float) -> float:
     if not 0 < confidence < 1:
         raise ValueError(f"a confidence lies between 0 and 1, not at {confidence:g}")
     return confidence
 
 
-def _wilson(successes: int, trials: int, z: float) -> Interval:
+def _score_interval(successes: int, trials: int, z: float) -> ConfidenceInterval:
     """``z``: how many standard deviations to either side."""
     if trials == 0:
-        return Interval(0.0, 1.0)
+        return ConfidenceInterval(0.0, 1.0)
     share, z2 = successes / trials, z * z
     middle = (share + z2 / (2 * trials)) / (1 + z2 / trials)
     half = z / (1 + z2 / trials) * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials * trials))
     # The ends are exact where nothing or everything succeeded; rounding must not move them.
-    return Interval(
+    return ConfidenceInterval(
         0.0 if successes == 0 else max(0.0, middle - half),
         1.0 if successes == trials else min(1.0, middle + half),
     )

@@ -12,16 +12,16 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_scene import scene_of
-from kit.learning.environment.episode_stats import Outcome
-from kit.learning.policies.policies import Player, Policy
-from kit.learning.training.runs import Run
+from kit.learning.environment.batch_scene import build_batch_scene
+from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.policies.policies import Policy, PolicyPlayer
+from kit.learning.training.runs import TrainingRun
 from kit.render.scene import Scene
 from kit.render.trail import Trail
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moment:
+class DemonstrationView:
     """What there is to see between two steps."""
 
     scene: Scene
@@ -31,14 +31,14 @@ class Moment:
     """Steps of training behind the policy."""
     kept: bool
     """The policy that was kept as the best one; else the newest one."""
-    outcome: Outcome | None
+    outcome: EpisodeOutcome | None
     """At the end of the episode."""
 
 
 class Demonstration:
     """Drives episode after episode of a run's task, case after case."""
 
-    def __init__(self, run: Run, *, greedy: bool = True, seed: int = 0) -> None:
+    def __init__(self, run: TrainingRun, *, greedy: bool = True, seed: int = 0) -> None:
         self.case: str | None = None
         """The case of the next episodes; None: one after the other."""
         self._run = run
@@ -46,11 +46,11 @@ class Demonstration:
         self._seed = seed
         self._stamp: tuple[Path, int, int] | None = None
         self._policy: Policy | None = None
-        self._player: Player | None = None
+        self._player: PolicyPlayer | None = None
         self._batch: BatchEnv | None = None
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails: list[Trail] = []
-        self._outcome: Outcome | None = None
+        self._outcome: EpisodeOutcome | None = None
 
     @property
     def step_time(self) -> float:
@@ -92,16 +92,16 @@ class Demonstration:
         self._observations, self._fresh = step.observations, np.zeros(1, dtype=np.bool_)
         self._leave_trail(self._batch)
         if step.ended[0]:
-            self._outcome = Outcome.of(step.transition, 0)
+            self._outcome = EpisodeOutcome.of(step.transition, 0)
 
-    def moment(self) -> Moment:
+    def moment(self) -> DemonstrationView:
         """What there is to see now."""
         assert self._batch is not None
         assert self._policy is not None
         assert self._stamp is not None
         state = self._batch.state
-        return Moment(
-            scene_of(self._batch, 0, tuple(trail.points for trail in self._trails)),
+        return DemonstrationView(
+            build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails)),
             self._batch.cases[int(state.case[0])].name,
             int(state.step[0]),
             self._policy.steps,

@@ -9,18 +9,18 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.episode_stats import Episode, Outcome, Tally
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import Task
-from kit.learning.policies.confidence_intervals import Interval, wilson
+from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy
 from kit.world.catalogue import MapCase
 
-AT_ONCE = 1024
+PARALLEL_WORLDS = 1024
 """About so many worlds side by side: more is not faster."""
 
 
-def seed_for(seed: int, purpose: str, number: int = 0) -> int:
+def derive_seed(seed: int, purpose: str, number: int = 0) -> int:
     """A seed of its own for each use of a run's seed, so that no two uses see the same episodes."""
     words = np.random.SeedSequence((seed, number, *purpose.encode())).generate_state(1)
     return int(words[0])
@@ -33,7 +33,7 @@ class CaseResult:
     case: str
     group: str
     outcomes: tuple[int, int, int]
-    """How many ended in each ``Outcome``."""
+    """How many ended in each ``EpisodeOutcome``."""
     steps: float
     """Mean length of those that reached the target; NaN where none has."""
     reward: float
@@ -54,13 +54,13 @@ class CaseResult:
         return self.reached / self.episodes
 
     @property
-    def interval(self) -> Interval:
+    def interval(self) -> ConfidenceInterval:
         """Where the true share lies, with 95 % confidence."""
-        return wilson(self.reached, self.episodes)
+        return wilson_interval(self.reached, self.episodes)
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class EvaluationResult:
     """What came of a test of all cases."""
 
     task: str
@@ -139,10 +139,10 @@ class Result:
         }
 
 
-class Examiner:
+class Evaluator:
     """Tests policies on a task. Keeps its worlds from one test to the next."""
 
-    def __init__(self, task: Task, reward: RewardFunction | None = None) -> None:
+    def __init__(self, task: LearningTask, reward: RewardFunction | None = None) -> None:
         self.task = task
         self._reward = reward
         self._cases = tuple(case for _, case in task.courses())
@@ -152,19 +152,23 @@ class Examiner:
     def cases(self) -> tuple[str, ...]:
         return tuple(case.name for case in self._cases)
 
-    def test(self, policy: Policy, episodes: int, seed: int, *, greedy: bool = True) -> Result:
+    def test(self, policy: Policy, episodes: int, seed: int, *, greedy: bool = True) -> EvaluationResult:
         """Of at least ``episodes`` of each case, whose randomness comes from ``seed``.
 
         Every world drives the same number of episodes, so short ones do not count more often than long ones.
         Raises PolicyError if the policy does not fit the task.
         """
         policy.fits(self.task)
-        rounds = -(-episodes * len(self._cases) // AT_ONCE)
+        rounds = -(-episodes * len(self._cases) // PARALLEL_WORLDS)
         n = len(self._cases) * -(-episodes // rounds)
         batch = self._batch(n)
-        player = policy.player(n, None if greedy else np.random.default_rng(seed_for(seed, "moves")))
-        left, sums = np.full(n, rounds), {case.name: _Sums() for case in self._cases}
-        observations, fresh, tally = batch.reset(seed=seed), np.ones(n, dtype=np.bool_), Tally(batch)
+        player = policy.player(n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
+        left, sums = np.full(n, rounds), {case.name: _CaseSums() for case in self._cases}
+        observations, fresh, tally = (
+            batch.reset(seed=seed),
+            np.ones(n, dtype=np.bool_),
+            EpisodeStatsRecorder(batch),
+        )
         with threadpool_limits(1, user_api="blas"):
             while left.any():
                 step = batch.step(player.act(observations, fresh))
@@ -174,7 +178,7 @@ class Examiner:
                         sums[episode.case].add(episode)
                 observations, fresh = step.observations, step.ended
         pair = self.task.robots > 1
-        return Result(
+        return EvaluationResult(
             self.task.name, greedy, tuple(sums[case.name].result(case, pair) for case in self._cases)
         )
 
@@ -185,18 +189,18 @@ class Examiner:
 
 
 @dataclass(slots=True)
-class _Sums:
+class _CaseSums:
     """Over the episodes of one case."""
 
-    outcomes: dict[Outcome, int] = field(default_factory=lambda: dict.fromkeys(Outcome, 0))
+    outcomes: dict[EpisodeOutcome, int] = field(default_factory=lambda: dict.fromkeys(EpisodeOutcome, 0))
     steps: int = 0
     """Of those that reached the target."""
     reward: float = 0.0
     adjacency: float = 0.0
 
-    def add(self, episode: Episode) -> None:
+    def add(self, episode: EpisodeStats) -> None:
         self.outcomes[episode.outcome] += 1
-        self.steps += episode.steps if episode.outcome is Outcome.REACHED else 0
+        self.steps += episode.steps if episode.outcome is EpisodeOutcome.REACHED else 0
         self.reward += episode.reward
         self.adjacency += episode.adjacency
 

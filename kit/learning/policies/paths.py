@@ -8,38 +8,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import ground
-from kit.learning.environment.episode_stats import Outcome, Tally
-from kit.learning.environment.tasks import Task
-from kit.learning.policies.evaluation import seed_for
+from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
+from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
 from kit.render.scene import Disc, Mark, Path, Scene
 from kit.world.catalogue import MapCard, MapCase
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
+class EpisodePath:
     """One episode's way."""
 
     case: str
-    outcome: Outcome
+    outcome: EpisodeOutcome
     poses: NDArray[np.float64]
     """(steps + 1, robots, 3), from the start on."""
     target: tuple[float, float]
 
 
-def drive(policy: Policy, task: Task, episodes: int, seed: int, *, greedy: bool = True) -> tuple[Way, ...]:
+def record_paths(
+    policy: Policy, task: LearningTask, episodes: int, seed: int, *, greedy: bool = True
+) -> tuple[EpisodePath, ...]:
     """The ways of ``episodes`` episodes of each case, in the order of the task's cases.
 
     PolicyError if the policy does not fit.
     """
     policy.fits(task)
     batch = BatchEnv(task, episodes * len(task.courses()), seed)
-    player = policy.player(batch.n, None if greedy else np.random.default_rng(seed_for(seed, "moves")))
+    player = policy.player(batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
     observations, fresh = batch.reset(seed=seed), np.ones(batch.n, dtype=np.bool_)
-    starts, targets, tally = batch.state.pose.copy(), batch.state.target.copy(), Tally(batch)
+    starts, targets, tally = batch.state.pose.copy(), batch.state.target.copy(), EpisodeStatsRecorder(batch)
     trails = [[start] for start in starts]
-    ways: dict[int, Way] = {}
+    ways: dict[int, EpisodePath] = {}
     while len(ways) < batch.n:
         step = batch.step(player.act(observations, fresh))
         for world in range(batch.n):
@@ -48,25 +50,25 @@ def drive(policy: Policy, task: Task, episodes: int, seed: int, *, greedy: bool 
         for episode in tally.add(step):
             if episode.world not in ways:
                 world, (x, y) = episode.world, targets[episode.world].tolist()
-                ways[world] = Way(episode.case, episode.outcome, np.array(trails[world]), (x, y))
+                ways[world] = EpisodePath(episode.case, episode.outcome, np.array(trails[world]), (x, y))
         observations, fresh = step.observations, step.ended
     order = [case.name for _, case in task.courses()]
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 
-def scene_of(card: MapCard, case: MapCase, ways: tuple[Way, ...], radius: float) -> Scene:
+def build_paths_scene(card: MapCard, case: MapCase, ways: tuple[EpisodePath, ...], radius: float) -> Scene:
     """The ways of one case over its map: solid where the target was reached, dotted where not. ``radius`` [m]: of
     the target."""
     mine = [way for way in ways if way.case == case.name]
     paths = tuple(
-        Path(way.poses[:, robot, :2], "solid" if way.outcome is Outcome.REACHED else "dotted")
+        Path(way.poses[:, robot, :2], "solid" if way.outcome is EpisodeOutcome.REACHED else "dotted")
         for way in mine
         for robot in range(way.poses.shape[1])
     )
-    ends = [way for way in mine if way.outcome is not Outcome.REACHED]
-    contacts = [way.poses[-1, 0, :2] for way in ends if way.outcome is Outcome.COLLIDED]
+    ends = [way for way in mine if way.outcome is not EpisodeOutcome.REACHED]
+    contacts = [way.poses[-1, 0, :2] for way in ends if way.outcome is EpisodeOutcome.COLLIDED]
     return Scene(
-        walls=ground(card).walls,
+        walls=load_batch_map(card).walls,
         targets=(Disc(*case.target, radius),),
         paths=paths,
         contacts=np.array(contacts).reshape(-1, 2),

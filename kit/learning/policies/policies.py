@@ -17,11 +17,11 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.task_spec import TaskSpec
 from kit.workspace import write_atomically
 
-Singles: TypeAlias = NDArray[np.float32]
-Integers: TypeAlias = NDArray[np.int64]
+SingleArray: TypeAlias = NDArray[np.float32]
+IntArray: TypeAlias = NDArray[np.int64]
 Activation = Literal["tanh", "relu"]
 
 
@@ -30,29 +30,29 @@ class PolicyError(Exception):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Layer:
+class LinearLayer:
     """A linear layer: ``x @ weights + bias``."""
 
-    weights: Singles
+    weights: SingleArray
     """(inputs, outputs)"""
-    bias: Singles
+    bias: SingleArray
     """(outputs,)"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Lstm:
+class LstmLayer:
     """A layer with memory (Hochreiter and Schmidhuber 1997), its gates in torch's order: in, forget, cell, out."""
 
-    seen: Layer
+    seen: LinearLayer
     """(inputs, 4 * h)"""
-    kept: Layer
+    kept: LinearLayer
     """(h, 4 * h)"""
 
     @property
     def size(self) -> int:
         return len(self.kept.weights)
 
-    def step(self, x: Singles, memory: Singles) -> tuple[Singles, Singles]:
+    def step(self, x: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
         """(n, h) outputs and the next memory, from inputs (n, inputs) and memory (n, 2, h): hidden, cell."""
         gates = x @ self.seen.weights + self.seen.bias + memory[:, 0] @ self.kept.weights + self.kept.bias
         enter, forget, cell, out = np.split(gates, 4, axis=1)
@@ -61,20 +61,20 @@ class Lstm:
         return hidden, np.stack((hidden, kept), axis=1)
 
 
-def _sigmoid(x: Singles) -> Singles:
+def _sigmoid(x: SingleArray) -> SingleArray:
     """Written with tanh, which does not overflow."""
-    y: Singles = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
+    y: SingleArray = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
     return y
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Network:
+class PolicyNetwork:
     """A feed-forward network, perhaps with a memory in front."""
 
-    layers: tuple[Layer, ...]
+    layers: tuple[LinearLayer, ...]
     activation: Activation
     """Between the layers, not after the last."""
-    lstm: Lstm | None = None
+    lstm: LstmLayer | None = None
 
     @property
     def inputs(self) -> int:
@@ -88,7 +88,7 @@ class Network:
     def memory(self) -> int:
         return self.lstm.size if self.lstm else 0
 
-    def scores(self, observations: Singles, memory: Singles) -> tuple[Singles, Singles]:
+    def scores(self, observations: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
         """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
         x = observations
         if self.lstm is not None:
@@ -101,14 +101,14 @@ class Network:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Table:
+class ActionValueTable:
     """One row of scores for each state; a state is in which bins a few of the inputs lie."""
 
-    used: Integers
+    used: IntArray
     """(k,) which inputs count."""
-    edges: Singles
+    edges: SingleArray
     """(b - 1,) between the bins, rising."""
-    values: Singles
+    values: SingleArray
     """(b ** k, outputs)"""
     inputs: int
 
@@ -120,20 +120,20 @@ class Table:
     def memory(self) -> int:
         return 0
 
-    def states(self, observations: Singles) -> Integers:
+    def states(self, observations: SingleArray) -> IntArray:
         """(n,) row numbers, from (n, inputs)."""
         bins = np.searchsorted(self.edges, observations[:, self.used], side="right")
         weights = (len(self.edges) + 1) ** np.arange(len(self.used))[::-1]
-        states: Integers = bins @ weights
+        states: IntArray = bins @ weights
         return states
 
-    def scores(self, observations: Singles, memory: Singles) -> tuple[Singles, Singles]:
+    def scores(self, observations: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
         """(n, outputs); a table has no memory."""
         return self.values[self.states(observations)], memory
 
 
 @dataclass(frozen=True, slots=True)
-class Chance:
+class ActionSampling:
     """How a sampled policy departs from the best action."""
 
     kind: Literal["softmax", "epsilon"]
@@ -145,35 +145,35 @@ class Chance:
 class Policy:
     """Which actions for which observations."""
 
-    brain: Network | Table
+    brain: PolicyNetwork | ActionValueTable
     choices: tuple[int, ...]
     """How many actions there are to choose from: one number, or one for each robot."""
-    chance: Chance
-    trained_on: TaskChoice
+    chance: ActionSampling
+    trained_on: TaskSpec
     steps: int
     """How long it has learned."""
 
     def fits(self, task: Any) -> None:
         """PolicyError if it cannot play ``task`` (a ``Task``)."""
         sees = task.observation.size * task.robots
-        choices = choices_of(task.actions.space(task.robots))
+        choices = action_counts(task.actions.space(task.robots))
         if (sees, choices) != (self.brain.inputs, self.choices):
             raise PolicyError(
                 f"this policy was trained on {self.trained_on.title}: it sees {self.brain.inputs} numbers and chooses "
-                f"from {_listed(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
-                f"{_listed(choices)}. Play it on the task it was trained on, or train another."
+                f"from {_product_text(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
+                f"{_product_text(choices)}. Play it on the task it was trained on, or train another."
             )
 
-    def player(self, n: int, rng: np.random.Generator | None = None) -> Player:
+    def player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
         """One who plays ``n`` worlds: greedily, or, given a source of chance, sampled."""
-        return Player(self, n, rng)
+        return PolicyPlayer(self, n, rng)
 
 
-def _listed(choices: tuple[int, ...]) -> str:
+def _product_text(choices: tuple[int, ...]) -> str:
     return " x ".join(map(str, choices))
 
 
-def choices_of(space: spaces.Space[Any]) -> tuple[int, ...]:
+def action_counts(space: spaces.Space[Any]) -> tuple[int, ...]:
     """How many actions a Discrete or MultiDiscrete space has to choose from, number by number."""
     if isinstance(space, spaces.Discrete):
         return (int(space.n),)
@@ -182,16 +182,16 @@ def choices_of(space: spaces.Space[Any]) -> tuple[int, ...]:
     raise PolicyError(f"a policy chooses from discrete actions, not from {space}")
 
 
-class Player:
+class PolicyPlayer:
     """A policy at play in ``n`` worlds, with its memory of their episodes."""
 
     def __init__(self, policy: Policy, n: int, rng: np.random.Generator | None = None) -> None:
         self.policy = policy
         self._rng = rng
-        self.memory: Singles = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
+        self.memory: SingleArray = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
         """(n, 2, h)"""
 
-    def act(self, observations: Singles, fresh: NDArray[np.bool_] | None = None) -> Integers:
+    def act(self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None) -> IntArray:
         """(n,) actions, or (n, robots) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
             self.memory[fresh] = 0.0
@@ -203,8 +203,8 @@ class Player:
         chosen = np.stack([self._choose(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
 
-    def _choose(self, scores: Singles) -> Integers:
-        best: Integers = scores.argmax(axis=1)
+    def _choose(self, scores: SingleArray) -> IntArray:
+        best: IntArray = scores.argmax(axis=1)
         if self._rng is None:
             return best
         chance = self.policy.chance
@@ -212,22 +212,22 @@ class Player:
             anything = self._rng.integers(scores.shape[1], size=len(scores))
             return np.where(self._rng.random(len(scores)) < chance.amount, anything, best)
         # The greatest of score plus Gumbel noise is drawn in proportion to exp(score).
-        noisy: Integers = (scores / chance.amount + self._rng.gumbel(size=scores.shape)).argmax(axis=1)
+        noisy: IntArray = (scores / chance.amount + self._rng.gumbel(size=scores.shape)).argmax(axis=1)
         return noisy
 
 
-FORMAT = 1
+FORMAT_VERSION = 1
 
 
 def save_policy(policy: Policy, file: Path) -> None:
     """Writes it, atomically, as an ``.npz`` of plain arrays and one text. OSError if it cannot be written."""
-    write_atomically(file, to_bytes(policy))
+    write_atomically(file, policy_bytes(policy))
 
 
-def to_bytes(policy: Policy) -> bytes:
+def policy_bytes(policy: Policy) -> bytes:
     """What ``save_policy`` writes."""
     about = {
-        "format": FORMAT,
+        "format": FORMAT_VERSION,
         "choices": policy.choices,
         "chance": [policy.chance.kind, policy.chance.amount],
         "task": policy.trained_on.as_dict(),
@@ -238,14 +238,14 @@ def to_bytes(policy: Policy) -> bytes:
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
-        for name, array in {"about": text, **_arrays(policy.brain)}.items():
+        for name, array in {"about": text, **_arrays_of(policy.brain)}.items():
             with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
                 np.lib.format.write_array(member, array, allow_pickle=False)
     return buffer.getvalue()
 
 
-def _arrays(brain: Network | Table) -> dict[str, NDArray[Any]]:
-    if isinstance(brain, Table):
+def _arrays_of(brain: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any]]:
+    if isinstance(brain, ActionValueTable):
         return {"used": brain.used, "edges": brain.edges, "values": brain.values}
     layers = [*((brain.lstm.seen, brain.lstm.kept) if brain.lstm else ()), *brain.layers]
     names = [*(("seen", "kept") if brain.lstm else ()), *(str(number) for number in range(len(brain.layers)))]
@@ -260,7 +260,7 @@ def load_policy(file: Path) -> Policy:
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
-        return _policy(arrays)
+        return _policy_from_arrays(arrays)
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
@@ -269,29 +269,31 @@ def load_policy(file: Path) -> Policy:
         ) from None
 
 
-def _policy(arrays: dict[str, NDArray[Any]]) -> Policy:
+def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
     about = json.loads(arrays["about"].tobytes())
-    if about["format"] != FORMAT:
-        raise ValueError(f"format {about['format']}, this kit reads {FORMAT}")
+    if about["format"] != FORMAT_VERSION:
+        raise ValueError(f"format {about['format']}, this kit reads {FORMAT_VERSION}")
     kind, amount = about["chance"]
     return Policy(
-        _table(arrays, about["inputs"]) if "values" in arrays else _network(arrays, about["activation"]),
+        _table_from_arrays(arrays, about["inputs"])
+        if "values" in arrays
+        else _network_from_arrays(arrays, about["activation"]),
         tuple(about["choices"]),
-        Chance(kind, float(amount)),
-        TaskChoice.from_dict(about["task"]),
+        ActionSampling(kind, float(amount)),
+        TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
     )
 
 
-def _table(arrays: dict[str, NDArray[Any]], inputs: int) -> Table:
-    return Table(arrays["used"], arrays["edges"], arrays["values"], inputs)
+def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:
+    return ActionValueTable(arrays["used"], arrays["edges"], arrays["values"], inputs)
 
 
-def _network(arrays: dict[str, NDArray[Any]], activation: str) -> Network:
-    def layer(name: str) -> Layer:
-        return Layer(arrays[f"weights_{name}"], arrays[f"bias_{name}"])
+def _network_from_arrays(arrays: dict[str, NDArray[Any]], activation: str) -> PolicyNetwork:
+    def layer(name: str) -> LinearLayer:
+        return LinearLayer(arrays[f"weights_{name}"], arrays[f"bias_{name}"])
 
     count = sum(name.removeprefix("weights_").isdigit() for name in arrays)
     known: Activation = next(each for each in get_args(Activation) if each == activation)
-    lstm = Lstm(layer("seen"), layer("kept")) if "weights_seen" in arrays else None
-    return Network(tuple(layer(str(number)) for number in range(count)), known, lstm)
+    lstm = LstmLayer(layer("seen"), layer("kept")) if "weights_seen" in arrays else None
+    return PolicyNetwork(tuple(layer(str(number)) for number in range(count)), known, lstm)

@@ -10,15 +10,15 @@ import zlib
 from importlib.resources import files
 from textwrap import wrap
 
-from kit.learning.environment.tasks import Task
-from kit.learning.policies.policies import Network, Policy, PolicyError, to_bytes
+from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.policies import Policy, PolicyError, PolicyNetwork, policy_bytes
 
-TOPICS = {1: ("",), 2: ("left/", "right/")}
+TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
 """Before each robot's ``cmd_vel`` and ``static_laser``."""
-MARK = "# --- what was learned ---\n"
+LEARNED_MARK = "# --- what was learned ---\n"
 
 
-def node_source(policy: Policy) -> str:
+def format_policy_node(policy: Policy) -> str:
     """The file's text.
 
     PolicyError for a policy that needs what a node on a robot does not know: where the target is, who has arrived.
@@ -30,17 +30,17 @@ def node_source(policy: Policy) -> str:
             "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
             "Train one without --tell-target and --tell-arrived."
         )
-    if not isinstance(policy.brain, Network):
+    if not isinstance(policy.brain, PolicyNetwork):
         raise PolicyError(
             "a table cannot be written as a node yet: it has a row for every state. Train a network."
         )
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
-    head, _, tail = template.partition(MARK)
-    rest = tail.partition(MARK)[2]
-    return head + MARK + _constants(policy, task) + MARK + rest
+    head, _, tail = template.partition(LEARNED_MARK)
+    rest = tail.partition(LEARNED_MARK)[2]
+    return head + LEARNED_MARK + _format_constants(policy, task) + LEARNED_MARK + rest
 
 
-def _constants(policy: Policy, task: Task) -> str:
+def _format_constants(policy: Policy, task: LearningTask) -> str:
     """What the template's constants become."""
     seen, (single, _) = task.observation, task.observation.tables(task.robots)
     title = f"{policy.trained_on.title}, {policy.steps:,} steps"
@@ -49,13 +49,13 @@ def _constants(policy: Policy, task: Task) -> str:
         "STEP_TIME": task.step_time,
         "TWISTS": [list(map(float, twist)) for twist in task.actions.twists],
         "CHOICES": list(policy.choices),
-        "TOPICS": list(TOPICS[task.robots]),
+        "TOPICS": list(TOPIC_PREFIXES[task.robots]),
         "RAYS": single.tolist(),
         "SECTORS": list(seen.sectors),
         "CLIP": seen.clip,
         "SCALE": seen.scale,
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]
-    packed = base64.b64encode(zlib.compress(to_bytes(policy), 9)).decode()
+    packed = base64.b64encode(zlib.compress(policy_bytes(policy), 9)).decode()
     quoted = "\n".join(f'    "{part}"' for part in wrap(packed, 100))
     return "\n".join(lines) + f"\nPOLICY = (\n{quoted}\n)\n"

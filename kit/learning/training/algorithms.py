@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 from kit.plain_text import quoted, suggestion
 
-Family = Literal["rollouts", "replay", "search", "table"]
+AlgorithmFamily = Literal["rollouts", "replay", "search", "table"]
 """How it learns: from what its present policy just did; from a memory of all it did; by trying changed networks
 for whole episodes; or a number for each state and action, without a network."""
 
@@ -29,7 +29,7 @@ class Algorithm:
 
     name: str
     title: str
-    family: Family
+    family: AlgorithmFamily
     module: str
     cls: str
     policy: str = "MlpPolicy"

@@ -17,20 +17,20 @@ from typing import Any
 
 import numpy as np
 
-from kit.learning.policies.evaluation import Examiner, seed_for
-from kit.learning.training.runs import Run, RunConfig, RunError, new_run
-from kit.learning.training.worker import start
+from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
+from kit.learning.training.worker import start_worker
 from kit.workspace import write_atomically
 
-ALL = "all"
+ALL_CASES = "all"
 SEED_MEANS: Mapping[str, float] = MappingProxyType(
-    {"doors": 0.797, "obstacles": 0.674, "90_turns": 0.711, "180_turns": 0.711, ALL: 0.825}
+    {"doors": 0.797, "obstacles": 0.674, "90_turns": 0.711, "180_turns": 0.711, ALL_CASES: 0.825}
 )
 """The dissertation's means over all 15 cases, by the group trained on."""
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class GroupResult:
     """One group trained on."""
 
     group: str
@@ -49,13 +49,13 @@ class Column:
         return float(np.std([*self.shares.values()], ddof=1)) if len(self.shares) > 1 else 0.0
 
 
-def groups_of(config: RunConfig) -> tuple[str, ...]:
+def case_groups(config: RunConfig) -> tuple[str, ...]:
     """The task's groups of more than one case, and all cases together."""
     groups = [case.group for _, case in config.choice.resolve().courses() if case.group]
-    return (*(group for group in dict.fromkeys(groups) if groups.count(group) > 1), ALL)
+    return (*(group for group in dict.fromkeys(groups) if groups.count(group) > 1), ALL_CASES)
 
 
-def crosstable(
+def train_crosstable(
     folder: Path,
     config: RunConfig,
     groups: Sequence[str],
@@ -63,38 +63,38 @@ def crosstable(
     episodes: int = 500,
     at_once: int | None = None,
     tell: Callable[[str], None] = lambda text: None,
-) -> tuple[Column, ...]:
+) -> tuple[GroupResult, ...]:
     """Trains what is missing and tests what is untested; the columns in the order of ``groups``.
 
     ``folder`` holds the runs and is made if it is missing. ``tell`` hears of what is done. UnknownTask for a group
     that is none; RunError where a training fails, or the folder holds the table of something else.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    configs = {group: _trained_on(config, group) for group in groups}
+    configs = {group: _config_for_group(config, group) for group in groups}
     for each in configs.values():
         each.choice.resolve()
     with ThreadPoolExecutor(at_once or max(1, os.cpu_count() or 1)) as pool:
-        futures = {pool.submit(_train, folder, group, each): group for group, each in configs.items()}
+        futures = {pool.submit(_train_group, folder, group, each): group for group, each in configs.items()}
         for future in as_completed(futures):
             summary = future.result().summary()
             tell(f"trained on {futures[future]}: {summary.steps:,} steps, {summary.seconds:.0f} s")
-    return tuple(_column(Run(folder / group), config, episodes) for group in groups)
+    return tuple(_group_result(TrainingRun(folder / group), config, episodes) for group in groups)
 
 
-def _trained_on(config: RunConfig, group: str) -> RunConfig:
-    on = config.choice.on if group == ALL else (group,)
+def _config_for_group(config: RunConfig, group: str) -> RunConfig:
+    on = config.choice.on if group == ALL_CASES else (group,)
     return replace(config, choice=replace(config.choice, on=on))
 
 
-def _train(folder: Path, group: str, config: RunConfig) -> Run:
+def _train_group(folder: Path, group: str, config: RunConfig) -> TrainingRun:
     """The group's run, at its end."""
-    run = Run(folder / group)
+    run = TrainingRun(folder / group)
     if not (run.folder / "config.json").exists():
-        run = new_run(folder, config, group)
+        run = create_run(folder, config, group)
     elif run.config() != config:
         raise RunError(f"{run.folder} was trained with other settings. Give this table another --name.")
     if run.summary().state not in ("finished", "failed"):
-        start(run).wait()
+        start_worker(run).wait()
     summary = run.summary()
     if summary.state != "finished":
         raise RunError(
@@ -103,21 +103,21 @@ def _train(folder: Path, group: str, config: RunConfig) -> Run:
     return run
 
 
-def _column(run: Run, config: RunConfig, episodes: int) -> Column:
+def _group_result(run: TrainingRun, config: RunConfig, episodes: int) -> GroupResult:
     """The run's policy on all cases; tested once, then read."""
     file = run.folder / f"tested-{episodes}.json"
     if file.exists():
         stored: dict[str, Any] = json.loads(file.read_bytes())
     else:
-        examiner = Examiner(config.choice.resolve())
-        result = examiner.test(run.policy(), episodes, seed_for(config.seed, "crosstable"))
+        examiner = Evaluator(config.choice.resolve())
+        result = examiner.test(run.policy(), episodes, derive_seed(config.seed, "crosstable"))
         stored = {case.case: case.share for case in result.cases}
         write_atomically(file, json.dumps(stored).encode())
     summary = run.summary()
-    return Column(run.name, summary.steps, summary.seconds, stored)
+    return GroupResult(run.name, summary.steps, summary.seconds, stored)
 
 
-def rows_of(columns: Sequence[Column], compare: Mapping[str, float] = SEED_MEANS) -> list[str]:
+def format_crosstable(columns: Sequence[GroupResult], compare: Mapping[str, float] = SEED_MEANS) -> list[str]:
     """An aligned table: a row for each case tested on; means, and those of ``compare`` below."""
     cases = list(columns[0].shares)
     width = max(len("dissertation"), *(len(case) for case in cases))

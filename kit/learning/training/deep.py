@@ -17,17 +17,17 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnvWrapper
 from torch import nn
 
-from kit.learning.environment.episode_stats import Episode, Outcome
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.policies.export import chance_of, network_of
-from kit.learning.policies.policies import Policy, choices_of
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.export import export_network, export_sampling
+from kit.learning.policies.policies import Policy, action_counts
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.learner import Watcher
-from kit.learning.training.presets import Falling, Preset, Replay, Rollouts
+from kit.learning.training.learner import TrainingCallback
+from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset, ReplayParams
 
-SLOWER = 0.5
+LEARNING_RATE_FACTOR = 0.5
 """By this the learning rate is multiplied each time a learner had to go back."""
-FUSED: Mapping[str, Mapping[str, Any]] = {
+OPTIMIZER_OPTIONS: Mapping[str, Mapping[str, Any]] = {
     "ppo": {"fused": True, "eps": 1e-5},
     "maskable-ppo": {"fused": True, "eps": 1e-5},
     "recurrent-ppo": {"fused": True, "eps": 1e-5},
@@ -42,10 +42,10 @@ LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking"
 """The tasks forbid no action anywhere."""
 
 
-class _Watched(VecEnvWrapper):
+class _EpisodeReporter(VecEnvWrapper):
     """Tells the watcher of every episode that ends."""
 
-    watcher: Watcher | None = None
+    watcher: TrainingCallback | None = None
 
     def reset(self) -> Any:
         return self.venv.reset()
@@ -54,16 +54,16 @@ class _Watched(VecEnvWrapper):
         observations, rewards, dones, infos = self.venv.step_wait()
         if self.watcher is not None:
             for number in np.flatnonzero(dones):
-                self.watcher.saw(_episode(int(number), infos[number]))
+                self.watcher.saw(_episode_of(int(number), infos[number]))
         return observations, rewards, dones, infos
 
 
-def _episode(world: int, info: Mapping[str, Any]) -> Episode:
+def _episode_of(world: int, info: Mapping[str, Any]) -> EpisodeStats:
     """As ``BatchVecEnv`` tells of it."""
-    return Episode(
+    return EpisodeStats(
         world,
         info["case"],
-        Outcome(info["outcome"]),
+        EpisodeOutcome(info["outcome"]),
         info["episode"]["l"],
         info["episode"]["r"],
         info["terms"],
@@ -71,10 +71,10 @@ def _episode(world: int, info: Mapping[str, Any]) -> Episode:
     )
 
 
-class _Between(BaseCallback):
+class _RolloutCallback(BaseCallback):
     """Calls the watcher where the policy stands still: before each stretch of driving."""
 
-    def __init__(self, watcher: Watcher, entropy: Falling | None) -> None:
+    def __init__(self, watcher: TrainingCallback, entropy: LinearSchedule | None) -> None:
         super().__init__()
         self._watcher = watcher
         self._entropy = entropy
@@ -95,7 +95,7 @@ class DeepLearner:
         self,
         algorithm: Algorithm,
         preset: Preset,
-        choice: TaskChoice,
+        choice: TaskSpec,
         venv: Any,
         seed: int,
         tensorboard: Path | None = None,
@@ -105,15 +105,15 @@ class DeepLearner:
         self._algorithm = algorithm
         self._preset = preset
         self._choice = choice
-        self._env = _Watched(venv)
+        self._env = _EpisodeReporter(venv)
         self._slower = 1.0
         network: dict[str, Any] = {"net_arch": list(preset.layers)}
         if preset.activation is not None:
             network["activation_fn"] = ACTIVATIONS[preset.activation]
         if preset.memory is not None:
             network["lstm_hidden_size"] = preset.memory
-        if algorithm.name in FUSED:
-            network["optimizer_kwargs"] = dict(FUSED[algorithm.name])
+        if algorithm.name in OPTIMIZER_OPTIONS:
+            network["optimizer_kwargs"] = dict(OPTIMIZER_OPTIONS[algorithm.name])
         keywords = preset.keywords()
         if preset.learning_rate is not None:
             keywords["learning_rate"] = self._rate
@@ -134,13 +134,13 @@ class DeepLearner:
     def steps(self) -> int:
         return int(self._model.num_timesteps)
 
-    def learn(self, steps: int, watcher: Watcher) -> None:
+    def learn(self, steps: int, watcher: TrainingCallback) -> None:
         settings = self._preset.settings
-        entropy = settings.ent_coef if isinstance(settings, Rollouts) else None
+        entropy = settings.ent_coef if isinstance(settings, OnPolicyParams) else None
         self._env.watcher = watcher
         self._model.learn(
             max(0, steps - self.steps),
-            _Between(watcher, entropy),
+            _RolloutCallback(watcher, entropy),
             reset_num_timesteps=False,
             tb_log_name="training",
             **LEARN_OPTIONS.get(self._algorithm.name, {}),
@@ -153,9 +153,9 @@ class DeepLearner:
 
     def policy(self) -> Policy:
         return Policy(
-            network_of(self._model),
-            choices_of(self._model.action_space),
-            chance_of(self._model),
+            export_network(self._model),
+            action_counts(self._model.action_space),
+            export_sampling(self._model),
             self._choice,
             self.steps,
         )
@@ -165,7 +165,7 @@ class DeepLearner:
 
     def recall(self, known: Any) -> None:
         self._put(copy.deepcopy(known))
-        self._slower *= SLOWER
+        self._slower *= LEARNING_RATE_FACTOR
 
     def _put(self, parameters: Any) -> None:
         self._model.set_parameters(parameters, device="cpu")
@@ -182,8 +182,8 @@ class DeepLearner:
             "slower": self._slower,
         }
         parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
-        if isinstance(self._preset.settings, Replay):
-            parts["replay.npz"] = _replay_bytes(self._model.replay_buffer)
+        if isinstance(self._preset.settings, ReplayParams):
+            parts["replay.npz"] = _pack_replay_buffer(self._model.replay_buffer)
         return parts
 
     def load(self, parts: Mapping[str, bytes]) -> None:
@@ -196,25 +196,25 @@ class DeepLearner:
         self._model._n_updates = int(counts["updates"])
         self._slower = float(counts["slower"])
         if "replay.npz" in parts:
-            _fill_replay(self._model.replay_buffer, parts["replay.npz"])
+            _unpack_replay_buffer(self._model.replay_buffer, parts["replay.npz"])
 
 
-REPLAYED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+REPLAY_ARRAYS = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
 
-def _replay_bytes(buffer: Any) -> bytes:
+def _pack_replay_buffer(buffer: Any) -> bytes:
     """What a replay buffer holds."""
     filled = buffer.buffer_size if buffer.full else buffer.pos
     file = io.BytesIO()
     place = np.array([buffer.pos, int(buffer.full)])
-    np.savez(file, place, *(getattr(buffer, name)[:filled] for name in REPLAYED))
+    np.savez(file, place, *(getattr(buffer, name)[:filled] for name in REPLAY_ARRAYS))
     return file.getvalue()
 
 
-def _fill_replay(buffer: Any, data: bytes) -> None:
+def _unpack_replay_buffer(buffer: Any, data: bytes) -> None:
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         pos, full = stored["arr_0"].tolist()
-        for number, name in enumerate(REPLAYED, start=1):
+        for number, name in enumerate(REPLAY_ARRAYS, start=1):
             values = stored[f"arr_{number}"]
             getattr(buffer, name)[: len(values)] = values
     buffer.pos, buffer.full = pos, bool(full)

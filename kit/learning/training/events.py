@@ -15,7 +15,7 @@ from typing import Literal, Self, TypeAlias
 
 
 @dataclass(frozen=True, slots=True)
-class Started:
+class TrainingStarted:
     """The learner starts, or goes on after it was interrupted."""
 
     time: float
@@ -26,7 +26,7 @@ class Started:
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class TrainingProgress:
     """What happened in training since the last one."""
 
     steps: int
@@ -48,7 +48,7 @@ class Progress:
 
 
 @dataclass(frozen=True, slots=True)
-class Examined:
+class Evaluated:
     """A test of the strategy, on fresh episodes."""
 
     steps: int
@@ -64,14 +64,14 @@ class Examined:
 
 
 @dataclass(frozen=True, slots=True)
-class Noted:
+class TrainingNote:
     """Something a reader of the run should know."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
+class TrainingEnded:
     """The learner has ended of its own accord."""
 
     how: Literal["finished", "stopped", "failed"]
@@ -80,30 +80,30 @@ class Ended:
     reason: str
 
 
-Event: TypeAlias = Started | Progress | Examined | Noted | Ended
+TrainingEvent: TypeAlias = TrainingStarted | TrainingProgress | Evaluated | TrainingNote | TrainingEnded
 
-KINDS: Mapping[str, type[Event]] = MappingProxyType(
+EVENT_TYPES: Mapping[str, type[TrainingEvent]] = MappingProxyType(
     {
-        "started": Started,
-        "progress": Progress,
-        "examined": Examined,
-        "noted": Noted,
-        "ended": Ended,
+        "started": TrainingStarted,
+        "progress": TrainingProgress,
+        "examined": Evaluated,
+        "noted": TrainingNote,
+        "ended": TrainingEnded,
     }
 )
-_NAMES = {kind: name for name, kind in KINDS.items()}
+_EVENT_NAMES = {kind: name for name, kind in EVENT_TYPES.items()}
 
 
-def to_line(event: Event) -> bytes:
+def encode_event(event: TrainingEvent) -> bytes:
     """One line of JSON."""
-    return json.dumps({"event": _NAMES[type(event)], **asdict(event)}).encode() + b"\n"
+    return json.dumps({"event": _EVENT_NAMES[type(event)], **asdict(event)}).encode() + b"\n"
 
 
-def from_line(line: bytes) -> Event | None:
+def decode_event(line: bytes) -> TrainingEvent | None:
     """The event; None if it is damaged, or of a kind that a later kit writes."""
     try:
         data = json.loads(line)
-        kind = KINDS[data.pop("event")]
+        kind = EVENT_TYPES[data.pop("event")]
         return kind(**{name: data[name] for name in data if name in {each.name for each in fields(kind)}})
     except (ValueError, KeyError, TypeError, AttributeError):
         return None
@@ -114,15 +114,15 @@ class EventWriter:
 
     def __init__(self, file: Path) -> None:
         self._file = file.open("ab")
-        whole = _whole_lines(file)
+        whole = _length_of_whole_lines(file)
         if whole < self._file.tell():
             os.truncate(file, whole)
 
-    def write(self, event: Event) -> None:
+    def write(self, event: TrainingEvent) -> None:
         """OSError if the disk is full; nothing of the event stands in the file then."""
         start = os.fstat(self._file.fileno()).st_size
         try:
-            self._file.write(to_line(event))
+            self._file.write(encode_event(event))
             self._file.flush()
         except OSError:
             os.truncate(self._file.fileno(), start)
@@ -140,7 +140,7 @@ class EventWriter:
         self.close()
 
 
-def _whole_lines(file: Path) -> int:
+def _length_of_whole_lines(file: Path) -> int:
     """Up to which byte the file consists of whole lines."""
     return file.read_bytes().rfind(b"\n") + 1
 
@@ -151,9 +151,9 @@ class EventReader:
     def __init__(self, file: Path, *, from_now: bool = False) -> None:
         """``from_now``: leave out what stands in the file already."""
         self._file = file
-        self._place = _whole_lines(file) if from_now and file.exists() else 0
+        self._place = _length_of_whole_lines(file) if from_now and file.exists() else 0
 
-    def new(self) -> Iterator[Event]:
+    def new(self) -> Iterator[TrainingEvent]:
         """Those written since the last time; none while there is no file."""
         try:
             with self._file.open("rb") as file:
@@ -164,6 +164,6 @@ class EventReader:
         whole = data.rfind(b"\n") + 1
         self._place += whole
         for line in data[:whole].splitlines():
-            event = from_line(line)
+            event = decode_event(line)
             if event is not None:
                 yield event

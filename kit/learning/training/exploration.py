@@ -9,7 +9,7 @@ import torch
 from stable_baselines3 import DQN
 from torch.nn import functional
 
-LARGEST = 500.0
+MAX_EXPONENT = 500.0
 """Values over temperature are kept within this, so that no exponential overflows."""
 
 
@@ -39,7 +39,9 @@ class BoltzmannDQN(DQN):
         batch = np.atleast_2d(observation)
         with torch.no_grad():
             values = self.q_net(torch.as_tensor(batch, device=self.device))
-            chances = functional.softmax((values / self.temperature).clamp(-LARGEST, LARGEST), dim=1)
+            chances = functional.softmax(
+                (values / self.temperature).clamp(-MAX_EXPONENT, MAX_EXPONENT), dim=1
+            )
             drawn = torch.multinomial(chances, 1)[:, 0].cpu().numpy()
         return (drawn if np.ndim(observation) == 2 else drawn[0]), state
 

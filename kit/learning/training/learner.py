@@ -8,21 +8,21 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.episode_stats import Episode
+from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.policies import Policy
 
 
-class Halt(Exception):
+class StopLearning(Exception):
     """Ends learning between two updates; not an error."""
 
 
-class Watcher(Protocol):
+class TrainingCallback(Protocol):
     """Who looks on while a learner learns."""
 
     def between(self) -> None:
         """Called where the policy stands still, very often. May raise Halt."""
 
-    def saw(self, episode: Episode) -> None:
+    def saw(self, episode: EpisodeStats) -> None:
         """An episode of training has ended."""
 
 
@@ -33,7 +33,7 @@ class Learner(Protocol):
     def steps(self) -> int:
         """Steps of all worlds so far."""
 
-    def learn(self, steps: int, watcher: Watcher) -> None:
+    def learn(self, steps: int, watcher: TrainingCallback) -> None:
         """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
 
     def deal(self, shares: NDArray[np.float64]) -> None:

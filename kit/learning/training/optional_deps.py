@@ -6,24 +6,32 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from platform import machine, python_version, system
 
-NEEDED = ("torch", "stable_baselines3", "sb3_contrib")
-INSTALL = (
+REQUIRED_PACKAGES = ("torch", "stable_baselines3", "sb3_contrib")
+INSTALL_COMMAND = (
     "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
 )
 """In the kit's folder. The processor's build of torch: the default one for Linux brings four gigabytes of graphics drivers."""
-RECORDED = ("robot-learning-kit", "torch", "stable-baselines3", "sb3-contrib", "gymnasium", "numpy", "numba")
+RECORDED_PACKAGES = (
+    "robot-learning-kit",
+    "torch",
+    "stable-baselines3",
+    "sb3-contrib",
+    "gymnasium",
+    "numpy",
+    "numba",
+)
 
 
-class LearnerMissing(Exception):
+class LearnExtraMissing(Exception):
     """The extra ``learn`` is not installed; the message says how to install it."""
 
 
-def require_learner() -> None:
+def require_learn_extra() -> None:
     """LearnerMissing if training cannot start. Imports nothing."""
-    missing = [name for name in NEEDED if find_spec(name) is None]
+    missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
     if missing:
-        raise LearnerMissing(
-            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL}\n"
+        raise LearnExtraMissing(
+            f"Training needs {', '.join(missing)}, which the kit does without otherwise. In the kit's folder:\n  {INSTALL_COMMAND}\n"
             "Looking at runs, testing and playing trained policies works without."
         )
 
@@ -31,7 +39,7 @@ def require_learner() -> None:
 def versions() -> dict[str, str]:
     """What a run depends on: packages, Python, machine."""
     found = {"python": python_version(), "machine": f"{system()} {machine()}"}
-    for name in RECORDED:
+    for name in RECORDED_PACKAGES:
         try:
             found[name] = version(name)
         except PackageNotFoundError:

@@ -12,13 +12,13 @@ from typing import Any, Literal, TypeAlias
 
 from kit.learning.policies.policies import Activation
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.stopping_rules import Strategy, TrainUntil, UntilSure
+from kit.learning.training.stopping_rules import StoppingRule, TrainUntilGoal, TrainUntilSure
 
 PRESETS = ("kit", "seed")
 
 
 @dataclass(frozen=True, slots=True)
-class Falling:
+class LinearSchedule:
     """A value that falls in a straight line from the first to the last step of training."""
 
     first: float
@@ -30,7 +30,7 @@ class Falling:
 
 
 @dataclass(frozen=True, slots=True)
-class Rollouts:
+class OnPolicyParams:
     """For PPO and its kin, A2C and TRPO: what they have in common, and what only some of them have."""
 
     n_steps: int | None = None
@@ -42,11 +42,11 @@ class Rollouts:
     clip_range: float | None = None
     target_kl: float | None = None
     max_grad_norm: float | None = None
-    ent_coef: Falling | None = None
+    ent_coef: LinearSchedule | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Replay:
+class ReplayParams:
     """For the deep Q-networks."""
 
     buffer_size: int | None = None
@@ -65,7 +65,7 @@ class Replay:
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
+class ARSSettings:
     """For augmented random search."""
 
     n_delta: int | None = None
@@ -75,24 +75,24 @@ class Search:
 
 
 @dataclass(frozen=True, slots=True)
-class Tabular:
+class TabularParams:
     """For the tables."""
 
-    rate: Falling = Falling(0.2, 0.02)  # falls, so that the values come to rest
+    rate: LinearSchedule = LinearSchedule(0.2, 0.02)  # falls, so that the values come to rest
     gamma: float = 0.99
-    epsilon: Falling = Falling(0.3, 0.02)  # any action at all, with this probability
+    epsilon: LinearSchedule = LinearSchedule(0.3, 0.02)  # any action at all, with this probability
     edges: tuple[float, ...] = (0.15, 0.35)  # between the bins: near, free, far, in what the agent sees
 
 
-Settings: TypeAlias = Rollouts | Replay | Search | Tabular
+AlgorithmSettings: TypeAlias = OnPolicyParams | ReplayParams | ARSSettings | TabularParams
 
 
 @dataclass(frozen=True, slots=True)
 class Preset:
     """Everything about a training but the task, the algorithm and the seed."""
 
-    settings: Settings
-    strategy: Strategy
+    settings: AlgorithmSettings
+    strategy: StoppingRule
     steps: int
     """At most."""
     worlds: int = 1
@@ -104,7 +104,7 @@ class Preset:
     (as prioritised level replay does: Jiang and others 2021)."""
     mirrored: bool = False
     """Whether half of the worlds are seen in a mirror."""
-    learning_rate: Falling | None = None
+    learning_rate: LinearSchedule | None = None
     layers: tuple[int, ...] = (64, 64)
     """Sizes of the hidden layers."""
     activation: Activation | None = None
@@ -116,7 +116,7 @@ class Preset:
         """What the learner's class is called with, schedules as plain first values where it takes no others."""
         values = {each.name: getattr(self.settings, each.name) for each in fields(self.settings)}
         given = {
-            name: value.first if isinstance(value, Falling) else value
+            name: value.first if isinstance(value, LinearSchedule) else value
             for name, value in values.items()
             if value is not None
         }
@@ -128,12 +128,14 @@ class Preset:
 # The dissertation's.
 
 SEED_PPO = Preset(
-    Rollouts(),  # tutorial 2 uses every default
-    TrainUntil(every=5_000, episodes=20, goal=0.8, greedy=False),  # its test draws actions, as the tutorial's
+    OnPolicyParams(),  # tutorial 2 uses every default
+    TrainUntilGoal(
+        every=5_000, episodes=20, goal=0.8, greedy=False
+    ),  # its test draws actions, as the tutorial's
     steps=200_000,  # not given; its longest run took 45,000
 )
 SEED_DQN = Preset(
-    Replay(
+    ReplayParams(
         buffer_size=50_000,
         learning_starts=100,
         batch_size=32,
@@ -144,83 +146,87 @@ SEED_DQN = Preset(
         gamma=0.99,
         temperature=1.0,
     ),
-    TrainUntil(every=10_000, episodes=100, goal=0.8),
+    TrainUntilGoal(every=10_000, episodes=100, goal=0.8),
     steps=1_000_000,  # where chapter 4 gives up
-    learning_rate=Falling(0.01, 0.01),  # the text's; its code has 0.001
+    learning_rate=LinearSchedule(0.01, 0.01),  # the text's; its code has 0.001
     layers=(24, 24),
     activation="relu",
 )
-SEED_ANY = replace(SEED_PPO, strategy=TrainUntil(every=10_000, episodes=100, goal=0.8), steps=1_000_000)
+SEED_DEFAULT = replace(
+    SEED_PPO, strategy=TrainUntilGoal(every=10_000, episodes=100, goal=0.8), steps=1_000_000
+)
 
 # The kit's.
 
 KIT_PPO_TURN = Preset(
-    Rollouts(
+    OnPolicyParams(
         n_steps=128,
         batch_size=1024,  # large minibatches keep one core busy: 20 times the steps per second of 64
         n_epochs=4,
         # Without it a policy that always turns to one side stays at half of the episodes; with 0.05 one seed in twenty
         # learns to turn on the spot until the time is up, before it has ever arrived.
-        ent_coef=Falling(0.2, 0.0),
+        ent_coef=LinearSchedule(0.2, 0.0),
     ),
-    UntilSure(every=16_384, goal=0.95, screening=100, confirming=500),
+    TrainUntilSure(every=16_384, goal=0.95, screening=100, confirming=500),
     steps=500_000,
     worlds=64,
-    learning_rate=Falling(1e-3, 1e-4),
+    learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_PPO_HALLWAY = Preset(
-    Rollouts(
+    OnPolicyParams(
         n_steps=32,
         batch_size=1920,  # an eighth of the 15,360 steps of a rollout
         n_epochs=4,
-        ent_coef=Falling(0.02, 0.002),  # at first it keeps trying both sides of a door, in the end it aims
+        ent_coef=LinearSchedule(
+            0.02, 0.002
+        ),  # at first it keeps trying both sides of a door, in the end it aims
     ),
-    UntilSure(
+    TrainUntilSure(
         every=307_200, goal=0.965, screening=40, confirming=500
     ),  # surely 0.965 is 0.985 and more measured
     steps=3_600_000,  # with three a door is not always learned well; half of the runs are sure before two
     worlds=480,  # thirty-two of each case; with twice as many and rollouts half as long, one seed in seven never learned
     hard=0.5,  # what is left to learn in the end is one door or curve, a different one for every seed
     stay=True,  # behind a door episodes are short: dealt by episodes, doors got half the steps of long curves
-    learning_rate=Falling(1e-3, 3e-5),  # the end of training is for precision
+    learning_rate=LinearSchedule(1e-3, 3e-5),  # the end of training is for precision
     activation="relu",  # no worse than tanh in the few seeds compared, and tanh takes a fifth of the time
 )
 KIT_PPO_WHEELCHAIRS = Preset(
-    Rollouts(
+    OnPolicyParams(
         n_steps=64,
         batch_size=2400,  # a sixth of the 14,400 steps of a rollout
         n_epochs=12,  # with 4 they are side by side in 0.89 of the steps on the straight, however long it takes
-        ent_coef=Falling(0.01, 0.001),  # sampled moves leave the 0.05 m that side by side allows
+        ent_coef=LinearSchedule(0.01, 0.001),  # sampled moves leave the 0.05 m that side by side allows
     ),
-    UntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.955),
+    TrainUntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.955),
     steps=12_000_000,  # being side by side goes on getting better long after every target is reached
     worlds=225,  # twenty-five of each case
     stay=True,
-    learning_rate=Falling(1e-3, 3e-5),
+    learning_rate=LinearSchedule(1e-3, 3e-5),
 )
 KIT_A2C = Preset(
-    Rollouts(n_steps=32, ent_coef=Falling(0.02, 0.0)),
-    UntilSure(every=50_000),
+    OnPolicyParams(n_steps=32, ent_coef=LinearSchedule(0.02, 0.0)),
+    TrainUntilSure(every=50_000),
     steps=2_000_000,
     worlds=64,
-    learning_rate=Falling(1e-3, 1e-4),
+    learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_TRPO = Preset(
-    Rollouts(n_steps=128, batch_size=1024, target_kl=0.02),
-    UntilSure(every=50_000),
+    OnPolicyParams(n_steps=128, batch_size=1024, target_kl=0.02),
+    TrainUntilSure(every=50_000),
     steps=2_000_000,
     worlds=64,
-    learning_rate=Falling(1e-3, 1e-4),
+    learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_RECURRENT = Preset(
-    Rollouts(n_steps=128, batch_size=1024, n_epochs=4, ent_coef=Falling(0.03, 0.0)),
-    UntilSure(every=50_000),
+    OnPolicyParams(n_steps=128, batch_size=1024, n_epochs=4, ent_coef=LinearSchedule(0.03, 0.0)),
+    TrainUntilSure(every=50_000),
     memory=64,  # four times as fast as the library's 256
     steps=1_000_000,  # a step costs ten times that of PPO
     worlds=64,
-    learning_rate=Falling(1e-3, 1e-4),
+    learning_rate=LinearSchedule(1e-3, 1e-4),
 )
-_DQN = Replay(
+_DQN_PARAMS = ReplayParams(
     buffer_size=100_000,
     learning_starts=5_000,
     batch_size=256,
@@ -231,42 +237,47 @@ _DQN = Replay(
     exploration_final_eps=0.05,
 )
 KIT_DQN = Preset(
-    _DQN,
-    UntilSure(every=20_000),  # it forgets, so the best policy is kept
+    _DQN_PARAMS,
+    TrainUntilSure(every=20_000),  # it forgets, so the best policy is kept
     steps=500_000,
     worlds=16,
-    learning_rate=Falling(1e-3, 1e-4),
+    learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_BOLTZMANN = replace(
     KIT_DQN,
     settings=replace(
-        _DQN,
+        _DQN_PARAMS,
         exploration_fraction=None,
         exploration_final_eps=None,
         temperature=0.05,  # values are a few units where rewards are scaled: 1 would be a coin toss
     ),
 )
 KIT_ARS = Preset(
-    Search(n_delta=16, n_top=8, delta_std=0.05, n_eval_episodes=16),
-    UntilSure(every=100_000),
+    ARSSettings(n_delta=16, n_top=8, delta_std=0.05, n_eval_episodes=16),
+    TrainUntilSure(every=100_000),
     steps=3_000_000,
     worlds=16,
-    learning_rate=Falling(0.02, 0.02),
+    learning_rate=LinearSchedule(0.02, 0.02),
 )
-KIT_TABLE = Preset(Tabular(), UntilSure(every=50_000), steps=1_000_000, worlds=16)
+KIT_TABLE = Preset(TabularParams(), TrainUntilSure(every=50_000), steps=1_000_000, worlds=16)
 
-_PLAIN: Mapping[str, Settings] = MappingProxyType(
-    {"rollouts": Rollouts(), "replay": Replay(), "search": Search(), "table": Tabular()}
+_LIBRARY_DEFAULTS: Mapping[str, AlgorithmSettings] = MappingProxyType(
+    {
+        "rollouts": OnPolicyParams(),
+        "replay": ReplayParams(),
+        "search": ARSSettings(),
+        "table": TabularParams(),
+    }
 )
-_SEED: Mapping[str, Preset] = MappingProxyType({"ppo": SEED_PPO, "boltzmann-dqn": SEED_DQN})
-_KIT: Mapping[tuple[str, str], Preset] = MappingProxyType(
+_SEED_PRESETS: Mapping[str, Preset] = MappingProxyType({"ppo": SEED_PPO, "boltzmann-dqn": SEED_DQN})
+_KIT_PRESETS: Mapping[tuple[str, str], Preset] = MappingProxyType(
     {
         ("ppo", "turn"): KIT_PPO_TURN,
         ("ppo", "hallway"): KIT_PPO_HALLWAY,
         ("ppo", "wheelchairs"): KIT_PPO_WHEELCHAIRS,
     }
 )
-_KIT_ANYWHERE: Mapping[str, Preset] = MappingProxyType(
+_KIT_DEFAULTS: Mapping[str, Preset] = MappingProxyType(
     {
         "ppo": KIT_PPO_HALLWAY,
         "a2c": KIT_A2C,
@@ -288,6 +299,6 @@ def find_preset(name: Literal["kit", "seed"], algorithm: Algorithm, task: str) -
         "ppo" if algorithm.name == "maskable-ppo" else algorithm.name
     )  # the same but for what it may not do
     if name == "seed":
-        plain = _PLAIN[algorithm.family]
-        return _SEED.get(likeness, replace(SEED_ANY, settings=plain))
-    return _KIT.get((likeness, task.partition("-")[0]), _KIT_ANYWHERE[likeness])
+        plain = _LIBRARY_DEFAULTS[algorithm.family]
+        return _SEED_PRESETS.get(likeness, replace(SEED_DEFAULT, settings=plain))
+    return _KIT_PRESETS.get((likeness, task.partition("-")[0]), _KIT_DEFAULTS[likeness])

@@ -13,22 +13,28 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.episode_stats import Outcome
-from kit.learning.training.events import Ended, Event, Examined, Progress, Started
-from kit.learning.training.run_text import line_of, shares_of
-from kit.learning.training.runs import Order, RunConfig, Summary, summarise
-from kit.learning.training.training import chosen_preset
+from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.training.events import (
+    Evaluated,
+    TrainingEnded,
+    TrainingEvent,
+    TrainingProgress,
+    TrainingStarted,
+)
+from kit.learning.training.run_text import format_event, success_shares
+from kit.learning.training.runs import RunCommand, RunConfig, RunSummary, summarise_events
+from kit.learning.training.training import resolve_preset
 
-RECENT = 10
+RECENT_REPORTS = 10
 """Batches of training, about five seconds: over so many the present figures are taken."""
 
-Floats: TypeAlias = NDArray[np.float64]
-Counts: TypeAlias = tuple[int, ...]
-"""How many episodes ended in each ``Outcome``, in its order."""
+FloatArray: TypeAlias = NDArray[np.float64]
+OutcomeCounts: TypeAlias = tuple[int, ...]
+"""How many episodes ended in each ``EpisodeOutcome``, in its order."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RunPlan:
     """What a run is about, and how far it may go."""
 
     title: str
@@ -42,49 +48,49 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Batches:
+class TrainingCurve:
     """What training brought: one row for each batch of episodes."""
 
-    steps: Floats
+    steps: FloatArray
     """(n,), rising."""
     outcomes: NDArray[np.int64]
-    """(n, 3) episodes, in the order of ``Outcome``."""
-    reward: Floats
+    """(n, 3) episodes, in the order of ``EpisodeOutcome``."""
+    reward: FloatArray
     """(n,) mean sum over an episode."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looks:
+class Evaluations:
     """What the tests found: one row for each."""
 
-    steps: Floats
+    steps: FloatArray
     """(n,), rising."""
-    mean: Floats
+    mean: FloatArray
     """(n,) share of episodes that reached the target, mean over the cases."""
-    worst: Floats
+    worst: FloatArray
     """(n,) of the worst case."""
 
 
 @dataclass(frozen=True, slots=True)
-class CaseStanding:
+class CaseStatus:
     """One case: a map and a direction."""
 
     name: str
-    trained: Counts
+    trained: OutcomeCounts
     """Of late, in training."""
-    tested: Counts
+    tested: OutcomeCounts
     """In the last test; all 0 before it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class RunStatus:
     """All there is to show of a run, at one moment."""
 
-    plan: Plan
-    summary: Summary
-    batches: Batches
-    looks: Looks
-    cases: tuple[CaseStanding, ...]
+    plan: RunPlan
+    summary: RunSummary
+    batches: TrainingCurve
+    looks: Evaluations
+    cases: tuple[CaseStatus, ...]
     rate: float
     """Steps a second in training, of late."""
     left_s: float | None
@@ -101,13 +107,13 @@ class Standing:
     """What happened last, but for progress."""
 
 
-def plan_of(config: RunConfig) -> Plan:
+def plan_of_run(config: RunConfig) -> RunPlan:
     """UnknownTask or UnknownAlgorithm if the run is of a kit that knew others."""
-    preset = chosen_preset(config)
+    preset = resolve_preset(config)
     strategy = preset.strategy
     goal: float | None = getattr(strategy, "goal", None)
     words = [config.choice.title, config.algorithm, f"preset {config.preset}", f"seed {config.seed}"]
-    return Plan(
+    return RunPlan(
         ", ".join(words),
         tuple(case.name for _, case in config.choice.resolve().courses()),
         preset.steps,
@@ -116,58 +122,58 @@ def plan_of(config: RunConfig) -> Plan:
     )
 
 
-class Logbook:
+class RunTracker:
     """Takes a run's events one after the other, and says at any time where the run stands."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: RunPlan) -> None:
         self._plan = plan
-        self._last: dict[tuple[type[Event], bool], Event] = {}
+        self._last: dict[tuple[type[TrainingEvent], bool], TrainingEvent] = {}
         """The last of every kind, the newest last: what a summary needs."""
-        self._batches: list[tuple[int, Counts, float]] = []
+        self._batches: list[tuple[int, OutcomeCounts, float]] = []
         self._looks: list[tuple[int, float, float]] = []
-        self._recent: deque[Progress] = deque(maxlen=RECENT)
-        self._tested: dict[str, Counts] = {}
+        self._recent: deque[TrainingProgress] = deque(maxlen=RECENT_REPORTS)
+        self._tested: dict[str, OutcomeCounts] = {}
         self._note = ""
 
-    def add(self, event: Event) -> None:
+    def add(self, event: TrainingEvent) -> None:
         """Takes the next event."""
-        kind = type(event), isinstance(event, Examined) and event.kept
+        kind = type(event), isinstance(event, Evaluated) and event.kept
         self._last.pop(kind, None)
         self._last[kind] = event
         match event:
-            case Started():
+            case TrainingStarted():
                 self._begin_again(event.steps)
-            case Progress():
+            case TrainingProgress():
                 self._recent.append(event)
-                outcomes = _sum(event.episodes.values())
+                outcomes = _sum_counts(event.episodes.values())
                 if event.reward is not None:
                     self._batches.append((event.steps, outcomes, event.reward))
-            case Examined():
-                shares = list(shares_of(event).values())
+            case Evaluated():
+                shares = list(success_shares(event).values())
                 self._looks.append((event.steps, sum(shares) / len(shares), min(shares)))
                 self._tested = {case: tuple(counts) for case, counts in event.cases.items()}
             case _:
                 pass
-        if not isinstance(event, Progress):
-            self._note = _told(event)
+        if not isinstance(event, TrainingProgress):
+            self._note = _event_note(event)
 
-    def standing(self, *, alive: bool, order: Order) -> Standing:
+    def standing(self, *, alive: bool, order: RunCommand) -> RunStatus:
         """Where the run stands, given whether somebody trains it and what that one was asked to do."""
-        summary = summarise(tuple(self._last.values()), alive=alive, order=order)
-        return Standing(
+        summary = summarise_events(tuple(self._last.values()), alive=alive, order=order)
+        return RunStatus(
             plan=self._plan,
             summary=summary,
             batches=self._as_batches(),
-            looks=Looks(*np.array(self._looks, dtype=np.float64).reshape(-1, 3).T),
+            looks=Evaluations(*np.array(self._looks, dtype=np.float64).reshape(-1, 3).T),
             cases=tuple(
-                CaseStanding(
+                CaseStatus(
                     name,
-                    _sum(each.episodes[name] for each in self._recent if name in each.episodes),
-                    self._tested.get(name, _sum(())),
+                    _sum_counts(each.episodes[name] for each in self._recent if name in each.episodes),
+                    self._tested.get(name, _sum_counts(())),
                 )
                 for name in self._plan.cases
             ),
-            rate=_mean([(1, each.rate) for each in self._recent]) or 0.0,
+            rate=_weighted_mean([(1, each.rate) for each in self._recent]) or 0.0,
             left_s=self._left() if summary.state in ("running", "paused") else None,
             reward=self._of_late("reward"),
             length=self._of_late("length"),
@@ -182,11 +188,11 @@ class Logbook:
         self._looks = [each for each in self._looks if each[0] <= steps]
         self._recent.clear()
 
-    def _as_batches(self) -> Batches:
+    def _as_batches(self) -> TrainingCurve:
         steps = np.array([steps for steps, _, _ in self._batches], dtype=np.float64)
         outcomes = np.array([counts for _, counts, _ in self._batches], dtype=np.int64)
         reward = np.array([reward for _, _, reward in self._batches], dtype=np.float64)
-        return Batches(steps, outcomes.reshape(-1, len(Outcome)), reward)
+        return TrainingCurve(steps, outcomes.reshape(-1, len(EpisodeOutcome)), reward)
 
     def _left(self) -> float | None:
         if len(self._recent) < 2:
@@ -198,39 +204,41 @@ class Logbook:
         return max(0, self._plan.steps - last.steps) * gone / (last.steps - first.steps)
 
     def _of_late(self, name: str) -> float | None:
-        values = ((_episodes(each), getattr(each, name)) for each in self._recent)
-        return _mean([(count, value) for count, value in values if value is not None])
+        values = ((_episode_count(each), getattr(each, name)) for each in self._recent)
+        return _weighted_mean([(count, value) for count, value in values if value is not None])
 
     def _terms(self) -> dict[str, float]:
         names = dict.fromkeys(name for each in self._recent for name in each.terms)
         means = {
-            name: _mean([(_episodes(each), each.terms[name]) for each in self._recent if name in each.terms])
+            name: _weighted_mean(
+                [(_episode_count(each), each.terms[name]) for each in self._recent if name in each.terms]
+            )
             for name in names
         }
         return {name: mean for name, mean in means.items() if mean is not None}
 
 
-def _told(event: Event) -> str:
+def _event_note(event: TrainingEvent) -> str:
     """In one line, without steps and seconds, which stand elsewhere."""
-    if isinstance(event, Ended):
+    if isinstance(event, TrainingEnded):
         return f"{event.how}: {event.reason}"
-    if isinstance(event, Examined):
-        line = line_of(event)
+    if isinstance(event, Evaluated):
+        line = format_event(event)
         return line[line.index("TEST") :]
-    return line_of(event)
+    return format_event(event)
 
 
-def _episodes(progress: Progress) -> int:
+def _episode_count(progress: TrainingProgress) -> int:
     return sum(map(sum, progress.episodes.values()))
 
 
-def _sum(counts: Iterable[Sequence[int]]) -> Counts:
-    total = [0] * len(Outcome)
+def _sum_counts(counts: Iterable[Sequence[int]]) -> OutcomeCounts:
+    total = [0] * len(EpisodeOutcome)
     for each in counts:
         total = [one + other for one, other in zip(total, each, strict=True)]
     return tuple(total)
 
 
-def _mean(weighed: list[tuple[int, float]]) -> float | None:
+def _weighted_mean(weighed: list[tuple[int, float]]) -> float | None:
     weight = sum(count for count, _ in weighed)
     return sum(count * value for count, value in weighed) / weight if weight else None

@@ -4,42 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kit.learning.environment.episode_stats import Outcome
-from kit.learning.policies.evaluation import Result
-from kit.learning.training.events import Ended, Event, Examined, Noted, Progress, Started
-from kit.learning.training.runs import Run, RunError, Summary
+from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.policies.evaluation import EvaluationResult
+from kit.learning.training.events import (
+    Evaluated,
+    TrainingEnded,
+    TrainingEvent,
+    TrainingNote,
+    TrainingProgress,
+    TrainingStarted,
+)
+from kit.learning.training.runs import RunError, RunSummary, TrainingRun
 
 
-def line_of(event: Event) -> str:
+def format_event(event: TrainingEvent) -> str:
     """What happened, in one line."""
     match event:
-        case Started():
+        case TrainingStarted():
             return f"started at step {event.steps:,}" if event.steps else "started"
-        case Progress():
-            return _progress(event)
-        case Examined():
-            return _tested(event)
-        case Noted():
+        case TrainingProgress():
+            return _format_progress(event)
+        case Evaluated():
+            return _format_evaluation(event)
+        case TrainingNote():
             return event.text
-        case Ended():
+        case TrainingEnded():
             return f"{event.how} after {event.steps:,} steps and {event.seconds:.1f} s: {event.reason}"
 
 
-def _progress(event: Progress) -> str:
-    ends = [sum(counts[place] for counts in event.episodes.values()) for place in range(len(Outcome))]
+def _format_progress(event: TrainingProgress) -> str:
+    ends = [sum(counts[place] for counts in event.episodes.values()) for place in range(len(EpisodeOutcome))]
     total = sum(ends)
     parts = [f"{event.steps:>11,} steps  {event.seconds:7.1f} s  {event.rate:8,.0f} steps/s"]
     if total:
         parts.append(
-            ", ".join(f"{end / total:.0%} {kind.value}" for end, kind in zip(ends, Outcome, strict=True))
+            ", ".join(
+                f"{end / total:.0%} {kind.value}" for end, kind in zip(ends, EpisodeOutcome, strict=True)
+            )
         )
     if event.reward is not None:
         parts.append(f"reward {event.reward:.2f}")
     return "  ".join(parts)
 
 
-def _tested(event: Examined) -> str:
-    shares = shares_of(event)
+def _format_evaluation(event: Evaluated) -> str:
+    shares = success_shares(event)
     case = min(shares, key=lambda name: shares[name])
     mean = sum(shares.values()) / len(shares)
     kept = ", kept" if event.kept else ""
@@ -50,12 +59,12 @@ def _tested(event: Examined) -> str:
     )
 
 
-def shares_of(event: Examined) -> dict[str, float]:
+def success_shares(event: Evaluated) -> dict[str, float]:
     """By case: how many of the episodes reached the target."""
     return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
 
 
-def table_of(runs: Sequence[Run]) -> list[str]:
+def format_runs(runs: Sequence[TrainingRun]) -> list[str]:
     """A row for each run."""
     width = max([len("run"), *(len(run.name) for run in runs)])
     rows = [f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst"]
@@ -66,19 +75,19 @@ def table_of(runs: Sequence[Run]) -> list[str]:
             rows.append(f"{run.name:{width}}  damaged: {error}")
             continue
         rows.append(
-            f"{run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  {_best(summary)}"
+            f"{run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  {_format_best(summary)}"
         )
     return rows
 
 
-def _best(summary: Summary) -> str:
+def _format_best(summary: RunSummary) -> str:
     if summary.best is None:
         return "         -      -"
-    shares = shares_of(summary.best).values()
+    shares = success_shares(summary.best).values()
     return f"     {sum(shares) / len(shares):5.3f}  {min(shares):5.3f}"
 
 
-def side_by_side(results: dict[str, Result]) -> list[str]:
+def format_comparison(results: dict[str, EvaluationResult]) -> list[str]:
     """A row for each case, a column for each policy."""
     cases = list(dict.fromkeys(case.case for result in results.values() for case in result.cases))
     width = max(len("worst"), *(len(case) for case in cases))

@@ -19,30 +19,37 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.training.events import Ended, Event, EventReader, Examined, Progress, Started
+from kit.learning.training.events import (
+    Evaluated,
+    EventReader,
+    TrainingEnded,
+    TrainingEvent,
+    TrainingProgress,
+    TrainingStarted,
+)
 from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
-Order = Literal["go", "pause", "stop"]
+RunCommand = Literal["go", "pause", "stop"]
 """What a face may ask of a learner."""
 PresetName = Literal["kit", "seed"]
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
-LOOK_S = 0.2
+NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
+LOCK_WAIT_S = 0.2
 """Whoever looks whether a run is alive holds its lock for a moment: a learner waits so long."""
 
 
-def _taken(lock: IO[bytes]) -> bool:
+def _try_lock(lock: IO[bytes]) -> bool:
     """Locks the file for this process alone; False if another one keeps it."""
-    until = time.monotonic() + LOOK_S
+    until = time.monotonic() + LOCK_WAIT_S
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             if time.monotonic() >= until:
                 return False
-            time.sleep(LOOK_S / 20)
+            time.sleep(LOCK_WAIT_S / 20)
         else:
             return True
 
@@ -55,7 +62,7 @@ class RunError(Exception):
 class RunConfig:
     """What is learned, and how."""
 
-    choice: TaskChoice
+    choice: TaskSpec
     algorithm: str = "ppo"
     preset: PresetName = "kit"
     seed: int = 0
@@ -82,31 +89,31 @@ class RunConfig:
     def from_dict(cls, data: Any) -> RunConfig:
         """Of ``as_dict``. ValueError for anything else."""
         try:
-            return cls(**{**data, "choice": TaskChoice.from_dict(data["choice"])})
+            return cls(**{**data, "choice": TaskSpec.from_dict(data["choice"])})
         except (TypeError, KeyError) as error:
             raise ValueError(f"no configuration of a run: {error}") from None
 
 
-State = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]
+RunState = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class RunSummary:
     """Where a run stands."""
 
-    state: State
+    state: RunState
     steps: int = 0
     seconds: float = 0.0
     rate: float = 0.0
-    tested: Examined | None = None
+    tested: Evaluated | None = None
     """The last test."""
-    best: Examined | None = None
+    best: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class TrainingRun:
     """One run's folder."""
 
     folder: Path
@@ -173,15 +180,15 @@ class Run:
 
     # What the learner is asked to do
 
-    def ask(self, order: Order) -> None:
+    def ask(self, order: RunCommand) -> None:
         """Tells the learner, which obeys between two updates."""
         write_atomically(self.folder / "control", order.encode())
 
-    def asked(self) -> Order:
+    def asked(self) -> RunCommand:
         """The newest order."""
         with suppress(OSError, UnicodeDecodeError):
             text = (self.folder / "control").read_text().strip()
-            return next((order for order in get_args(Order) if order == text), "go")
+            return next((order for order in get_args(RunCommand) if order == text), "go")
         return "go"
 
     # Who is at it
@@ -193,7 +200,7 @@ class Run:
         RunError if somebody is at it.
         """
         with (self.folder / "lock").open("ab") as lock:
-            if not _taken(lock):
+            if not _try_lock(lock):
                 raise RunError(f"{self.name} is being trained already. `kit watch {self.name}` shows it.")
             yield
 
@@ -211,12 +218,12 @@ class Run:
 
     # What has happened
 
-    def events(self) -> tuple[Event, ...]:
+    def events(self) -> tuple[TrainingEvent, ...]:
         return tuple(EventReader(self.events_file).new())
 
-    def summary(self) -> Summary:
+    def summary(self) -> RunSummary:
         """Where it stands."""
-        found = summarise(self.events(), alive=self.alive, order=self.asked())
+        found = summarise_events(self.events(), alive=self.alive, order=self.asked())
         return replace(found, reason=self.last_words) if found.state == "interrupted" else found
 
     # Checkpoints
@@ -252,47 +259,49 @@ class Run:
         return None
 
 
-def summarise(events: tuple[Event, ...], *, alive: bool, order: Order) -> Summary:
+def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> RunSummary:
     """Where a run with these events stands."""
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
-    tested: Examined | None = None
-    best: Examined | None = None
-    state: State = "interrupted" if events else "new"
+    tested: Evaluated | None = None
+    best: Evaluated | None = None
+    state: RunState = "interrupted" if events else "new"
     for event in events:
         match event:
-            case Started():
+            case TrainingStarted():
                 state, steps = "interrupted", event.steps
-            case Progress():
+            case TrainingProgress():
                 steps, seconds, rate = event.steps, event.seconds, event.rate
-            case Examined():
+            case Evaluated():
                 tested = event
                 best = event if event.kept else best
-            case Ended():
+            case TrainingEnded():
                 state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
             case _:
                 pass
     if alive:
         state = "paused" if order == "pause" else "running"
-    return Summary(state, steps, seconds, rate, tested, best, reason)
+    return RunSummary(state, steps, seconds, rate, tested, best, reason)
 
 
-def new_run(folder: Path, config: RunConfig, name: str | None = None) -> Run:
+def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:
     """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken."""
-    if name is not None and not NAME.fullmatch(name):
+    if name is not None and not NAME_PATTERN.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name is made of letters, digits, '_', '-' and '.'.")
-    made = _make(folder, name) if name is not None else _make_free(folder, _usual_name(config))
+    made = (
+        _make_folder(folder, name) if name is not None else _make_unused_folder(folder, _default_name(config))
+    )
     if config.reward_file is not None:  # the run keeps its own: the student goes on writing
-        write_atomically(Run(made).reward, Path(config.reward_file).read_bytes())
+        write_atomically(TrainingRun(made).reward, Path(config.reward_file).read_bytes())
     write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
-    return Run(made)
+    return TrainingRun(made)
 
 
-def _usual_name(config: RunConfig) -> str:
+def _default_name(config: RunConfig) -> str:
     parts = [config.choice.task, *config.choice.on, config.algorithm, config.preset]
     return "-".join([*parts, str(config.seed)])[:90]
 
 
-def _make(folder: Path, name: str) -> Path:
+def _make_folder(folder: Path, name: str) -> Path:
     try:
         (folder / name).mkdir()
     except FileExistsError:
@@ -303,25 +312,25 @@ def _make(folder: Path, name: str) -> Path:
     return folder / name
 
 
-def _make_free(folder: Path, name: str) -> Path:
+def _make_unused_folder(folder: Path, name: str) -> Path:
     """The first of name, name-2, name-3, ... that nobody has taken."""
     number = 1
     while True:
         try:
-            return _make(folder, name if number == 1 else f"{name}-{number}")
+            return _make_folder(folder, name if number == 1 else f"{name}-{number}")
         except RunError:
             number += 1
 
 
-def all_runs(folder: Path) -> tuple[Run, ...]:
+def list_runs(folder: Path) -> tuple[TrainingRun, ...]:
     """Every run in the folder, the one begun last first."""
     files = [(file.stat().st_mtime, file.parent) for file in folder.glob("*/config.json")]
-    return tuple(Run(each) for _, each in sorted(files, reverse=True))
+    return tuple(TrainingRun(each) for _, each in sorted(files, reverse=True))
 
 
-def find_run(folder: Path, name: str | None = None) -> Run:
+def find_run(folder: Path, name: str | None = None) -> TrainingRun:
     """The run of that name, or, without one, the one begun last. RunError if there is none."""
-    runs = {run.name: run for run in all_runs(folder)}
+    runs = {run.name: run for run in list_runs(folder)}
     if name is None:
         if not runs:
             raise RunError("There are no runs yet. `kit train turn` starts one.")

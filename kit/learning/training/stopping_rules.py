@@ -1,7 +1,7 @@
 """When to test, when to stop, which policy to keep: the dissertation's two strategies, and a sound one.
 
 A strategy looks at a policy now and then, on episodes that it was not trained on. The dissertation stops at the first
-test that goes well; with 20 episodes and many tests that is often luck. ``UntilSure`` does not fall for it.
+test that goes well; with 20 episodes and many tests that is often luck. ``TrainUntilSure`` does not fall for it.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeAlias
 
-from kit.learning.policies.confidence_intervals import Interval, at_least, wilson
+from kit.learning.policies.confidence_intervals import ConfidenceInterval, lower_bound, wilson_interval
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
+class CaseCount:
     """Episodes of one case that were tried, and how many reached the target."""
 
     reached: int
@@ -27,34 +27,34 @@ class Count:
         return self.reached / self.episodes if self.episodes else 0.0
 
 
-Counts: TypeAlias = Mapping[str, Count]
+CaseCounts: TypeAlias = Mapping[str, CaseCount]
 """By the case's name."""
 
 
-class Test(Protocol):
+class PolicyTest(Protocol):
     """Tries the present policy on episodes that neither training nor an earlier test has seen."""
 
     @property
     def cases(self) -> int:
         """How many cases there are."""
 
-    def __call__(self, episodes: int) -> Counts:
+    def __call__(self, episodes: int) -> CaseCounts:
         """Of at least so many episodes in all, equally many of each case."""
 
 
-def accuracy(counts: Counts) -> float:
+def accuracy(counts: CaseCounts) -> float:
     """The share of all episodes that reached the target."""
     episodes = sum(count.episodes for count in counts.values())
     return sum(count.reached for count in counts.values()) / episodes if episodes else 0.0
 
 
-def worst(counts: Counts) -> float:
+def worst_share(counts: CaseCounts) -> float:
     """The share in the case that goes worst."""
     return min((count.share for count in counts.values()), default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Memory:
+class StoppingMemory:
     """What a strategy must remember from one look to the next; it goes into every checkpoint."""
 
     best: tuple[float, ...] | None = None
@@ -68,12 +68,12 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class StoppingDecision:
     """What follows from a look."""
 
-    counts: Counts
+    counts: CaseCounts
     """Of the test that counted most."""
-    memory: Memory
+    memory: StoppingMemory
     keep: bool
     """This policy is the best so far."""
     stop: bool = False
@@ -82,7 +82,7 @@ class Verdict:
     reason: str = ""
 
 
-class Strategy(Protocol):
+class StoppingRule(Protocol):
     """How a run is watched over."""
 
     @property
@@ -93,36 +93,38 @@ class Strategy(Protocol):
     def greedy(self) -> bool:
         """Whether policies are tested by their best actions; else as they explore."""
 
-    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         """After so many steps."""
 
 
-def _likely(counts: Counts) -> float:
+def _worst_lower_bound(counts: CaseCounts) -> float:
     """What the worst case's share is likely not below: of two policies without a failure the one that was tested
     longer is the better one."""
-    return min((at_least(count.reached, count.episodes) for count in counts.values()), default=0.0)
+    return min((lower_bound(count.reached, count.episodes) for count in counts.values()), default=0.0)
 
 
-def _mark(counts: Counts, enough: float = 1.0) -> tuple[float, ...]:
+def _policy_rank(counts: CaseCounts, enough: float = 1.0) -> tuple[float, ...]:
     """How good a policy is. The worst case counts first, up to ``enough``; then how much two robots are side by side;
     then all episodes."""
     beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
-    return min(_likely(counts), enough), beside, accuracy(counts)
+    return min(_worst_lower_bound(counts), enough), beside, accuracy(counts)
 
 
-def _remembered(counts: Counts, steps: int, memory: Memory, enough: float = 1.0) -> tuple[Memory, bool]:
+def _with_best(
+    counts: CaseCounts, steps: int, memory: StoppingMemory, enough: float = 1.0
+) -> tuple[StoppingMemory, bool]:
     """The memory with this test in it, and whether this policy is the best so far. Ties go to the newer one."""
-    mark = _mark(counts, enough)
+    mark = _policy_rank(counts, enough)
     if memory.best is not None and mark < memory.best:
         return memory, False
-    low = _pooled(counts).low
+    low = _pooled_interval(counts).low
     return replace(memory, best=mark, best_low=low, best_steps=steps), True
 
 
-def _pooled(counts: Counts) -> Interval:
+def _pooled_interval(counts: CaseCounts) -> ConfidenceInterval:
     """Where the true accuracy is all but certain to lie."""
     reached = sum(count.reached for count in counts.values())
-    return wilson(reached, sum(count.episodes for count in counts.values()), 0.99)
+    return wilson_interval(reached, sum(count.episodes for count in counts.values()), 0.99)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,13 +138,15 @@ class TrainThenTest:
     episodes: int = 100
     greedy: bool = True
 
-    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
-        return Verdict(counts, replace(memory, best=_mark(counts), best_steps=steps), keep=True)
+        return StoppingDecision(
+            counts, replace(memory, best=_policy_rank(counts), best_steps=steps), keep=True
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class TrainUntil:
+class TrainUntilGoal:
     """The dissertation's second strategy: train a batch, test, stop at the first accuracy that is high enough."""
 
     every: int
@@ -150,17 +154,17 @@ class TrainUntil:
     goal: float = 0.8
     greedy: bool = True
 
-    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
-        memory, keep = _remembered(counts, steps, memory)
+        memory, keep = _with_best(counts, steps, memory)
         share = accuracy(counts)
         if share >= self.goal:
-            return Verdict(counts, memory, True, stop=True, reason=f"accuracy {share:.2f} in a test")
-        return Verdict(counts, memory, keep)
+            return StoppingDecision(counts, memory, True, stop=True, reason=f"accuracy {share:.2f} in a test")
+        return StoppingDecision(counts, memory, keep)
 
 
 @dataclass(frozen=True, slots=True)
-class UntilSure:
+class TrainUntilSure:
     """Stop when every single case is sure to be good enough; keep the best policy; go back if one has forgotten.
 
     A look is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
@@ -185,31 +189,31 @@ class UntilSure:
     """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
     greedy: bool = True
 
-    def look(self, steps: int, memory: Memory, test: Test) -> Verdict:
+    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.screening * test.cases)
-        if worst(counts) >= self.goal:
+        if worst_share(counts) >= self.goal:
             counts = test(self.confirming * test.cases)
             memory = replace(memory, confirmations=memory.confirmations + 1)
             low = self._surely(counts, memory.confirmations)
             if low >= self.goal and not self.to_the_end:
-                memory, _ = _remembered(counts, steps, replace(memory, best=None))
-                return Verdict(
+                memory, _ = _with_best(counts, steps, replace(memory, best=None))
+                return StoppingDecision(
                     counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
                 )
-        remembered, keep = _remembered(counts, steps, memory, self.enough)
+        remembered, keep = _with_best(counts, steps, memory, self.enough)
         if not keep and self._forgotten(counts, memory):
-            return Verdict(
+            return StoppingDecision(
                 *(counts, replace(memory, returns=memory.returns + 1), False),
                 go_back=True,
                 reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
             )
-        return Verdict(counts, remembered, keep)
+        return StoppingDecision(counts, remembered, keep)
 
-    def _surely(self, counts: Counts, attempt: int) -> float:
+    def _surely(self, counts: CaseCounts, attempt: int) -> float:
         """What no case's share is below, all in all with the wanted confidence."""
         wrong = (1 - self.confidence) / (attempt * (attempt + 1)) / len(counts)
-        return min(at_least(count.reached, count.episodes, 1 - wrong) for count in counts.values())
+        return min(lower_bound(count.reached, count.episodes, 1 - wrong) for count in counts.values())
 
-    def _forgotten(self, counts: Counts, memory: Memory) -> bool:
-        far_below = _pooled(counts).high < memory.best_low - self.go_back_after
+    def _forgotten(self, counts: CaseCounts, memory: StoppingMemory) -> bool:
+        far_below = _pooled_interval(counts).high < memory.best_low - self.go_back_after
         return memory.returns < self.patience and far_below

@@ -20,17 +20,17 @@ from typing import Any, Self
 import numpy as np
 
 from kit.host.student_functions import StudentFunctions
-from kit.learning.environment.transition import FACTS, Array, Transition
+from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transition
 from kit.plain_text import quoted, suggestion
 
-FUNCTION = "reward"
+REWARD_FUNCTION = "reward"
 
 
 class RewardFileError(Exception):
     """The file has no function that can be called; the message names file and line, and what to do."""
 
 
-def parameters_of(file: Path) -> tuple[str, ...]:
+def reward_parameters(file: Path) -> tuple[str, ...]:
     """What the file's ``reward`` wants to know. The file is read, not run. RewardFileError."""
     try:
         tree = ast.parse(file.read_bytes(), file.name)
@@ -40,27 +40,27 @@ def parameters_of(file: Path) -> tuple[str, ...]:
         line = f":{error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
         raise RewardFileError(f"{file}{line}: not Python ({getattr(error, 'msg', error)}).") from None
     for node in tree.body:
-        if isinstance(node, ast.FunctionDef) and node.name == FUNCTION:
-            return _checked(file, node)
+        if isinstance(node, ast.FunctionDef) and node.name == REWARD_FUNCTION:
+            return _checked_parameters(file, node)
     raise RewardFileError(
-        f"{file}: there is no function {FUNCTION}() in it. Write one, such as\n"
-        f"  def {FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
+        f"{file}: there is no function {REWARD_FUNCTION}() in it. Write one, such as\n"
+        f"  def {REWARD_FUNCTION}(reached, collided):\n      return 2.0 * reached - 2.0 * collided"
     )
 
 
-def _checked(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
+def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
     arguments = node.args
-    where = f"{file}:{node.lineno}: {FUNCTION}()"
+    where = f"{file}:{node.lineno}: {REWARD_FUNCTION}()"
     if arguments.posonlyargs or arguments.vararg:
         raise RewardFileError(f"{where} is called with names: leave out '/' and '*'.")
     names = tuple(each.arg for each in (*arguments.args, *arguments.kwonlyargs))
     for name in names:
-        if name not in FACTS:
+        if name not in TRANSITION_FIELDS:
             raise RewardFileError(
-                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, FACTS)}"
+                f"{where} asks for {quoted(name)}, which a step does not have: {suggestion(name, TRANSITION_FIELDS)}"
             )
     if not names:
-        raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(FACTS)}.")
+        raise RewardFileError(f"{where} asks for nothing. It can ask for: {', '.join(TRANSITION_FIELDS)}.")
     return names
 
 
@@ -71,12 +71,14 @@ class StudentReward:
     """
 
     def __init__(self, file: Path, *, seed: int = 0) -> None:
-        self._names = parameters_of(file)
+        self._names = reward_parameters(file)
         self._functions = StudentFunctions(file, seed=seed)
 
     def __call__(self, transition: Transition) -> Array:
         """(n,) rewards of n worlds."""
-        return np.frombuffer(self._functions.call_columns(FUNCTION, columns_of(transition, self._names)))
+        return np.frombuffer(
+            self._functions.call_columns(REWARD_FUNCTION, reward_columns(transition, self._names))
+        )
 
     def close(self) -> None:
         self._functions.close()
@@ -90,7 +92,7 @@ class StudentReward:
         self.close()
 
 
-def columns_of(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
+def reward_columns(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
     """What a reward with these parameters is called with: one column each, a value for every one of n worlds."""
     return {name: _column(transition, name) for name in names}
 
@@ -102,12 +104,12 @@ def _column(transition: Transition, name: str) -> Sequence[Any] | Array:
     if value.ndim == 0:
         return np.full(count, value)
     robots = transition.pose.shape[-2]
-    if robots == 1 and name in PER_ROBOT:
+    if robots == 1 and name in FIELDS_PER_ROBOT:
         value = value[:, 0]
     return value if value.ndim == 1 else value.tolist()
 
 
-PER_ROBOT = frozenset(FACTS) - {
+FIELDS_PER_ROBOT = frozenset(TRANSITION_FIELDS) - {
     *(
         "case",
         "step",

@@ -18,47 +18,47 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.learning.environment.batch import BatchEnv, Step
-from kit.learning.environment.episode_stats import Tally
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.policies.policies import Chance, Policy, Table, choices_of
+from kit.learning.environment.batch import BatchEnv, BatchStep
+from kit.learning.environment.episode_stats import EpisodeStatsRecorder
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.policies.policies import ActionSampling, ActionValueTable, Policy, action_counts
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.learner import Watcher
-from kit.learning.training.presets import Preset, Tabular
+from kit.learning.training.learner import TrainingCallback
+from kit.learning.training.presets import Preset, TabularParams
 
-Integers = NDArray[np.int64]
-Floats = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
 
-STATES_AT_MOST = 20_000
-SLOWER = 0.5
+MAX_STATES = 20_000
+LEARNING_RATE_FACTOR = 0.5
 
 
 class TableLearner(ABC):
     """Learns with ``n`` worlds at once; with one world, line by line what the books say."""
 
     def __init__(
-        self, algorithm: Algorithm, preset: Preset, choice: TaskChoice, batch: BatchEnv, seed: int
+        self, algorithm: Algorithm, preset: Preset, choice: TaskSpec, batch: BatchEnv, seed: int
     ) -> None:
-        assert isinstance(preset.settings, Tabular)
+        assert isinstance(preset.settings, TabularParams)
         self._algorithm = algorithm
         self._settings = preset.settings
         self._choice = choice
         self._batch = batch
         self._rng = np.random.default_rng(seed)
         self._table = _empty_table(batch, self._settings)
-        self._values: Floats = np.zeros(self._table.values.shape)
+        self._values: FloatArray = np.zeros(self._table.values.shape)
         self._steps = 0
         self._slower = 1.0
 
-    def deal(self, shares: Floats) -> None:
+    def deal(self, shares: FloatArray) -> None:
         if self._batch.stays:
             self._batch.deal(shares)
 
     # The lesson
 
-    def learn(self, steps: int, watcher: Watcher) -> None:
+    def learn(self, steps: int, watcher: TrainingCallback) -> None:
         """Drives all worlds and learns from every step."""
-        state, tally = self._table.states(self._batch.reset()), Tally(self._batch)
+        state, tally = self._table.states(self._batch.reset()), EpisodeStatsRecorder(self._batch)
         action = self._choose(state, steps)
         while self._steps < steps:
             watcher.between()
@@ -74,11 +74,11 @@ class TableLearner(ABC):
 
     def _update(
         self,
-        state: Integers,
-        action: Integers,
-        step: Step,
-        reached: Integers,
-        following: Integers,
+        state: IntArray,
+        action: IntArray,
+        step: BatchStep,
+        reached: IntArray,
+        following: IntArray,
         left: float,
     ) -> None:
         """Moves each value a little towards what experience says. An end has no future; a timeout has."""
@@ -92,15 +92,15 @@ class TableLearner(ABC):
         np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error / alike)
 
     @abstractmethod
-    def future(self, state: Integers, action: Integers) -> Floats:
+    def future(self, state: IntArray, action: IntArray) -> FloatArray:
         """What the next state is worth, where ``action`` will be taken in it."""
 
-    def _choose(self, state: Integers, steps: int) -> Integers:
+    def _choose(self, state: IntArray, steps: int) -> IntArray:
         """The best action, or now and then any."""
         epsilon = self._settings.epsilon.at(max(0.0, 1 - self._steps / steps))
         anything = self._rng.integers(self._values.shape[1], size=len(state))
         best = self._values[state].argmax(axis=1)
-        chosen: Integers = np.where(self._rng.random(len(state)) < epsilon, anything, best)
+        chosen: IntArray = np.where(self._rng.random(len(state)) < epsilon, anything, best)
         return chosen
 
     # What every learner can do
@@ -112,7 +112,11 @@ class TableLearner(ABC):
     def policy(self) -> Policy:
         table = replace(self._table, values=self._values.astype(np.float32))
         return Policy(
-            table, choices_of(self._batch.action_space), Chance("epsilon", 0.05), self._choice, self._steps
+            table,
+            action_counts(self._batch.action_space),
+            ActionSampling("epsilon", 0.05),
+            self._choice,
+            self._steps,
         )
 
     def remember(self) -> Any:
@@ -120,7 +124,7 @@ class TableLearner(ABC):
 
     def recall(self, known: Any) -> None:
         self._values = known.copy()
-        self._slower *= SLOWER
+        self._slower *= LEARNING_RATE_FACTOR
 
     def save(self) -> dict[str, bytes]:
         values = io.BytesIO()
@@ -139,25 +143,25 @@ class TableLearner(ABC):
 class QLearning(TableLearner):
     """Watkins 1989."""
 
-    def future(self, state: Integers, action: Integers) -> Floats:
-        best: Floats = self._values[state].max(axis=1)
+    def future(self, state: IntArray, action: IntArray) -> FloatArray:
+        best: FloatArray = self._values[state].max(axis=1)
         return best
 
 
 class Sarsa(TableLearner):
     """Rummery and Niranjan 1994: state, action, reward, state, action."""
 
-    def future(self, state: Integers, action: Integers) -> Floats:
-        taken: Floats = self._values[state, action]
+    def future(self, state: IntArray, action: IntArray) -> FloatArray:
+        taken: FloatArray = self._values[state, action]
         return taken
 
 
-def _empty_table(batch: BatchEnv, settings: Tabular) -> Table:
+def _empty_table(batch: BatchEnv, settings: TabularParams) -> ActionValueTable:
     """One that counts as many inputs, evenly spread over what is seen, as make a table of reasonable size."""
     inputs = int(batch.observation_space.shape[0])
     bins = len(settings.edges) + 1
-    count = min(inputs, int(np.log(STATES_AT_MOST) / np.log(bins)))
+    count = min(inputs, int(np.log(MAX_STATES) / np.log(bins)))
     used = np.linspace(0, inputs - 1, count).round().astype(np.int64)
-    actions = choices_of(batch.action_space)[0]
+    actions = action_counts(batch.action_space)[0]
     values = np.zeros((bins**count, actions), dtype=np.float32)
-    return Table(used, np.array(settings.edges, dtype=np.float32), values, inputs)
+    return ActionValueTable(used, np.array(settings.edges, dtype=np.float32), values, inputs)

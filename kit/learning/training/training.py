@@ -21,27 +21,35 @@ from numpy.typing import NDArray
 
 from kit.host.failure import GuestError
 from kit.learning.environment.batch import BatchEnv, RewardError
-from kit.learning.environment.batch_map import Unsupported
-from kit.learning.environment.episode_stats import Episode, Outcome
+from kit.learning.environment.batch_map import UnsupportedWorld
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.environment.tasks import Task
-from kit.learning.policies.evaluation import CaseResult, Examiner, Result, seed_for
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, save_policy
 from kit.learning.training.algorithms import Algorithm, find_algorithm
-from kit.learning.training.events import Ended, Event, EventWriter, Examined, Noted, Progress, Started
-from kit.learning.training.learner import Halt, Learner
-from kit.learning.training.optional_deps import require_learner, versions
-from kit.learning.training.presets import Falling, Preset, find_preset
-from kit.learning.training.runs import Run, RunConfig, RunError
+from kit.learning.training.events import (
+    Evaluated,
+    EventWriter,
+    TrainingEnded,
+    TrainingEvent,
+    TrainingNote,
+    TrainingProgress,
+    TrainingStarted,
+)
+from kit.learning.training.learner import Learner, StopLearning
+from kit.learning.training.optional_deps import require_learn_extra, versions
+from kit.learning.training.presets import LinearSchedule, Preset, find_preset
+from kit.learning.training.runs import RunConfig, RunError, TrainingRun
 from kit.learning.training.stopping_rules import (
-    Count,
-    Counts,
-    Memory,
+    CaseCount,
+    CaseCounts,
+    StoppingDecision,
+    StoppingMemory,
     TrainThenTest,
-    TrainUntil,
-    UntilSure,
-    Verdict,
+    TrainUntilGoal,
+    TrainUntilSure,
 )
 from kit.learning.training.student_reward import RewardFileError, StudentReward
 
@@ -51,13 +59,13 @@ CONTROL_S = 0.1
 """How often each is done or looked for, at most; between two updates of the learner."""
 
 
-def chosen_preset(config: RunConfig) -> Preset:
+def resolve_preset(config: RunConfig) -> Preset:
     """The configuration's preset, with what the configuration changes in it."""
     preset = find_preset(config.preset, find_algorithm(config.algorithm), config.choice.task)
     strategy = preset.strategy
     if config.keep_training:
         strategy = TrainThenTest(strategy.every, greedy=strategy.greedy)
-    elif config.goal is not None and isinstance(strategy, TrainUntil | UntilSure):
+    elif config.goal is not None and isinstance(strategy, TrainUntilGoal | TrainUntilSure):
         strategy = replace(strategy, goal=config.goal)
     rate = config.learning_rate
     return replace(
@@ -66,17 +74,17 @@ def chosen_preset(config: RunConfig) -> Preset:
         steps=preset.steps if config.steps is None else config.steps,
         worlds=preset.worlds if config.worlds is None else config.worlds,
         mirrored=preset.mirrored or config.mirrored,
-        learning_rate=preset.learning_rate if rate is None else Falling(rate, rate),
+        learning_rate=preset.learning_rate if rate is None else LinearSchedule(rate, rate),
     )
 
 
-def fitted(choice: TaskChoice, algorithm: Algorithm) -> TaskChoice:
+def fit_task_spec(choice: TaskSpec, algorithm: Algorithm) -> TaskSpec:
     """The choice, as the algorithm can take it: many choose one number only, so a pair's moves become one."""
     several = choice.resolve().actions.one_number is False
     return replace(choice, one_number=True) if several and not algorithm.several else choice
 
 
-def train(run: Run, *, interrupted: Callable[[], bool] = lambda: False) -> Ended:
+def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) -> TrainingEnded:
     """Trains the run to its end, or goes on where it was interrupted. Returns how it ended.
 
     ``interrupted``: asked now and then whether to leave everything as it is, to go on another time; if so, raises
@@ -84,25 +92,25 @@ def train(run: Run, *, interrupted: Callable[[], bool] = lambda: False) -> Ended
     """
     config = run.config()
     if find_algorithm(config.algorithm).neural:
-        require_learner()
-    with run.held(), _disk(run), EventWriter(run.events_file) as events:
+        require_learn_extra()
+    with run.held(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
         try:
-            with _reward(run, config) as reward:
-                training = _Training(run, config, events, reward, interrupted)
+            with _student_reward(run, config) as reward:
+                training = _TrainingLoop(run, config, events, reward, interrupted)
                 ended = training.go()
-        except (GuestError, RewardError, RewardFileError, Unsupported) as error:
-            ended = _failed(run, str(error))
+        except (GuestError, RewardError, RewardFileError, UnsupportedWorld) as error:
+            ended = _ended_by_failure(run, str(error))
         events.write(ended)
     return ended
 
 
-def _failed(run: Run, message: str) -> Ended:
+def _ended_by_failure(run: TrainingRun, message: str) -> TrainingEnded:
     summary = run.summary()
-    return Ended("failed", summary.steps, summary.seconds, message)
+    return TrainingEnded("failed", summary.steps, summary.seconds, message)
 
 
 @contextmanager
-def _reward(run: Run, config: RunConfig) -> Iterator[RewardFunction | None]:
+def _student_reward(run: TrainingRun, config: RunConfig) -> Iterator[RewardFunction | None]:
     """The student's reward, if there is one."""
     if config.reward_file is None:
         yield None
@@ -112,7 +120,7 @@ def _reward(run: Run, config: RunConfig) -> Iterator[RewardFunction | None]:
 
 
 @contextmanager
-def _disk(run: Run) -> Iterator[None]:
+def _full_disk_as_run_error(run: TrainingRun) -> Iterator[None]:
     """A full disk as a RunError that says what to do."""
     try:
         yield
@@ -125,16 +133,16 @@ def _disk(run: Run) -> Iterator[None]:
         ) from None
 
 
-class _Stopped(Halt):
+class _StopRequested(StopLearning):
     """Somebody asked for it."""
 
 
-class _Training:
+class _TrainingLoop:
     """Watches one learner. Everything here happens between two updates of the learner's policy."""
 
     def __init__(
         self,
-        run: Run,
+        run: TrainingRun,
         config: RunConfig,
         events: EventWriter,
         reward: RewardFunction | None,
@@ -144,12 +152,12 @@ class _Training:
         self._config = config
         self._events = events
         self._interrupted = interrupted
-        self._preset = chosen_preset(config)
+        self._preset = resolve_preset(config)
         algorithm = find_algorithm(config.algorithm)
-        choice = fitted(config.choice, algorithm)
+        choice = fit_task_spec(config.choice, algorithm)
         self._task = choice.resolve()
-        self._examiner = Examiner(self._task)
-        self._memory = Memory()
+        self._examiner = Evaluator(self._task)
+        self._memory = StoppingMemory()
         self._seconds = 0.0
         self._looks = 0
         self._resumed = 0
@@ -158,29 +166,31 @@ class _Training:
         parts = self._restored()
         self._learner = make_learner(
             *(algorithm, self._preset, choice, self._task),
-            seed=seed_for(config.seed, "training", self._resumed),
+            seed=derive_seed(config.seed, "training", self._resumed),
             reward=reward,
-            tensorboard=_tensorboard(run),
+            tensorboard=_tensorboard_folder(run),
         )
         if parts:
             self._learner.load(parts)
-        self._batch = _Batch(self._learner.steps)
+        self._batch = _ProgressBatch(self._learner.steps)
         self._began = self._control_at = self._checkpoint_at = time.monotonic()
 
     # From start to end
 
-    def go(self) -> Ended:
-        self._write(Started(time.time(), self._learner.steps, versions()))
+    def go(self) -> TrainingEnded:
+        self._write(TrainingStarted(time.time(), self._learner.steps, versions()))
         stopped, reason = False, "all steps are done"
         try:
             self._learner.learn(self._preset.steps, self)
             if self._learner.steps > self._looked_at:
                 self._look(last=True)
-        except Halt as halt:
-            stopped, reason = isinstance(halt, _Stopped), str(halt)
+        except StopLearning as halt:
+            stopped, reason = isinstance(halt, _StopRequested), str(halt)
         self._tell_progress()
         self._checkpoint()
-        return Ended("stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason)
+        return TrainingEnded(
+            "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
+        )
 
     def between(self) -> None:
         now = time.monotonic()
@@ -193,7 +203,7 @@ class _Training:
         if now - self._checkpoint_at >= CHECKPOINT_S:
             self._checkpoint()
 
-    def saw(self, episode: Episode) -> None:
+    def saw(self, episode: EpisodeStats) -> None:
         self._batch.add(episode)
 
     def _obey(self) -> None:
@@ -216,7 +226,7 @@ class _Training:
         self._batch.since += now - paused
         self._control_at = now
         if order == "stop":
-            raise _Stopped("as asked")
+            raise _StopRequested("as asked")
 
     # Looking
 
@@ -224,7 +234,9 @@ class _Training:
         """Lets the strategy judge the present policy."""
         self._tell_progress()
         policy, steps = self._learner.policy(), self._learner.steps
-        test = _Test(self._examiner, policy, self._config.seed, self._looks, self._preset.strategy.greedy)
+        test = _SeededPolicyTest(
+            self._examiner, policy, self._config.seed, self._looks, self._preset.strategy.greedy
+        )
         verdict = self._preset.strategy.look(steps, self._memory, test)
         self._looks, self._memory = test.looks, verdict.memory
         self._looked_at, self._next_look = steps, steps + self._preset.strategy.every
@@ -232,27 +244,27 @@ class _Training:
         if verdict.keep:
             save_policy(policy, self._run.best_policy)
             self._known = self._learner.remember()
-        self._write(_tested(steps, self._elapsed(), verdict, test))
+        self._write(_evaluation_event(steps, self._elapsed(), verdict, test))
         if verdict.go_back and self._known is not None and not last:
             self._learner.recall(self._known)
         if self._preset.hard and not last:
-            self._learner.deal(shares_of_practice(verdict.counts, self._preset.hard))
-        self._batch = _Batch(steps)
+            self._learner.deal(practice_shares(verdict.counts, self._preset.hard))
+        self._batch = _ProgressBatch(steps)
         if verdict.stop and not last:
-            raise Halt(verdict.reason)
+            raise StopLearning(verdict.reason)
 
     # Writing
 
     def _elapsed(self) -> float:
         return self._seconds + time.monotonic() - self._began
 
-    def _write(self, event: Event) -> None:
+    def _write(self, event: TrainingEvent) -> None:
         self._events.write(event)
 
     def _tell_progress(self) -> None:
         if self._learner.steps > self._batch.steps:
             self._write(self._batch.progress(self._learner.steps, self._elapsed()))
-            self._batch = _Batch(self._learner.steps)
+            self._batch = _ProgressBatch(self._learner.steps)
 
     def _checkpoint(self) -> None:
         state = {
@@ -271,24 +283,24 @@ class _Training:
         loaded = self._run.load_checkpoint()
         if loaded is None:
             if self._run.events_file.stat().st_size:
-                self._write(Noted("There was no checkpoint yet: training begins anew."))
+                self._write(TrainingNote("There was no checkpoint yet: training begins anew."))
             return None
         parts, damage = loaded
         state = json.loads(parts["training.json"])
         best = state["memory"]["best"]
-        self._memory = Memory(**{**state["memory"], "best": tuple(best) if best else None})
+        self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
         self._seconds, self._looks = float(state["seconds"]), int(state["looks"])
         self._resumed, self._next_look = int(state["resumed"]) + 1, int(state["next_look"])
         note = "Training goes on from the last checkpoint, with new episodes."
-        self._write(Noted(f"{damage}: the one before is used. {note}" if damage else note))
+        self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
         return parts
 
 
 def make_learner(
     algorithm: Algorithm,
     preset: Preset,
-    choice: TaskChoice,
-    task: Task,
+    choice: TaskSpec,
+    task: LearningTask,
     *,
     seed: int,
     reward: RewardFunction | None = None,
@@ -298,48 +310,48 @@ def make_learner(
     stay = preset.stay and preset.worlds >= len(task.courses())
     if algorithm.family == "table":
         if preset.mirrored:
-            raise Unsupported("a table is learned without a mirror")
+            raise UnsupportedWorld("a table is learned without a mirror")
         batch = BatchEnv(task, preset.worlds, seed, reward=reward, stay=stay)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
-    from kit.learning.environment.sb3_vec_env import HalfMirrored, make_vec
+    from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
     from kit.learning.training.deep import DeepLearner
 
-    venv = make_vec(task, preset.worlds, seed, reward, stay=stay)
-    shown = HalfMirrored(venv) if preset.mirrored else venv
+    venv = make_vec_env(task, preset.worlds, seed, reward, stay=stay)
+    shown = HalfMirroredVecEnv(venv) if preset.mirrored else venv
     return DeepLearner(algorithm, preset, choice, shown, seed, tensorboard)
 
 
-def _tensorboard(run: Run) -> Path | None:
+def _tensorboard_folder(run: TrainingRun) -> Path | None:
     """Where its files go; None where it is not installed."""
     return run.folder / "tensorboard" if find_spec("tensorboard") else None
 
 
-class _Test:
+class _SeededPolicyTest:
     """Tries a policy on episodes of its own; notes what came of the last test."""
 
-    def __init__(self, examiner: Examiner, policy: Policy, seed: int, looks: int, greedy: bool) -> None:
+    def __init__(self, examiner: Evaluator, policy: Policy, seed: int, looks: int, greedy: bool) -> None:
         self._examiner = examiner
         self._policy = policy
         self._seed = seed
         self._greedy = greedy
         self.looks = looks
         """How many tests there have been, over all policies: each has episodes of its own."""
-        self.result: Result | None = None
+        self.result: EvaluationResult | None = None
 
     @property
     def cases(self) -> int:
         return len(self._examiner.cases)
 
-    def __call__(self, episodes: int) -> Counts:
+    def __call__(self, episodes: int) -> CaseCounts:
         each = -(-episodes // self.cases)
-        seed = seed_for(self._seed, "test", self.looks)
+        seed = derive_seed(self._seed, "test", self.looks)
         self.looks += 1
         self.result = self._examiner.test(self._policy, each, seed, greedy=self._greedy)
-        return {case.case: _count(case) for case in self.result.cases}
+        return {case.case: _case_count(case) for case in self.result.cases}
 
 
-def shares_of_practice(counts: Counts, hard: float) -> NDArray[np.float64]:
+def practice_shares(counts: CaseCounts, hard: float) -> NDArray[np.float64]:
     """(cases,) which part of the worlds each case gets: one part is shared out alike, the part ``hard`` as the cases went
     wrong. A few episodes without a failure are no proof: half a failure is added (Jeffreys)."""
     failed: NDArray[np.float64] = np.array(
@@ -349,29 +361,31 @@ def shares_of_practice(counts: Counts, hard: float) -> NDArray[np.float64]:
     return shares
 
 
-def _count(case: CaseResult) -> Count:
-    return Count(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
+def _case_count(case: CaseResult) -> CaseCount:
+    return CaseCount(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
 
 
-def _tested(steps: int, seconds: float, verdict: Verdict, test: _Test) -> Examined:
+def _evaluation_event(
+    steps: int, seconds: float, verdict: StoppingDecision, test: _SeededPolicyTest
+) -> Evaluated:
     assert test.result is not None  # every strategy tests
     cases = {case.case: list(case.outcomes) for case in test.result.cases}
-    return Examined(steps, seconds, cases, verdict.keep, test.result.reward, verdict.reason)
+    return Evaluated(steps, seconds, cases, verdict.keep, test.result.reward, verdict.reason)
 
 
-class _Batch:
+class _ProgressBatch:
     """What happened in training since the last word of it."""
 
     def __init__(self, steps: int) -> None:
         self.since = time.monotonic()
         self.steps = steps
-        self._episodes: list[Episode] = []
+        self._episodes: list[EpisodeStats] = []
 
-    def add(self, episode: Episode) -> None:
+    def add(self, episode: EpisodeStats) -> None:
         self._episodes.append(episode)
 
-    def progress(self, steps: int, seconds: float) -> Progress:
-        episodes, places = self._episodes, {outcome: place for place, outcome in enumerate(Outcome)}
+    def progress(self, steps: int, seconds: float) -> TrainingProgress:
+        episodes, places = self._episodes, {outcome: place for place, outcome in enumerate(EpisodeOutcome)}
         counts: dict[str, list[int]] = {}
         terms: dict[str, float] = {}
         for episode in episodes:
@@ -379,14 +393,14 @@ class _Batch:
             for name, value in episode.terms.items():
                 terms[name] = terms.get(name, 0.0) + value
         many = max(1, len(episodes))
-        return Progress(
+        return TrainingProgress(
             *(steps, seconds, (steps - self.steps) / max(1e-9, time.monotonic() - self.since), counts),
-            reward=_mean([episode.reward for episode in episodes]),
-            length=_mean([episode.steps for episode in episodes]),
+            reward=_mean_or_none([episode.reward for episode in episodes]),
+            length=_mean_or_none([episode.steps for episode in episodes]),
             terms={name: value / many for name, value in terms.items()},
-            adjacency=_mean([episode.adjacency for episode in episodes]),
+            adjacency=_mean_or_none([episode.adjacency for episode in episodes]),
         )
 
 
-def _mean(values: list[float] | list[int]) -> float | None:
+def _mean_or_none(values: list[float] | list[int]) -> float | None:
     return sum(values) / len(values) if values else None

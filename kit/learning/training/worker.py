@@ -1,6 +1,6 @@
 """The process that trains one run: detached, so that it outlives the face and a dropped SSH connection.
 
-``python -m kit.learning.training.worker FOLDER`` trains in the foreground; ``start`` starts that in a session of its own.
+``python -m kit.learning.training.worker FOLDER`` trains in the foreground; ``start_worker`` starts that in a session of its own.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ import time
 from pathlib import Path
 from types import FrameType
 
-from kit.learning.training.runs import Run, RunError
+from kit.learning.training.runs import RunError, TrainingRun
 
-ASK_TO_END = (signal.SIGTERM, signal.SIGINT)
+EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
 
-class _Asked:
+class _ExitRequest:
     """Remembers that the system or the user wants this process to end."""
 
     def __init__(self) -> None:
@@ -27,32 +27,32 @@ class _Asked:
         self.to_end = True
 
 
-def work(run: Run) -> int:
+def run_worker(run: TrainingRun) -> int:
     """Trains the run in this process; the exit code: 0 it has ended or was left to go on later, 1 it failed.
 
     A signal to end leaves a checkpoint; that terminals close (SIGHUP) is ignored.
     """
-    asked = _Asked()
-    for number in ASK_TO_END:
+    asked = _ExitRequest()
+    for number in EXIT_SIGNALS:
         signal.signal(number, asked)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    from kit.learning.training.optional_deps import LearnerMissing
+    from kit.learning.training.optional_deps import LearnExtraMissing
     from kit.learning.training.training import train
 
     try:
         ended = train(run, interrupted=lambda: asked.to_end)
     except KeyboardInterrupt:
-        _say(f"{run.name}: left where it is. `kit train --resume {run.name}` goes on.")
+        _write_error(f"{run.name}: left where it is. `kit train --resume {run.name}` goes on.")
         return 0
-    except (RunError, LearnerMissing) as error:
-        _say(error)
+    except (RunError, LearnExtraMissing) as error:
+        _write_error(error)
         return 1
     if ended.how == "failed":
-        _say(ended.reason)
+        _write_error(ended.reason)
     return int(ended.how == "failed")
 
 
-def start(run: Run, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
+def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
     """Starts a process that trains the run, and waits until it has taken it over, up to ``patience`` seconds.
 
     RunError, with what the process said, if it ends before it has begun. The caller need not wait for it.
@@ -76,15 +76,15 @@ def start(run: Run, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
     return process
 
 
-def _say(message: object) -> None:
+def _write_error(message: object) -> None:
     sys.stderr.write(f"{message}\n")
 
 
 def main(arguments: list[str]) -> int:
     if len(arguments) != 1:
-        _say("usage: python -m kit.learning.training.worker FOLDER")
+        _write_error("usage: python -m kit.learning.training.worker FOLDER")
         return 2
-    return work(Run(Path(arguments[0])))
+    return run_worker(TrainingRun(Path(arguments[0])))
 
 
 if __name__ == "__main__":

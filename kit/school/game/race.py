@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from kit.controllers import ControllerFile, find, shipped
+from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import DESK_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
@@ -137,7 +137,7 @@ def reference(level: Level) -> tuple[Finish, Recording]:
     """The drive to be measured against: the guide's for one robot, the kit's own controller's for two."""
     place = level.find()
     if len(place.partners) > 1:
-        return race(level, find(PAIR_DRIVER))
+        return race(level, find_controller(PAIR_DRIVER))
     return _run(level, place, lambda session: session.runner.participants.append(Guide(session)))
 
 
@@ -151,7 +151,7 @@ def race(
         session.wait_until_driven()
 
     # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
-    is_stranger = controller not in shipped()
+    is_stranger = controller not in kit_controllers()
     cage = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
     return _run(level, level.find(), sit, on_second, cage)
 
@@ -160,13 +160,13 @@ def race_agent(
     level: Level, policy: Policy, *, on_second: Callable[[float], None] | None = None
 ) -> tuple[Finish, Recording]:
     """A trained policy drives the level, as the ROS 2 node it would be on a robot. Raises PolicyError."""
-    from kit.learning.policies.policy_node import node_source
+    from kit.learning.policies.policy_node import format_policy_node
 
-    source = node_source(policy)
+    source = format_policy_node(policy)
     with TemporaryDirectory(prefix="agent-") as folder:
         file = Path(folder, "agent.py")
         file.write_text(source)
-        return race(level, find(str(file)), on_second=on_second)
+        return race(level, find_controller(str(file)), on_second=on_second)
 
 
 def judged(level: Level, recording: Recording) -> Finish:

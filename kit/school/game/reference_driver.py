@@ -11,8 +11,8 @@ import math
 from typing import Final, NamedTuple
 
 from kit.geometry import wrap_angle
-from kit.learning.environment.batch_map import Ground, ground_of
-from kit.learning.environment.distance_field import CELL, Table, ways
+from kit.learning.environment.batch_map import BatchMap, batch_map_of_world
+from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.scenario import Place
 from kit.run.session import Session
@@ -47,7 +47,7 @@ class Guide:
             raise ValueError(f"{place.title}: nothing says from where to where")
         self._session = session
         self._robot = place.robot
-        self._table: Table = ways(_ground(place), place.case.target, CLEAR, DEAREST)
+        self._table: DistanceField = compute_distance_field(_ground(place), place.case.target, CLEAR, DEAREST)
         self._target = Aim(*place.case.target)
 
     def exchange(self) -> bool:
@@ -91,5 +91,5 @@ class Guide:
         return Aim(corner[0] + CELL * column, corner[1] + CELL * row)
 
 
-def _ground(place: Place) -> Ground:
-    return ground_of(place.world, place.name, (place.robot,))
+def _ground(place: Place) -> BatchMap:
+    return batch_map_of_world(place.world, place.name, (place.robot,))

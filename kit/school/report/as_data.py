@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from kit.learning.policies.confidence_intervals import Interval
+from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.document import (
     Bars,
     Block,
@@ -30,7 +30,9 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 def as_csv(table: Table) -> str:
     """The table's numbers in full; an interval takes two columns."""
-    spans = [any(isinstance(row[i], Interval) for row in table.rows) for i in range(len(table.columns))]
+    spans = [
+        any(isinstance(row[i], ConfidenceInterval) for row in table.rows) for i in range(len(table.columns))
+    ]
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(
@@ -46,7 +48,7 @@ def as_csv(table: Table) -> str:
 
 
 def _parts(cell: Cell, *, span: bool) -> Iterator[str]:
-    if isinstance(cell, Interval):
+    if isinstance(cell, ConfidenceInterval):
         yield from (_plain(cell.low), _plain(cell.high))
     else:
         yield _plain(cell)
@@ -113,6 +115,6 @@ def _plot(plot: Plot) -> dict[str, Any]:
 
 
 def _value(cell: Cell) -> Any:
-    if isinstance(cell, Interval):
+    if isinstance(cell, ConfidenceInterval):
         return [_value(cell.low), _value(cell.high)]
     return None if isinstance(cell, float) and not math.isfinite(cell) else cell

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from kit.learning.policies.confidence_intervals import Interval
+from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
-Cell = str | int | float | Interval | None
+Cell = str | int | float | ConfidenceInterval | None
 """None, and a number that is not one: nothing can be said there."""
 
 
@@ -138,7 +138,7 @@ def chance_text(p: float) -> str:
 
 def written(cell: Cell, column: Column) -> str:
     """A cell as people read it."""
-    if isinstance(cell, Interval):
+    if isinstance(cell, ConfidenceInterval):
         if cell.low != cell.low:
             return "-"
         return f"{cell.low:.{column.decimals}f} to {cell.high:.{column.decimals}f}"

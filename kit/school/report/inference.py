@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.learning.policies.confidence_intervals import Interval
+from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
 SHUFFLES: Final = 20_000
 """How many random rearrangements stand for all of them where all are too many."""
@@ -44,7 +44,7 @@ class Summary(NamedTuple):
     mean: float
     sd: float
     """Of the sample: divided by n - 1."""
-    interval: Interval
+    interval: ConfidenceInterval
     """Of the mean, 95 percent, by Student's t."""
 
 
@@ -74,10 +74,10 @@ def summary(values: Float64Array) -> Summary:
     n = len(kept)
     mean = float(kept.mean()) if n else math.nan
     if n < 2:
-        return Summary(n, mean, math.nan, Interval(math.nan, math.nan))
+        return Summary(n, mean, math.nan, ConfidenceInterval(math.nan, math.nan))
     sd = float(kept.std(ddof=1))
     half = t_quantile(0.975, n - 1) * sd / math.sqrt(n)
-    return Summary(n, mean, sd, Interval(mean - half, mean + half))
+    return Summary(n, mean, sd, ConfidenceInterval(mean - half, mean + half))
 
 
 def t_quantile(share: float, freedom: int) -> float:
@@ -258,14 +258,14 @@ def correlation_test(
     return _by_chance(np.abs(_shuffled(y, x, rng, shuffles)) >= seen)
 
 
-def correlation_interval(r: float, n: int) -> Interval:
+def correlation_interval(r: float, n: int) -> ConfidenceInterval:
     """95 percent, by Fisher's z (Metron 1, 1921); NaN below four pairs."""
     if n < 4 or math.isnan(r):
-        return Interval(math.nan, math.nan)
+        return ConfidenceInterval(math.nan, math.nan)
     if abs(r) >= 1 - _SAME:
-        return Interval(r, r)
+        return ConfidenceInterval(r, r)
     half = NormalDist().inv_cdf(0.975) / math.sqrt(n - 3)
-    return Interval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
+    return ConfidenceInterval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
 
 
 def trend(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:

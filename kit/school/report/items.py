@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from kit.kernels.arrays import Float64Array
-from kit.learning.policies.confidence_intervals import Interval, wilson
+from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.school.quiz.answers import Outcome
 from kit.school.report.inference import correlation, present
 from kit.school.report.measures import Item, Quiz
@@ -37,7 +37,7 @@ class ItemAnalysis:
     """The options that were counted as right."""
     difficulty: float
     """The share who answered rightly; NaN where nobody took it."""
-    interval: Interval
+    interval: ConfidenceInterval
     """Of that share, 95 percent, by Wilson."""
     with_rest: float
     """Correlation with the rest of the quiz; NaN where one of them does not vary."""
@@ -75,7 +75,7 @@ def analyse(quiz: Quiz, item: Item) -> ItemAnalysis:
             each.chosen for each in replies if each.outcome is Outcome.RIGHT and each.chosen is not None
         ),
         difficulty=hits / len(replies) if replies else math.nan,
-        interval=wilson(hits, len(replies)),
+        interval=wilson_interval(hits, len(replies)),
         with_rest=correlation(right, quiz.share(rest)) if rest else math.nan,
     )
 

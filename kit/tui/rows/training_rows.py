@@ -16,15 +16,15 @@ from kit.render.stacked_chart import Part, Shares
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
-    from kit.learning.policies.demonstration import Moment
-    from kit.learning.training.run_status import CaseStanding, Standing
+    from kit.learning.policies.demonstration import DemonstrationView
+    from kit.learning.training.run_status import CaseStatus, RunStatus
 
 OUTCOMES: Final = (
     Part("reached", Role.TARGET, "█"),
     Part("collided", Role.CONTACT, "▒"),
     Part("timed out", Role.HIT, "░"),
 )
-"""In the order of ``kit.learning.environment.episode_stats.Outcome``, and called as there."""
+"""In the order of ``kit.learning.environment.episode_stats.EpisodeOutcome``, and called as there."""
 ASCII_OUTCOMES: Final = tuple(
     Part(part.name, part.role, glyph) for part, glyph in zip(OUTCOMES, "#x.", strict=True)
 )
@@ -50,7 +50,7 @@ _STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 )
 
 
-def heading(name: str, standing: Standing, width: int) -> Row:
+def heading(name: str, standing: RunStatus, width: int) -> Row:
     """What is learned on the left; on the right where it stands, and for how long it has been trained."""
     left = row((name, "bold"), "  ", (standing.plan.title, "dim"))
     right = row(_STATES[standing.summary.state], "  ", (clock(standing.summary.seconds), "bold"))
@@ -64,7 +64,7 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
-def figures(standing: Standing, width: int) -> Row:
+def figures(standing: RunStatus, width: int) -> Row:
     """Steps, speed, time left, and as much more as there is room for."""
     summary = standing.summary
     parts = [row((f"{summary.steps:,}", "bold"), (f" of {standing.plan.steps:,} steps", "dim"))]
@@ -84,7 +84,7 @@ def figures(standing: Standing, width: int) -> Row:
     return shown
 
 
-def note(name: str, standing: Standing, width: int) -> Row:
+def note(name: str, standing: RunStatus, width: int) -> Row:
     """What happened last, and what can be done where nobody trains."""
     state = standing.summary.state
     if state == "interrupted":
@@ -94,7 +94,7 @@ def note(name: str, standing: Standing, width: int) -> Row:
     return row((f"{standing.note}{hint}"[:width], style))
 
 
-def caption(moment: Moment, width: int) -> Row:
+def caption(moment: DemonstrationView, width: int) -> Row:
     """Who drives where, and how it ended."""
     policy = f"{'best, of' if moment.kept else 'after'} {_short(moment.trained)}"
     left = row((moment.case, "bold"), (f"  {policy}", "dim"))
@@ -115,14 +115,14 @@ def _short(steps: int) -> str:
 # What the curve and the outcomes are drawn from
 
 
-def axes(standing: Standing, kind: str) -> Axes:
+def axes(standing: RunStatus, kind: str) -> Axes:
     """Of the curve: ``success`` or ``reward``."""
     if kind == "reward":
         return Axes("steps", margin=MARGIN)
     return Axes("steps", low=0.0, high=1.0, goal=standing.plan.goal, margin=MARGIN)
 
 
-def curves(standing: Standing, kind: str, columns: int) -> tuple[Curve, ...]:
+def curves(standing: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
     """Reward, or success: in training, and in tests on average and in the worst case, if there is room for both."""
     batches, looks = standing.batches, standing.looks
     if kind == "reward":
@@ -140,7 +140,7 @@ def _two(values: FloatArray) -> FloatArray:
     return np.round(values, 2)
 
 
-def shares(standing: Standing) -> Shares:
+def shares(standing: RunStatus) -> Shares:
     """How the episodes ended, batch by batch."""
     return Shares(standing.batches.steps, standing.batches.outcomes)
 
@@ -148,7 +148,7 @@ def shares(standing: Standing) -> Shares:
 # What stands in the panel
 
 
-def pages(standing: Standing, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
+def pages(standing: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
     """Cases, and terms of the reward, on as few pages as they fit on; at least one."""
     width = max(width, NAME + 4)
     blocks = [_cases(standing, width, height), _terms(standing, width)]
@@ -163,7 +163,7 @@ def pages(standing: Standing, width: int, height: int) -> tuple[tuple[Row, ...],
     return tuple(made) or ((),)
 
 
-def _cases(standing: Standing, width: int, height: int) -> tuple[Row, list[Row]]:
+def _cases(standing: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     """Every case: how its episodes ended in training and how many reached the target in the last test; where they
     are too many, only the latter, several in a row."""
     names = short_names([case.name for case in standing.cases])
@@ -181,7 +181,7 @@ def _cases(standing: Standing, width: int, height: int) -> tuple[Row, list[Row]]
     return title, [tuple(part for cell in cells[line::down] for part in cell) for line in range(down)]
 
 
-def _case(name: str, case: CaseStanding, bar: int) -> Row:
+def _case(name: str, case: CaseStatus, bar: int) -> Row:
     trained, tested = _percent(case.trained), _percent(case.tested)
     return row(f"{name} ", *_bar(case.trained, bar), f"{trained:>6}", (f"{tested:>5} ", "bold"))
 
@@ -214,7 +214,7 @@ def short_names(names: Sequence[str]) -> list[str]:
     return ["_".join(each) for each in words]
 
 
-def _terms(standing: Standing, width: int) -> tuple[Row, list[Row]]:
+def _terms(standing: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward of an episode by named term."""
     total = "" if standing.reward is None else f" {standing.reward:.2f}"
     title = row((f"reward of an episode{total}"[:width], "dim"))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual.binding import Binding, BindingType
 
 from kit.fields import adjacency
-from kit.fields.controller_setup import Course, middle_of
+from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.minima import Trap
 from kit.fields.planner import Unreachable
 from kit.geometry import Pose
@@ -27,7 +27,7 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
-    from kit.controllers.tuning import Tuner
+    from kit.controllers.tuning import ParameterTuner
     from kit.run.scenario import Place
     from kit.run.session import Session
 
@@ -51,7 +51,7 @@ class _FieldSetup:
 
     place: Place
     picture: FieldPicture
-    tuner: Tuner
+    tuner: ParameterTuner
 
 
 class FieldsScreen(PlayScreen):
@@ -140,7 +140,7 @@ class FieldsScreen(PlayScreen):
             opened.tuner.look({f"intensity.{name}": float(value) for name, value in values.items()})
 
     def _open(self, session: Session) -> _FieldSetup | None:
-        from kit.controllers.tuning import Tuner
+        from kit.controllers.tuning import ParameterTuner
         from kit.world.problems import WorldError
 
         place = session.place
@@ -151,7 +151,7 @@ class FieldsScreen(PlayScreen):
             )
             return None
         try:
-            course = Course.open(
+            course = ControllerSetup.open(
                 place.world.file,
                 place.partners,
                 place.case.target,
@@ -166,7 +166,7 @@ class FieldsScreen(PlayScreen):
         picture = FieldPicture(course)
         self._traps = picture.traps()
         namespace = place.driven.namespace if place.driven else ""
-        self._opened = _FieldSetup(place, picture, Tuner(session.graph, "fields", namespace))
+        self._opened = _FieldSetup(place, picture, ParameterTuner(session.graph, "fields", namespace))
         return self._opened
 
     # In the face's
@@ -190,7 +190,7 @@ class FieldsScreen(PlayScreen):
             return picture.forces
         if self.shown is ArrowSource.WAYS and poses:
             try:
-                return picture.directions(middle_of(poses))
+                return picture.directions(mean_position(poses))
             except Unreachable:
                 return None
         return None
@@ -220,9 +220,11 @@ class FieldsScreen(PlayScreen):
                 for robot, force in zip(picture.course.robots, decision.forces, strict=True)
             ]
         if len(poses) == 2:
-            beside = "yes" if adjacency.by_geometry(poses[0], poses[1]) else "no"
+            beside = "yes" if adjacency.is_adjacent_by_poses(poses[0], poses[1]) else "no"
             rows.append(row(("side by side", "dim")))
-            rows.append(row(f" {beside:<8}", (f"{float(adjacency.graded(poses[0], poses[1])):9.2f}", "bold")))
+            rows.append(
+                row(f" {beside:<8}", (f"{float(adjacency.adjacency_score(poses[0], poses[1])):9.2f}", "bold"))
+            )
         if self.view is not None and self.view.metrics.reached_s is not None:
             rows.append(row(("target reached", "good")))
         return rows

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual.binding import Binding, BindingType
 from textual.message import Message
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import drive_key, named
@@ -72,7 +72,7 @@ class RecordedDriveScreen(WatchScreen):
         )
         self._scene = scene
         self._file = file
-        self._teleop = find(TELEOP)
+        self._teleop = find_controller(TELEOP)
         self._strength = 1.0
         self._started = self._saving = self._reached = False
         self._is_open = False

@@ -13,7 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.message import Message
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
 from kit.render.scene import Mark, Path, Scene
 from kit.run.view import clock
@@ -118,7 +118,7 @@ class LevelDrive(WatchScreen):
     def open_world(self) -> None:
         self._judge, self._is_over, self.view, self._said = None, False, None, ()
         place = self._level.find()
-        self.host.open(lambda: place, find(TWO if len(place.partners) > 1 else ONE), paused=True)
+        self.host.open(lambda: place, find_controller(TWO if len(place.partners) > 1 else ONE), paused=True)
         self._place: Place = place
 
     def is_drive_key(self, key: str) -> bool:

@@ -10,7 +10,7 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
-from kit.controllers import in_folder, shipped
+from kit.controllers import kit_controllers, user_controllers
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import Noted, note
 from kit.school.game.ghosts import Ghost, folder, ghosts, reference_ghost
@@ -184,7 +184,10 @@ class LevelsScreen(ActivePaintScreen[None]):
     async def action_program(self) -> None:
         if not self._may_drive():
             return
-        files = {str(each.file): each for each in (*in_folder(self._workspace.controllers), *shipped())}
+        files = {
+            str(each.file): each
+            for each in (*user_controllers(self._workspace.controllers), *kit_controllers())
+        }
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         picked = await self.app.push_screen_wait(
             Picker(f"Who drives? Yours are in {self._workspace.controllers}", choices)
@@ -329,9 +332,9 @@ class LevelsScreen(ActivePaintScreen[None]):
 
 
 def _runs(folder: Path) -> list[str]:
-    from kit.learning.training.runs import all_runs
+    from kit.learning.training.runs import list_runs
 
-    return [run.name for run in all_runs(folder)]
+    return [run.name for run in list_runs(folder)]
 
 
 def _race_agent(level: Level, runs: Path, name: str, tell: _Tell) -> tuple[Finish, Recording]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual import work
 from textual.binding import Binding, BindingType
 
-from kit.controllers import ControllerFile, find, in_folder, shipped
+from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import named
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
@@ -21,7 +21,7 @@ from kit.tui.theme import Theme
 from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
-    from kit.learning.training.runs import Run
+    from kit.learning.training.runs import TrainingRun
     from kit.run.scenario import Place
     from kit.run.session import Session
 
@@ -62,9 +62,9 @@ class PlayScreen(WatchScreen):
         self._runs = runs
         self._folder = folder
         self._find = partial(_find_place, place, case, root)
-        self._controller = find(controller, folder)
+        self._controller = find_controller(controller, folder)
         self._before_takeover: ControllerFile | None = None
-        self._teleop = find(TELEOP)
+        self._teleop = find_controller(TELEOP)
         self._strength = 1.0
 
     def open_world(self) -> None:
@@ -114,7 +114,7 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_controllers(self) -> None:
-        files = {str(each.file): each for each in (*in_folder(self._folder), *shipped())}
+        files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         chosen = await self.app.push_screen_wait(Picker(f"Controllers; yours are in {self._folder}", choices))
         if chosen is not None:
@@ -140,13 +140,13 @@ class PlayScreen(WatchScreen):
             self.host.set_paused(not running)
 
 
-def _trainings(folder: Path) -> dict[str, tuple[Run, str]]:
+def _trainings(folder: Path) -> dict[str, tuple[TrainingRun, str]]:
     """Every run by its name, with what it learns. Called in another thread: the learning side takes a moment to
     import, and the files may be far away."""
-    from kit.learning.training.runs import RunError, all_runs
+    from kit.learning.training.runs import RunError, list_runs
 
     found = {}
-    for run in all_runs(folder):
+    for run in list_runs(folder):
         try:
             found[run.name] = run, run.config().choice.title
         except RunError:

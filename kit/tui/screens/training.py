@@ -27,9 +27,9 @@ from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
-    from kit.learning.policies.demonstration import Moment
-    from kit.learning.training.run_status import Standing
-    from kit.learning.training.runs import Run
+    from kit.learning.policies.demonstration import DemonstrationView
+    from kit.learning.training.run_status import RunStatus
+    from kit.learning.training.runs import TrainingRun
 
 ALL: Final = ""
 """The choice of all cases, one after the other."""
@@ -86,11 +86,11 @@ class TrainingScreen(ActivePaintScreen[None]):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (74, "-usual"), (140, "-wide")]  # noqa: RUF012 - Textual's own
     VERTICAL_BREAKPOINTS = [(0, "-low"), (20, "-high")]  # noqa: RUF012 - Textual's own
 
-    def __init__(self, theme: Theme, run: Run) -> None:
+    def __init__(self, theme: Theme, run: TrainingRun) -> None:
         super().__init__()
         self.run_name = run.name
-        self.standing: Standing | None = None
-        self.moment: Moment | None = None
+        self.standing: RunStatus | None = None
+        self.moment: DemonstrationView | None = None
         ascii_only = theme.terminal.glyphs.value == "ascii"
         self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
         self._shares = StackedChartView(
@@ -112,7 +112,7 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     @property
     def state(self) -> str:
-        """As ``kit.learning.training.runs.State``; new until the files have been read."""
+        """As ``kit.learning.training.runs.RunState``; new until the files have been read."""
         return "new" if self.standing is None else self.standing.summary.state
 
     @property
@@ -145,11 +145,11 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     # What arrives from the threads behind: the newest wins, one announcement at a time is enough
 
-    def _status_arrived(self, standing: Standing) -> None:
+    def _status_arrived(self, standing: RunStatus) -> None:
         self.standing = standing
         self._announce(StatusChanged())
 
-    def _moment_arrived(self, moment: Moment) -> None:
+    def _moment_arrived(self, moment: DemonstrationView) -> None:
         self.moment = moment
         self._announce(MomentChanged())
 

@@ -12,7 +12,7 @@ from kit.tui.screens.picker import Picker, PickerItem
 if TYPE_CHECKING:
     from textual.screen import Screen
 
-    from kit.learning.training.runs import Run
+    from kit.learning.training.runs import TrainingRun
     from kit.tui.screens.training import TrainingScreen
     from kit.tui.theme import Theme
 
@@ -39,10 +39,10 @@ async def choose_training(screen: Screen[Any], theme: Theme, runs: Path) -> Trai
 def _choices(folder: Path) -> list[PickerItem]:
     """Called in another thread: the learning side takes a moment to import."""
     from kit.learning.environment.tasks import TASKS
-    from kit.learning.training.runs import RunError, all_runs
+    from kit.learning.training.runs import RunError, list_runs
 
     choices = [PickerItem(f"{NEW}{task.name}", f"new: {task.name}", task.summary) for task in TASKS]
-    for run in all_runs(folder):
+    for run in list_runs(folder):
         try:
             choices.append(PickerItem(run.name, run.name, f"look at it: {run.config().choice.title}"))
         except RunError:
@@ -50,16 +50,16 @@ def _choices(folder: Path) -> list[PickerItem]:
     return choices
 
 
-def _run(folder: Path, chosen: str) -> Run:
+def _run(folder: Path, chosen: str) -> TrainingRun:
     """The run, begun where it is to be a new one."""
-    from kit.learning.environment.task_spec import TaskChoice
-    from kit.learning.training.optional_deps import require_learner
-    from kit.learning.training.runs import RunConfig, find_run, new_run
-    from kit.learning.training.worker import start
+    from kit.learning.environment.task_spec import TaskSpec
+    from kit.learning.training.optional_deps import require_learn_extra
+    from kit.learning.training.runs import RunConfig, create_run, find_run
+    from kit.learning.training.worker import start_worker
 
     if not chosen.startswith(NEW):
         return find_run(folder, chosen)
-    require_learner()
-    run = new_run(folder, RunConfig(TaskChoice(chosen.removeprefix(NEW))), None)
-    start(run)
+    require_learn_extra()
+    run = create_run(folder, RunConfig(TaskSpec(chosen.removeprefix(NEW))), None)
+    start_worker(run)
     return run

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from textual.message import Message
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
@@ -76,7 +76,7 @@ class LessonSceneView(WorldView):
             session = Session(find_place(scene.place, scene.case), seed=scene.seed, watched=True)
             try:
                 if scene.controller:
-                    session.drive_with(find(scene.controller, folder))
+                    session.drive_with(find_controller(scene.controller, folder))
                     session.wait_until_driven()  # it drives from the first tick on, so that each time is the same
             except BaseException:
                 session.close()

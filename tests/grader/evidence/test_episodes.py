@@ -14,7 +14,7 @@ from grader.checks.contract import Check
 from grader.checks.drives import CHECKS, DistanceBandParams, TopicRateParams, TopicsParams
 from grader.evidence.drive_record import DriveRecord
 from grader.evidence.episodes import EpisodeSpec, run_episode, shifted_start
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER
 from kit.run.recording import rerun
@@ -100,7 +100,7 @@ def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_pa
 
 def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
     trial = dataclasses.replace(TURN, place=find_place("simple"), time_s=30.0, shift=Shift())
-    seen = drive(tmp_path, find("avoid").file.read_text(), trial)
+    seen = drive(tmp_path, find_controller("avoid").file.read_text(), trial)
     assert seen.score.reached_s is not None
     assert seen.seconds == pytest.approx(seen.score.reached_s, abs=0.02)
     assert "#" in seen.picture()

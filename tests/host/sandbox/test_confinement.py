@@ -19,7 +19,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.host.failure import FailureKind, GuestError
 from kit.host.node_process import Guest
 from kit.host.sandbox import landlock, seccomp
@@ -230,7 +230,7 @@ def test_honest_work_goes_on(student: Student, level: Level) -> None:
 
 
 def test_a_controller_runs_on_every_level(student: Student, level: Level) -> None:
-    avoid = find("avoid").file
+    avoid = find_controller("avoid").file
     graph = Graph()
     commands: list[Twist] = []
     node = create_graph_node(graph, "world")

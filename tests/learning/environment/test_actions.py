@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import FOUR, SEVEN, THREE, Actions, Move
+from kit.learning.environment.actions import FOUR_MOVES, SEVEN_MOVES, THREE_MOVES, Actions, Move
 
-every_one = pytest.mark.parametrize("actions", [THREE, FOUR, SEVEN])
+every_one = pytest.mark.parametrize("actions", [THREE_MOVES, FOUR_MOVES, SEVEN_MOVES])
 
 
 @every_one
@@ -44,4 +44,4 @@ def test_one_robot_takes_numbers(actions: Actions) -> None:
 @pytest.mark.parametrize("wrong", [[16], [-1], [0, 99]])
 def test_what_is_not_in_the_space_is_refused(wrong: list[int]) -> None:
     with pytest.raises(ValueError, match="outside Discrete"):
-        FOUR.chosen(np.array(wrong), 2)
+        FOUR_MOVES.chosen(np.array(wrong), 2)

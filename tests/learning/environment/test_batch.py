@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import FOUR, SEVEN, Move
-from kit.learning.environment.batch import BatchEnv, RewardError, Step
-from kit.learning.environment.observations import FAR_TARGET, NINETEEN, SEVENTEEN
+from kit.learning.environment.actions import FOUR_MOVES, SEVEN_MOVES, Move
+from kit.learning.environment.batch import BatchEnv, BatchStep, RewardError
+from kit.learning.environment.observations import MAX_TARGET_DISTANCE, NINETEEN_NUMBERS, SEVENTEEN_NUMBERS
 from kit.learning.environment.rewards import ALGORITHM_1, RewardFunction
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, Start, Task
+from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, StartVariation
 from kit.learning.environment.transition import Array, Transition, bearing, distance
 from tests.learning.worlds import actions_of, short, steps
 
@@ -21,7 +21,7 @@ STRAIGHT = short(HALLWAY, "straight")
 every_task = pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 
 
-def bits(step: Step, world: int) -> tuple[bytes, ...]:
+def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
     """All that a step tells of one world."""
     arrays = (step.observations, step.rewards, step.terminated, step.truncated, step.final_observations)
     transition = step.transition.at(world)
@@ -36,7 +36,7 @@ def bits(step: Step, world: int) -> tuple[bytes, ...]:
 
 
 @every_task
-def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: Task) -> None:
+def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) -> None:
     n, chance = 5, np.random.default_rng(4)
     together = BatchEnv(task, n, seed=7, first=3)
     alone = [BatchEnv(task, 1, seed=7, first=3 + i) for i in range(n)]
@@ -50,7 +50,7 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: Task) -> None:
 
 
 @every_task
-def test_a_seed_repeats_everything(task: Task) -> None:
+def test_a_seed_repeats_everything(task: LearningTask) -> None:
     batch, again, other = (BatchEnv(task, 4, seed) for seed in (1, 1, 2))
     runs = []
     for each in (batch, again, other):
@@ -63,7 +63,7 @@ def test_a_seed_repeats_everything(task: Task) -> None:
 
 
 @every_task
-def test_observations_stay_in_their_space(task: Task) -> None:
+def test_observations_stay_in_their_space(task: LearningTask) -> None:
     batch = BatchEnv(task, 30, seed=3)
     assert all(batch.observation_space.contains(row) for row in batch.reset())
     for step in steps(batch, 60):
@@ -148,7 +148,7 @@ def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
 
 
 @every_task
-def test_no_start_touches_anything_or_is_in_the_target(task: Task) -> None:
+def test_no_start_touches_anything_or_is_in_the_target(task: LearningTask) -> None:
     cases = len(task.courses())
     n = cases * -(-2000 // cases)
     task = replace(task, actions=replace(task.actions, speed=0.0, turn=0.0))
@@ -173,7 +173,7 @@ def test_starts_are_spread_as_the_case_says() -> None:
 
 
 def test_an_exact_start_is_exact() -> None:
-    batch = BatchEnv(replace(HALLWAY, start=Start(shifted=False)), 15, seed=2)
+    batch = BatchEnv(replace(HALLWAY, start=StartVariation(shifted=False)), 15, seed=2)
     batch.reset()
     assert [tuple(pose) for pose in batch.state.pose[:, 0]] == [tuple(case.start) for case in batch.cases]
     assert [tuple(target) for target in batch.state.target] == [case.target for case in batch.cases]
@@ -181,7 +181,7 @@ def test_an_exact_start_is_exact() -> None:
 
 @pytest.mark.parametrize("gap", [None, 0.4, 0.5])
 def test_two_robots_start_as_far_apart_as_the_task_wants(gap: float | None) -> None:
-    batch = BatchEnv(replace(WHEELCHAIRS, start=Start(gap=gap)), 9, seed=2)
+    batch = BatchEnv(replace(WHEELCHAIRS, start=StartVariation(gap=gap)), 9, seed=2)
     batch.reset()
     left, right = batch.state.pose[:, 0], batch.state.pose[:, 1]
     assert np.hypot(*(left - right)[:, :2].T) == pytest.approx(0.3 if gap is None else gap)
@@ -192,7 +192,7 @@ def test_two_robots_start_as_far_apart_as_the_task_wants(gap: float | None) -> N
 # Endings
 
 
-def stopping(task: Task, **changes: object) -> tuple[BatchEnv, Step]:
+def stopping(task: LearningTask, **changes: object) -> tuple[BatchEnv, BatchStep]:
     """The last step of an episode in which the robot only stops."""
     batch = BatchEnv(replace(task, max_steps=30, **changes), 3, seed=0)
     batch.reset()
@@ -236,9 +236,9 @@ def test_without_restart_a_world_waits() -> None:
 
 
 def test_straight_into_the_wall_is_a_collision() -> None:
-    batch = BatchEnv(replace(STRAIGHT, start=Start(shifted=False)), 1, seed=0)
+    batch = BatchEnv(replace(STRAIGHT, start=StartVariation(shifted=False)), 1, seed=0)
     batch.reset()
-    back = SEVEN.moves.index(Move.BACK)
+    back = SEVEN_MOVES.moves.index(Move.BACK)
     for _ in range(20):
         step = batch.step(np.array([back]))
         if step.ended[0]:
@@ -251,11 +251,11 @@ def test_straight_into_the_wall_is_a_collision() -> None:
 
 
 def test_two_robots_that_run_into_each_other() -> None:
-    task = replace(short(WHEELCHAIRS, "pair_straight"), start=Start(gap=0.4))
+    task = replace(short(WHEELCHAIRS, "pair_straight"), start=StartVariation(gap=0.4))
     batch = BatchEnv(task, 1, seed=0)
     batch.reset()
-    inwards = FOUR.moves.index(Move.RIGHT), FOUR.moves.index(Move.LEFT)
-    ahead = FOUR.moves.index(Move.FORWARD)
+    inwards = FOUR_MOVES.moves.index(Move.RIGHT), FOUR_MOVES.moves.index(Move.LEFT)
+    ahead = FOUR_MOVES.moves.index(Move.FORWARD)
     for _ in range(7):
         batch.step(np.array([inwards]))
     for _ in range(20):
@@ -267,10 +267,10 @@ def test_two_robots_that_run_into_each_other() -> None:
 
 @pytest.mark.parametrize(("measured", "way"), [("hull", 0.25 + 0.048), ("axle", 0.25)])
 def test_the_target_is_measured_to_the_hull_or_to_the_axle(measured: str, way: float) -> None:
-    task = replace(STRAIGHT, start=Start(shifted=False), measured_to=measured)
+    task = replace(STRAIGHT, start=StartVariation(shifted=False), measured_to=measured)
     batch = BatchEnv(task, 1, seed=0)
     batch.reset()
-    ahead = np.array([SEVEN.moves.index(Move.FORWARD)])
+    ahead = np.array([SEVEN_MOVES.moves.index(Move.FORWARD)])
     for _ in range(60):
         step = batch.step(ahead)
         if step.ended[0]:
@@ -291,7 +291,7 @@ def test_both_robots_must_be_in_the_target_at_once() -> None:
 
 
 @pytest.mark.parametrize("task", [HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
-def test_to_spare_the_search_for_walls_changes_nothing(task: Task) -> None:
+def test_to_spare_the_search_for_walls_changes_nothing(task: LearningTask) -> None:
     batch, searching = (BatchEnv(task, 40, seed=6) for _ in range(2))
     batch.reset()
     searching.reset()
@@ -335,22 +335,22 @@ def test_seventeen_numbers() -> None:
 
 
 def test_target_and_arrival_can_be_seen() -> None:
-    seen = replace(SEVENTEEN, target=True, arrived=True)
+    seen = replace(SEVENTEEN_NUMBERS, target=True, arrived=True)
     batch = BatchEnv(replace(HALLWAY, observation=seen, target_radius=0.9), 15, seed=3)
     batch.reset()
     for step in steps(batch, 30):
         last = step.final_observations[:, -3:]
         transition = step.transition
-        away = np.minimum(distance(transition.pose, transition.target)[:, 0], FAR_TARGET)
+        away = np.minimum(distance(transition.pose, transition.target)[:, 0], MAX_TARGET_DISTANCE)
         assert last[:, 0] == pytest.approx(0.5 * away)
         assert last[:, 1] == pytest.approx(bearing(transition.pose, transition.target)[:, 0] / math.pi)
         assert (last[:, 2] == transition.in_target[:, 0]).all()
 
 
 def test_two_robots_see_each_other_beside_them() -> None:
-    task = replace(short(WHEELCHAIRS, "pair_straight"), start=Start(gap=0.4), lidar_noise=0.0)
+    task = replace(short(WHEELCHAIRS, "pair_straight"), start=StartVariation(gap=0.4), lidar_noise=0.0)
     batch = BatchEnv(task, 1, seed=0)
-    seen = batch.reset()[0].reshape(2, NINETEEN.size) / WHEELCHAIRS.observation.scale
+    seen = batch.reset()[0].reshape(2, NINETEEN_NUMBERS.size) / WHEELCHAIRS.observation.scale
     hull = [(0.4 - 0.055) / math.cos(math.radians(degrees)) for degrees in (6, 10)]  # wheels are not seen
     assert seen[:, 5:7] == pytest.approx(np.array([hull] * 2), abs=1e-3)
     step = batch.step(np.zeros((1, 2), dtype=np.int64))
@@ -361,7 +361,7 @@ def test_two_robots_see_each_other_beside_them() -> None:
 def test_whole_turns_are_counted_until_the_other_way() -> None:
     batch = BatchEnv(STRAIGHT, 1, seed=0)
     batch.reset()
-    left, right = (np.array([SEVEN.moves.index(move)]) for move in (Move.LEFT, Move.RIGHT))
+    left, right = (np.array([SEVEN_MOVES.moves.index(move)]) for move in (Move.LEFT, Move.RIGHT))
     counts = [int(batch.step(left).transition.full_turns[0, 0]) for _ in range(62)]
     assert [counts.index(1) + 1, counts.index(2) + 1] == [30, 60]
     assert batch.step(right).transition.full_turns[0, 0] == 0

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import Ground, Unsupported, fleet_of, ground_of
+from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_map_of_world, build_fleet
 from tests.sim.workshop import Workshop
 
 Mapped = Mapping[str, Any]
@@ -41,10 +41,10 @@ def workshop(tmp_path: Path) -> Workshop:
     return Workshop(tmp_path)
 
 
-def ground(workshop: Workshop, models: Mapped, **changes: Any) -> Ground:
+def ground(workshop: Workshop, models: Mapped, **changes: Any) -> BatchMap:
     drivers = [name for name in models if name.startswith("robot")]
     layers = changes.pop("layers", ROOM)
-    return ground_of(workshop.world(models, layers, **changes), "test", drivers)
+    return batch_map_of_world(workshop.world(models, layers, **changes), "test", drivers)
 
 
 def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
@@ -87,7 +87,7 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
     ],
 )
 def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, reason: str) -> None:
-    with pytest.raises(Unsupported, match=reason) as refusal:
+    with pytest.raises(UnsupportedWorld, match=reason) as refusal:
         ground(workshop, models)
     assert "the batch engine" in str(refusal.value)
 
@@ -95,20 +95,20 @@ def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, r
 def test_walls_must_be_both_touched_and_seen(workshop: Workshop) -> None:
     glass = ROOM | {"glass": [(-1, 0, 1, 0)]}
     seeing = robot(plugins=[DRIVE, LASER | {"layers": ["seen", "glass"]}])
-    with pytest.raises(Unsupported, match="touches and sees"):
+    with pytest.raises(UnsupportedWorld, match="touches and sees"):
         ground(workshop, {"robot": seeing}, layers=glass)
 
 
 def test_a_plugin_of_the_world_is_refused(workshop: Workshop) -> None:
     walls = {"type": "RandomWall", "name": "walls", "layer": "wall", "num_of_walls": 1, "wall_wall_dist": 1}
-    with pytest.raises(Unsupported, match="no RandomWall of the whole world"):
+    with pytest.raises(UnsupportedWorld, match="no RandomWall of the whole world"):
         ground(workshop, {"robot": robot()}, plugins=[walls | {"double_wall": False, "robot_name": "robot"}])
 
 
 def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
     small = ground(workshop, {"robot": robot()})
-    many = Ground("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
-    fleet = fleet_of([small, many, small])
+    many = BatchMap("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
+    fleet = build_fleet([small, many, small])
     for number, each in enumerate((small, many, small)):
         first, end = fleet.walls.starts[fleet.map_blocks[number : number + 2]]
         ours = {tuple(wall) for wall in fleet.walls.ends[first:end].tolist()}
@@ -122,6 +122,6 @@ def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
 def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
     one = ground(workshop, {"robot": robot()})
     other = ground(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
-    with pytest.raises(Unsupported, match="alike"):
-        fleet_of([one, other])
-    assert fleet_of([one], noise=0.1).noise_std == 0.1
+    with pytest.raises(UnsupportedWorld, match="alike"):
+        build_fleet([one, other])
+    assert build_fleet([one], noise=0.1).noise_std == 0.1

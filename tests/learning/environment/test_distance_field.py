@@ -7,17 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import ground
-from kit.learning.environment.case_arrays import Courses
-from kit.learning.environment.distance_field import CELL, CLEAR, ways
-from kit.learning.environment.tasks import HALLWAY, TASKS, Task
+from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.distance_field import CELL, CLEARANCE, compute_distance_field
+from kit.learning.environment.tasks import HALLWAY, TASKS, LearningTask
 from kit.world.catalogue import find_map
 
 
-def to_go(task: Task, *places: tuple[float, float]) -> list[float]:
+def to_go(task: LearningTask, *places: tuple[float, float]) -> list[float]:
     """From these places, on the task's first case."""
     poses = np.array([[(x, y, 0.0)] for x, y in places])
-    return Courses(task).to_go(np.zeros(len(places), dtype=np.int64), poses)[:, 0].tolist()
+    return CaseArrays(task).to_go(np.zeros(len(places), dtype=np.int64), poses)[:, 0].tolist()
 
 
 def test_along_a_corridor_it_is_the_distance() -> None:
@@ -34,7 +34,7 @@ def test_across_eight_neighbours_it_is_too_long_by_a_twelfth_at_most() -> None:
 def test_beside_a_wall_a_metre_counts_for_more() -> None:
     straight = HALLWAY.on("straight")
     middle, side = to_go(straight, (0.625, 1.0), (0.15, 1.0))
-    along = ways(ground(find_map("hall_straight")), (0.15, 2.0))
+    along = compute_distance_field(load_batch_map(find_map("hall_straight")), (0.15, 2.0))
     assert side > middle + 0.1
     column = round((0.15 - along.corner[0]) / CELL)
     rows = [round((y - along.corner[1]) / CELL) for y in (1.0, 1.9)]
@@ -54,8 +54,8 @@ def test_it_leads_round_walls(case: str) -> None:
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-def test_from_every_start_a_way_leads_to_the_target(task: Task) -> None:
-    courses = Courses(task)
+def test_from_every_start_a_way_leads_to_the_target(task: LearningTask) -> None:
+    courses = CaseArrays(task)
     number = np.arange(len(task.courses()))
     start = courses.start(number, number, number)
     far = courses.to_go(number, start.poses)
@@ -77,6 +77,6 @@ def test_it_changes_evenly() -> None:
 
 
 def test_cells_beside_walls_have_a_value() -> None:
-    table = ways(ground(find_map("hall_two_doors")), (0.625, 2.5))
+    table = compute_distance_field(load_batch_map(find_map("hall_two_doors")), (0.625, 2.5))
     assert np.isfinite(table.values).all()
-    assert CLEAR > 0.085
+    assert CLEARANCE > 0.085

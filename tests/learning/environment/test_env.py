@@ -15,7 +15,7 @@ from gymnasium.utils.env_checker import check_env
 import kit.learning
 from kit.learning.environment.env import HallwayEnv, TaskEnv, TurnEnv, WheelchairsEnv
 from kit.learning.environment.rewards import ALGORITHM_3
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, Task, UnknownTask
+from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, UnknownTask
 
 REGISTERED = sorted(name for name in gymnasium.registry if name.startswith("RobotKit/"))
 CLASSES = {"Turn": TurnEnv, "Hallway": HallwayEnv, "Wheelchairs": WheelchairsEnv}
@@ -38,7 +38,7 @@ def test_three_environments_are_registered() -> None:
 
 
 @every_task
-def test_gymnasiums_checker_passes(task: Task) -> None:
+def test_gymnasiums_checker_passes(task: LearningTask) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(TaskEnv(task, render_mode="rgb_array"), skip_render_check=True)
@@ -46,7 +46,7 @@ def test_gymnasiums_checker_passes(task: Task) -> None:
 
 @every_task
 @needs_learner
-def test_the_checker_of_stable_baselines_passes(task: Task) -> None:
+def test_the_checker_of_stable_baselines_passes(task: LearningTask) -> None:
     from stable_baselines3.common.env_checker import check_env as check
 
     with warnings.catch_warnings():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.episode_stats import Outcome, Tally
+from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
 from tests.learning.worlds import TASKS, steps
 
 
@@ -16,7 +16,7 @@ from tests.learning.worlds import TASKS, steps
 def test_an_episode_is_the_sum_of_its_steps(name: str) -> None:
     batch = BatchEnv(replace(TASKS[name], max_steps=15), 10, seed=3)
     batch.reset()
-    tally, rewards, adjacent, seen = Tally(batch), np.zeros(10), np.zeros(10), 0
+    tally, rewards, adjacent, seen = EpisodeStatsRecorder(batch), np.zeros(10), np.zeros(10), 0
     for step in steps(batch, 50):
         rewards += step.rewards
         adjacent += step.transition.adjacent
@@ -30,11 +30,11 @@ def test_an_episode_is_the_sum_of_its_steps(name: str) -> None:
             assert episode.adjacency == pytest.approx(adjacent[i] / episode.steps)
             assert episode.case == batch.cases[int(step.transition.case[i])].name
             assert episode.outcome is (
-                Outcome.COLLIDED
+                EpisodeOutcome.COLLIDED
                 if step.transition.collided[i]
-                else Outcome.REACHED
+                else EpisodeOutcome.REACHED
                 if step.transition.reached[i]
-                else Outcome.TIMED_OUT
+                else EpisodeOutcome.TIMED_OUT
             )
             rewards[i] = adjacent[i] = 0.0
             seen += 1

@@ -10,17 +10,17 @@ import pytest
 
 from kit.learning.environment.actions import Actions, Move
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import Unsupported
-from kit.learning.environment.mirror import Mirror
-from kit.learning.environment.observations import NINE
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, Start, Task
+from kit.learning.environment.batch_map import UnsupportedWorld
+from kit.learning.environment.mirror import TaskMirror
+from kit.learning.environment.observations import NINE_NUMBERS
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
 
 TELLING = replace(HALLWAY.observation, target=True, arrived=True)
 
 
-def plain(task: Task, case: str) -> Task:
+def plain(task: LearningTask, case: str) -> LearningTask:
     """The task on one case, without chance."""
-    return replace(task.on(case), start=Start(shifted=False, gap=task.start.gap), lidar_noise=0.0)
+    return replace(task.on(case), start=StartVariation(shifted=False, gap=task.start.gap), lidar_noise=0.0)
 
 
 @pytest.mark.parametrize(
@@ -35,8 +35,8 @@ def plain(task: Task, case: str) -> Task:
         ),
     ],
 )
-def test_the_mirror_image_of_a_drive(task: Task, case: str, other: str) -> None:
-    mirror, chance = Mirror(task), np.random.default_rng(2)
+def test_the_mirror_image_of_a_drive(task: LearningTask, case: str, other: str) -> None:
+    mirror, chance = TaskMirror(task), np.random.default_rng(2)
     here, there = (BatchEnv(plain(task, name), 1) for name in (case, other))
     seen, looked_at = here.reset(), there.reset()
     space = here.action_space
@@ -57,7 +57,7 @@ def test_the_mirror_image_of_a_drive(task: Task, case: str, other: str) -> None:
 
 def test_twice_in_a_mirror_is_as_before() -> None:
     for task in (HALLWAY, WHEELCHAIRS, replace(HALLWAY, observation=TELLING)):
-        mirror, batch = Mirror(task), BatchEnv(task, 20, seed=1)
+        mirror, batch = TaskMirror(task), BatchEnv(task, 20, seed=1)
         seen = batch.reset()
         assert mirror.observations(mirror.observations(seen)).tobytes() == seen.tobytes()
         actions = np.stack([batch.action_space.sample() for _ in range(20)])
@@ -65,7 +65,7 @@ def test_twice_in_a_mirror_is_as_before() -> None:
 
 
 def test_what_has_no_mirror_image_is_refused() -> None:
-    with pytest.raises(Unsupported, match="both sides"):
-        Mirror(replace(TURN, observation=NINE))
-    with pytest.raises(Unsupported, match="two sides"):
-        Mirror(replace(HALLWAY, actions=Actions((Move.FORWARD, Move.LEFT), 0.3, 1.0)))
+    with pytest.raises(UnsupportedWorld, match="both sides"):
+        TaskMirror(replace(TURN, observation=NINE_NUMBERS))
+    with pytest.raises(UnsupportedWorld, match="two sides"):
+        TaskMirror(replace(HALLWAY, actions=Actions((Move.FORWARD, Move.LEFT), 0.3, 1.0)))

@@ -8,46 +8,46 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.observations import (
-    AHEAD,
-    NINE,
-    NINETEEN,
-    RAYS,
-    SEVENTEEN,
+    AHEAD_RAY,
+    NINE_NUMBERS,
+    NINETEEN_NUMBERS,
+    RAY_COUNT,
+    SEVENTEEN_NUMBERS,
     SIDE_RAYS,
-    Observation,
+    ObservationSpec,
 )
 
-every_one = pytest.mark.parametrize("seen", [NINE, SEVENTEEN, NINETEEN])
+every_one = pytest.mark.parametrize("seen", [NINE_NUMBERS, SEVENTEEN_NUMBERS, NINETEEN_NUMBERS])
 
 
 def degrees(ray: int) -> float:
     """From straight ahead, to the left positive."""
-    return (ray - AHEAD) * 4.0
+    return (ray - AHEAD_RAY) * 4.0
 
 
 def test_the_dissertations_rays() -> None:
-    assert [degrees(ray) for ray in SEVENTEEN.rays] == [0, 8, -8, 92, -92]
+    assert [degrees(ray) for ray in SEVENTEEN_NUMBERS.rays] == [0, 8, -8, 92, -92]
     assert [[degrees(ray) for ray in side] for side in SIDE_RAYS] == [[-84, -100], [84, 100]]
-    assert (NINE.size, SEVENTEEN.size, NINETEEN.size) == (9, 17, 19)
+    assert (NINE_NUMBERS.size, SEVENTEEN_NUMBERS.size, NINETEEN_NUMBERS.size) == (9, 17, 19)
 
 
 def test_nine_sectors_of_ten_rays_the_last_of_eleven() -> None:
-    _, stretches = NINE.tables(1)
+    _, stretches = NINE_NUMBERS.tables(1)
     assert [(end - first) for _, first, end in stretches.tolist()] == [10] * 8 + [11]
 
 
 def test_twelve_sectors_narrow_ahead_and_wide_behind() -> None:
-    sizes = np.bincount(SEVENTEEN.sectors)
+    sizes = np.bincount(SEVENTEEN_NUMBERS.sectors)
     assert sizes.tolist() == [16, 15, *[5] * 9, 15]
-    ahead = [degrees(ray) for ray in range(RAYS) if SEVENTEEN.sectors[ray] == 6]
+    ahead = [degrees(ray) for ray in range(RAY_COUNT) if SEVENTEEN_NUMBERS.sectors[ray] == 6]
     assert ahead == [-8, -4, 0, 4, 8]
-    assert {SEVENTEEN.sectors[0], SEVENTEEN.sectors[RAYS - 1]} == {0}
+    assert {SEVENTEEN_NUMBERS.sectors[0], SEVENTEEN_NUMBERS.sectors[RAY_COUNT - 1]} == {0}
 
 
 @every_one
-def test_stretches_are_the_sectors(seen: Observation) -> None:
+def test_stretches_are_the_sectors(seen: ObservationSpec) -> None:
     single, stretches = seen.tables(2)
-    again = np.full(RAYS, -1)
+    again = np.full(RAY_COUNT, -1)
     for sector, first, end in stretches.tolist():
         assert (again[first:end] == -1).all()
         again[first:end] = sector
@@ -60,7 +60,7 @@ def test_stretches_are_the_sectors(seen: Observation) -> None:
 @pytest.mark.parametrize("target", [False, True])
 @pytest.mark.parametrize("arrived", [False, True])
 def test_the_space_has_a_bound_for_every_number(
-    seen: Observation, robots: int, target: bool, arrived: bool
+    seen: ObservationSpec, robots: int, target: bool, arrived: bool
 ) -> None:
     more = replace(seen, target=target, arrived=arrived)
     space = more.space(robots)

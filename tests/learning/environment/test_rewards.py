@@ -15,8 +15,8 @@ from kit.learning.environment.rewards import (
     SIDE_BY_SIDE,
     TERMS,
     Reward,
-    UnknownTerm,
-    Weight,
+    TermWeight,
+    UnknownRewardTerm,
 )
 from kit.learning.environment.transition import Transition
 from tests.learning.worlds import TASKS, sampled
@@ -152,10 +152,10 @@ def test_nothing_of_ours_depends_on_the_clock() -> None:
 
 def test_a_weight_that_does_not_count_at_the_end() -> None:
     many = sampled("hallway")
-    (value,) = Reward("going", (Weight("elapsed", 3.0, at_end=False),), scale=0.5).terms(many).values()
+    (value,) = Reward("going", (TermWeight("elapsed", 3.0, at_end=False),), scale=0.5).terms(many).values()
     assert value == pytest.approx(np.where(many.ended, 0.0, 1.5))
 
 
 def test_an_unknown_term_is_refused_with_the_nearest_name() -> None:
-    with pytest.raises(UnknownTerm, match="progress"):
-        Weight("progres", 1.0)
+    with pytest.raises(UnknownRewardTerm, match="progress"):
+        TermWeight("progres", 1.0)

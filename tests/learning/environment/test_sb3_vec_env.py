@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.env import TaskEnv
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, Task
+from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask
 
 pytestmark = pytest.mark.skipif(
     find_spec("stable_baselines3") is None, reason="the extra learn is not installed"
@@ -18,13 +18,13 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-def test_one_world_of_stable_baselines_is_the_environment(task: Task) -> None:
+def test_one_world_of_stable_baselines_is_the_environment(task: LearningTask) -> None:
     from stable_baselines3.common.vec_env import DummyVecEnv
 
-    from kit.learning.environment.sb3_vec_env import make_vec
+    from kit.learning.environment.sb3_vec_env import make_vec_env
 
     task = replace(task, max_steps=25)
-    plain, ours = DummyVecEnv([lambda: TaskEnv(task)]), make_vec(task, 1, seed=9)
+    plain, ours = DummyVecEnv([lambda: TaskEnv(task)]), make_vec_env(task, 1, seed=9)
     plain.seed(9)
     ours.seed(9)
     assert np.array_equal(plain.reset(), ours.reset())
@@ -42,9 +42,9 @@ def test_one_world_of_stable_baselines_is_the_environment(task: Task) -> None:
 
 
 def test_infos_tell_of_the_episode() -> None:
-    from kit.learning.environment.sb3_vec_env import make_vec
+    from kit.learning.environment.sb3_vec_env import make_vec_env
 
-    env = make_vec(replace(WHEELCHAIRS, max_steps=10), 5, seed=1)
+    env = make_vec_env(replace(WHEELCHAIRS, max_steps=10), 5, seed=1)
     env.reset()
     rewards, told = np.zeros(5), 0
     for _ in range(25):
@@ -64,22 +64,28 @@ def test_infos_tell_of_the_episode() -> None:
 
 
 @pytest.mark.parametrize("task", [TURN, HALLWAY, WHEELCHAIRS], ids=lambda task: task.name)
-def test_ppo_takes_it(task: Task) -> None:
+def test_ppo_takes_it(task: LearningTask) -> None:
     from stable_baselines3 import PPO
 
-    from kit.learning.environment.sb3_vec_env import make_vec
+    from kit.learning.environment.sb3_vec_env import make_vec_env
 
     model = PPO(
-        "MlpPolicy", make_vec(task, 8, seed=0), n_steps=16, batch_size=64, n_epochs=1, device="cpu", seed=0
+        "MlpPolicy",
+        make_vec_env(task, 8, seed=0),
+        n_steps=16,
+        batch_size=64,
+        n_epochs=1,
+        device="cpu",
+        seed=0,
     )
     model.learn(256)
     assert model.num_timesteps == 256
 
 
 def test_what_would_set_one_world_apart_is_refused() -> None:
-    from kit.learning.environment.sb3_vec_env import make_vec
+    from kit.learning.environment.sb3_vec_env import make_vec_env
 
-    env = make_vec(TURN, 2)
+    env = make_vec_env(TURN, 2)
     assert env.get_attr("n") == [2, 2]
     assert env.env_is_wrapped(object) == [False, False]
     with pytest.raises(AttributeError, match="one"):
@@ -89,12 +95,15 @@ def test_what_would_set_one_world_apart_is_refused() -> None:
 
 
 def test_half_of_every_case_is_seen_in_a_mirror() -> None:
-    from kit.learning.environment.mirror import Mirror
-    from kit.learning.environment.sb3_vec_env import HalfMirrored, make_vec
+    from kit.learning.environment.mirror import TaskMirror
+    from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
 
     task = HALLWAY.on("left_door", "turn_left_90", "straight")
-    plainly, mirrored = make_vec(task, 12, 3, stay=True), HalfMirrored(make_vec(task, 12, 3, stay=True))
-    mirror, which = Mirror(task), np.array([3, 4, 5, 9, 10, 11])
+    plainly, mirrored = (
+        make_vec_env(task, 12, 3, stay=True),
+        HalfMirroredVecEnv(make_vec_env(task, 12, 3, stay=True)),
+    )
+    mirror, which = TaskMirror(task), np.array([3, 4, 5, 9, 10, 11])
     others = np.setdiff1d(np.arange(12), which)
     seen: Any = (plainly.reset(), mirrored.reset())
     chance = np.random.default_rng(0)

@@ -4,33 +4,33 @@ from __future__ import annotations
 
 import pytest
 
-from kit.learning.environment.rewards import REWARDS, SCALE
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask, find_task
 
 
 @pytest.mark.parametrize("task", ["turn", "hallway", "wheelchairs"])
 @pytest.mark.parametrize("reward", REWARDS)
 def test_any_reward_stays_as_small_as_learning_wants_it(task: str, reward: str) -> None:
-    chosen = TaskChoice(task, reward=reward).resolve().reward
+    chosen = TaskSpec(task, reward=reward).resolve().reward
     assert chosen.name == reward
-    assert chosen.scale == (1.0 if chosen.small else SCALE)
-    assert TaskChoice(task, reward=reward, scale=0.5).resolve().reward.scale == 0.5
+    assert chosen.scale == (1.0 if chosen.small else REWARD_SCALE)
+    assert TaskSpec(task, reward=reward, scale=0.5).resolve().reward.scale == 0.5
 
 
 @pytest.mark.parametrize("task", ["turn-seed", "hallway-seed", "wheelchairs-seed"])
 def test_in_the_dissertations_tasks_its_rewards_are_as_they_were(task: str) -> None:
-    assert TaskChoice(task, reward="algorithm-1").resolve().reward.scale == 1.0
-    assert TaskChoice(task).resolve() == find_task(task)
+    assert TaskSpec(task, reward="algorithm-1").resolve().reward.scale == 1.0
+    assert TaskSpec(task).resolve() == find_task(task)
 
 
 def test_what_is_different_survives_as_json() -> None:
-    choice = TaskChoice("hallway", ("straight",), measured_to="axle", tells_target=True, reward="progress")
-    assert TaskChoice.from_dict(choice.as_dict()) == choice
+    choice = TaskSpec("hallway", ("straight",), measured_to="axle", tells_target=True, reward="progress")
+    assert TaskSpec.from_dict(choice.as_dict()) == choice
     with pytest.raises(ValueError, match="no choice"):
-        TaskChoice.from_dict({"task": "hallway", "colour": "red"})
+        TaskSpec.from_dict({"task": "hallway", "colour": "red"})
 
 
 def test_a_reward_that_nobody_knows() -> None:
     with pytest.raises(UnknownTask, match="progress"):
-        TaskChoice("hallway", reward="progres").resolve()
+        TaskSpec("hallway", reward="progres").resolve()

@@ -16,13 +16,13 @@ from kit.learning.environment.tasks import (
     TURN_SEED,
     WHEELCHAIRS_SEED,
     WHEELCHAIRS_SEED_49,
-    Task,
+    LearningTask,
     UnknownTask,
     find_task,
 )
 
 
-def sizes(task: Task) -> tuple[object, ...]:
+def sizes(task: LearningTask) -> tuple[object, ...]:
     spaces = task.observation.space(task.robots), task.actions.space(task.robots)
     return spaces[0].shape, str(spaces[1]), task.max_steps, task.step_time, task.target_radius
 
@@ -53,7 +53,7 @@ def test_the_dissertations_rewards() -> None:
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-def test_a_task_is_found_by_its_name(task: Task) -> None:
+def test_a_task_is_found_by_its_name(task: LearningTask) -> None:
     assert find_task(task.name) is task
     assert task.courses()
 
@@ -68,7 +68,7 @@ def test_the_nearest_name_is_offered() -> None:
 
 
 def test_cases_by_name_and_by_group() -> None:
-    def names(task: Task) -> list[str]:
+    def names(task: LearningTask) -> list[str]:
         return [case.name for _, case in task.courses()]
 
     assert len(names(HALLWAY)) == 15

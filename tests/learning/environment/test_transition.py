@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.actions import Move
-from kit.learning.environment.transition import FACTS, Transition, bearing, distance, wrapped
+from kit.learning.environment.transition import TRANSITION_FIELDS, Transition, bearing, distance, wrapped
 from tests.learning.worlds import TASKS, sampled
 
 
@@ -37,15 +37,15 @@ def pair(left: tuple[float, float, float], right: tuple[float, float, float]) ->
 
 
 def test_facts_are_what_a_reward_may_ask_for() -> None:
-    assert {"collided", "reached", "front", "bearing", "pose", "step", "adjacent"} <= set(FACTS)
-    assert not {name for name in FACTS if name.startswith("_")}
+    assert {"collided", "reached", "front", "bearing", "pose", "step", "adjacent"} <= set(TRANSITION_FIELDS)
+    assert not {name for name in TRANSITION_FIELDS if name.startswith("_")}
     for task in TASKS:
         transition = sampled(task)
-        assert all(getattr(transition, name) is not None for name in FACTS)
+        assert all(getattr(transition, name) is not None for name in TRANSITION_FIELDS)
 
 
 @pytest.mark.parametrize("task", TASKS)
-@pytest.mark.parametrize("fact", FACTS)
+@pytest.mark.parametrize("fact", TRANSITION_FIELDS)
 def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> None:
     many = sampled(task)
     of_all = getattr(many, fact)

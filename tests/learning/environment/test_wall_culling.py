@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kit.learning.environment.wall_culling import within_reach
+from kit.learning.environment.wall_culling import cull_walls
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ LINE = np.array([[3.0, 1.0, 3.0, 2.0]])
 
 
 def kept(*parts: Floats, point: tuple[float, float] = (2.0, 2.0)) -> set[tuple[float, ...]]:
-    return set(map(tuple, within_reach(np.concatenate(parts), point).tolist()))
+    return set(map(tuple, cull_walls(np.concatenate(parts), point).tolist()))
 
 
 def of(*parts: Floats) -> set[tuple[float, ...]]:
@@ -59,7 +59,7 @@ def test_an_open_room_keeps_everything() -> None:
 
 
 def test_no_walls() -> None:
-    assert within_reach(np.zeros((0, 4)), (0.0, 0.0)).shape == (0, 4)
+    assert cull_walls(np.zeros((0, 4)), (0.0, 0.0)).shape == (0, 4)
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.3, 1.0])

@@ -7,11 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.episode_stats import Outcome
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.policies.demonstration import Demonstration
-from kit.learning.policies.policies import Chance, Layer, Network, Policy, PolicyError, save_policy
-from kit.learning.training.runs import Run, RunConfig, new_run
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyError,
+    PolicyNetwork,
+    save_policy,
+)
+from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 
 FORWARD, LEFT = 0, 1
 
@@ -20,13 +27,15 @@ def always(move: int, steps: int) -> Policy:
     """Of the task *turn*, whatever it sees."""
     bias = np.zeros(3, dtype=np.float32)
     bias[move] = 1.0
-    layer = Layer(np.zeros((9, 3), dtype=np.float32), bias)
-    return Policy(Network((layer,), "tanh"), (3,), Chance("softmax", 1.0), TaskChoice("turn"), steps)
+    layer = LinearLayer(np.zeros((9, 3), dtype=np.float32), bias)
+    return Policy(
+        PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax", 1.0), TaskSpec("turn"), steps
+    )
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Run:
-    return new_run(tmp_path, RunConfig(TaskChoice("turn")))
+def run(tmp_path: Path) -> TrainingRun:
+    return create_run(tmp_path, RunConfig(TaskSpec("turn")))
 
 
 def end(demonstration: Demonstration) -> None:
@@ -34,11 +43,11 @@ def end(demonstration: Demonstration) -> None:
         demonstration.step()
 
 
-def test_without_a_policy_nobody_drives(run: Run) -> None:
+def test_without_a_policy_nobody_drives(run: TrainingRun) -> None:
     assert not Demonstration(run).begin()
 
 
-def test_cases_take_turns_and_one_can_be_chosen(run: Run) -> None:
+def test_cases_take_turns_and_one_can_be_chosen(run: TrainingRun) -> None:
     save_policy(always(FORWARD, 100), run.newest_policy)
     demonstration = Demonstration(run)
     seen = []
@@ -50,13 +59,13 @@ def test_cases_take_turns_and_one_can_be_chosen(run: Run) -> None:
         end(demonstration)
         last = demonstration.moment()
         assert last.case == first.case
-        assert last.outcome is Outcome.COLLIDED
+        assert last.outcome is EpisodeOutcome.COLLIDED
         assert len(last.scene.trails[0]) > 1
         seen.append(last.case)
     assert seen == ["turn_a_to_b", "turn_b_to_a", "turn_b_to_a", "turn_b_to_a"]
 
 
-def test_a_newer_policy_waits_for_the_end_of_the_episode(run: Run) -> None:
+def test_a_newer_policy_waits_for_the_end_of_the_episode(run: TrainingRun) -> None:
     save_policy(always(FORWARD, 100), run.newest_policy)
     demonstration = Demonstration(run)
     demonstration.begin()
@@ -67,10 +76,10 @@ def test_a_newer_policy_waits_for_the_end_of_the_episode(run: Run) -> None:
     demonstration.begin()
     assert demonstration.moment().trained == 2000
     end(demonstration)
-    assert demonstration.moment().outcome is Outcome.TIMED_OUT
+    assert demonstration.moment().outcome is EpisodeOutcome.TIMED_OUT
 
 
-def test_once_all_is_over_the_best_one_drives(run: Run) -> None:
+def test_once_all_is_over_the_best_one_drives(run: TrainingRun) -> None:
     save_policy(always(LEFT, 2000), run.newest_policy)
     demonstration = Demonstration(run)
     demonstration.begin(kept=True)
@@ -81,7 +90,7 @@ def test_once_all_is_over_the_best_one_drives(run: Run) -> None:
     assert demonstration.moment().trained == 100
 
 
-def test_a_damaged_policy_says_so(run: Run) -> None:
+def test_a_damaged_policy_says_so(run: TrainingRun) -> None:
     run.newest_policy.write_bytes(b"half")
     with pytest.raises(PolicyError, match=r"newest\.npz"):
         Demonstration(run).begin()

@@ -8,30 +8,43 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.episode_stats import Outcome
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.environment.tasks import Start, UnknownTask
-from kit.learning.policies.evaluation import Examiner, seed_for
-from kit.learning.policies.paths import drive, scene_of
-from kit.learning.policies.policies import Chance, Layer, Network, Policy, PolicyError, choices_of
-from kit.learning.policies.policy_node import node_source
-from kit.learning.training.crosstable import ALL, Column, crosstable, groups_of, rows_of
+from kit.learning.environment.episode_stats import EpisodeOutcome
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import StartVariation, UnknownTask
+from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.paths import build_paths_scene, record_paths
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyError,
+    PolicyNetwork,
+    action_counts,
+)
+from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.training.crosstable import (
+    ALL_CASES,
+    GroupResult,
+    case_groups,
+    format_crosstable,
+    train_crosstable,
+)
 from kit.learning.training.runs import RunConfig, RunError
-from kit.learning.training.student_reward import RewardFileError, StudentReward, parameters_of
+from kit.learning.training.student_reward import RewardFileError, StudentReward, reward_parameters
 
-STRAIGHT = TaskChoice("hallway", ("straight", "center_door"))
-AHEAD_ONLY = replace(STRAIGHT.resolve(), start=Start(shifted=False))
+STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
+AHEAD_ONLY = replace(STRAIGHT.resolve(), start=StartVariation(shifted=False))
 
 
-def always(choice: TaskChoice, action: int) -> Policy:
+def always(choice: TaskSpec, action: int) -> Policy:
     """One that does the same whatever it sees."""
     task = choice.resolve()
-    choices = choices_of(task.actions.space(task.robots))
+    choices = action_counts(task.actions.space(task.robots))
     bias = np.zeros(sum(choices), dtype=np.float32)
     for first in np.cumsum([0, *choices[:-1]]):
         bias[first + action] = 9.0
-    layer = Layer(np.zeros((task.observation.size * task.robots, sum(choices)), np.float32), bias)
-    return Policy(Network((layer,), "tanh"), choices, Chance("softmax"), choice, 0)
+    layer = LinearLayer(np.zeros((task.observation.size * task.robots, sum(choices)), np.float32), bias)
+    return Policy(PolicyNetwork((layer,), "tanh"), choices, ActionSampling("softmax"), choice, 0)
 
 
 FORWARD = always(STRAIGHT, 1)
@@ -40,7 +53,7 @@ STOP = always(STRAIGHT, 0)
 
 
 def test_counts_what_happened_case_by_case() -> None:
-    examiner = Examiner(AHEAD_ONLY)
+    examiner = Evaluator(AHEAD_ONLY)
     ahead, back, stop = (examiner.test(policy, 30, 1) for policy in (FORWARD, BACK, STOP))
     assert [case.outcomes for case in ahead.cases] == [(30, 0, 0), (30, 0, 0)]
     assert [case.outcomes for case in back.cases] == [(0, 30, 0), (0, 30, 0)]
@@ -52,33 +65,37 @@ def test_counts_what_happened_case_by_case() -> None:
 
 
 def test_a_group_is_the_mean_of_its_cases() -> None:
-    choice = TaskChoice("hallway", ("doors", "straight"))
-    task = replace(choice.resolve(), start=Start(shifted=False))
-    result = Examiner(task).test(always(choice, 1), 10, 1)
+    choice = TaskSpec("hallway", ("doors", "straight"))
+    task = replace(choice.resolve(), start=StartVariation(shifted=False))
+    result = Evaluator(task).test(always(choice, 1), 10, 1)
     assert result.groups() == {"doors": pytest.approx(1 / 3)}
     assert result.worst.case in ("left_door", "right_door")
 
 
 def test_the_same_seed_tests_the_same_and_another_does_not() -> None:
-    examiner = Examiner(STRAIGHT.resolve())
+    examiner = Evaluator(STRAIGHT.resolve())
     results = [examiner.test(FORWARD, 60, seed, greedy=False) for seed in (1, 1, 2)]
     assert results[0] == results[1] != results[2]
 
 
 def test_many_episodes_are_shared_out_evenly() -> None:
-    result = Examiner(AHEAD_ONLY).test(BACK, 1300, 1)
+    result = Evaluator(AHEAD_ONLY).test(BACK, 1300, 1)
     assert {case.episodes for case in result.cases} == {1300 + (-1300 % 3)}
 
 
 def test_uses_of_a_seed_are_apart() -> None:
-    seeds = {seed_for(seed, use, k) for seed in range(20) for use in ("test", "training") for k in range(20)}
+    seeds = {
+        derive_seed(seed, use, k) for seed in range(20) for use in ("test", "training") for k in range(20)
+    }
     assert len(seeds) == 800
     assert all(0 <= seed < 2**32 for seed in seeds)
 
 
 def test_two_robots_are_judged_side_by_side() -> None:
-    choice = TaskChoice("wheelchairs", ("pair_straight",))
-    result = Examiner(replace(choice.resolve(), start=Start(gap=0.3))).test(always(choice, 1), 20, 1)
+    choice = TaskSpec("wheelchairs", ("pair_straight",))
+    result = Evaluator(replace(choice.resolve(), start=StartVariation(gap=0.3))).test(
+        always(choice, 1), 20, 1
+    )
     (case,) = result.cases
     assert case.reached == 20
     assert case.adjacency > 0.8
@@ -87,7 +104,7 @@ def test_two_robots_are_judged_side_by_side() -> None:
 
 
 def test_a_result_is_told_with_its_worst_case() -> None:
-    result = Examiner(AHEAD_ONLY).test(STOP, 10, 1)
+    result = Evaluator(AHEAD_ONLY).test(STOP, 10, 1)
     json.dumps(result.as_dict(), allow_nan=False)
     text = "\n".join(result.rows())
     assert "0.000 to 0.278" in text
@@ -97,70 +114,78 @@ def test_a_result_is_told_with_its_worst_case() -> None:
 
 def test_a_policy_for_something_else_is_refused() -> None:
     with pytest.raises(PolicyError, match="turn gives 9"):
-        Examiner(TaskChoice("turn").resolve()).test(FORWARD, 1, 1)
+        Evaluator(TaskSpec("turn").resolve()).test(FORWARD, 1, 1)
 
 
 def test_ways_lead_from_start_to_end() -> None:
-    ways = drive(FORWARD, AHEAD_ONLY, 3, 5)
+    ways = record_paths(FORWARD, AHEAD_ONLY, 3, 5)
     assert [way.case for way in ways] == ["straight"] * 3 + ["center_door"] * 3
     for way in ways:
-        assert way.outcome is Outcome.REACHED
+        assert way.outcome is EpisodeOutcome.REACHED
         steps = np.hypot(*np.diff(way.poses[:, 0, :2], axis=0).T)
         assert steps == pytest.approx(0.06, abs=1e-6)
         assert np.hypot(*(way.poses[-1, 0, :2] - way.target)) < 0.4
     card, case = AHEAD_ONLY.courses()[0]
-    scene = scene_of(card, case, ways, 0.25)
+    scene = build_paths_scene(card, case, ways, 0.25)
     assert len(scene.paths) == 3
     assert not len(scene.contacts)
-    crashed = scene_of(card, case, drive(BACK, AHEAD_ONLY, 2, 5), 0.25)
+    crashed = build_paths_scene(card, case, record_paths(BACK, AHEAD_ONLY, 2, 5), 0.25)
     assert len(crashed.contacts) == 2
     assert {path.style for path in crashed.paths} == {"dotted"}
 
 
 def test_a_node_knows_what_the_policy_knows() -> None:
-    source = node_source(always(TaskChoice("wheelchairs"), 1))
+    source = format_policy_node(always(TaskSpec("wheelchairs"), 1))
     compile(source, "node.py", "exec")
     assert "'left/', 'right/'" in source
     assert "import kit" not in source
     with pytest.raises(PolicyError, match="--tell-target"):
-        node_source(always(TaskChoice("hallway", tells_target=True), 1))
+        format_policy_node(always(TaskSpec("hallway", tells_target=True), 1))
 
 
 def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
-    from kit.controllers import find
+    from kit.controllers import find_controller
     from kit.run.headless import run_headless
     from kit.run.scenario import find_place
 
     file = tmp_path / "ahead.py"
-    file.write_text(node_source(always(TaskChoice("hallway"), 1)))
-    summary = run_headless(find_place("hall_straight"), find(str(file)), steps=1200, until_reached=True)
+    file.write_text(format_policy_node(always(TaskSpec("hallway"), 1)))
+    summary = run_headless(
+        find_place("hall_straight"), find_controller(str(file)), steps=1200, until_reached=True
+    )
     assert summary.failure is None
     assert summary.metrics.reached_s is not None
     assert summary.metrics.bumps == 0
 
 
 def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:
-    config = RunConfig(TaskChoice("turn"), "q-learning", steps=2000, keep_training=True)
+    config = RunConfig(TaskSpec("turn"), "q-learning", steps=2000, keep_training=True)
     told: list[str] = []
-    groups = ("turn_a_to_b", ALL)
-    columns = crosstable(tmp_path / "table", config, groups, episodes=5, tell=told.append)
+    groups = ("turn_a_to_b", ALL_CASES)
+    columns = train_crosstable(tmp_path / "table", config, groups, episodes=5, tell=told.append)
     assert [column.group for column in columns] == list(groups)
     assert all(set(column.shares) == {"turn_a_to_b", "turn_b_to_a"} for column in columns)
     marks = {file: file.stat().st_mtime_ns for file in tmp_path.glob("table/*/*.npz")}
-    assert crosstable(tmp_path / "table", config, groups, episodes=5) == columns
+    assert train_crosstable(tmp_path / "table", config, groups, episodes=5) == columns
     assert {file: file.stat().st_mtime_ns for file in tmp_path.glob("table/*/*.npz")} == marks
     with pytest.raises(RunError, match="other settings"):
-        crosstable(tmp_path / "table", replace(config, seed=9), groups, episodes=5)
+        train_crosstable(tmp_path / "table", replace(config, seed=9), groups, episodes=5)
     with pytest.raises(UnknownTask, match="stairs"):
-        crosstable(tmp_path / "other", config, ("stairs",))
+        train_crosstable(tmp_path / "other", config, ("stairs",))
 
 
 def test_the_table_stands_beside_the_dissertation_s() -> None:
-    assert groups_of(RunConfig(TaskChoice("hallway"))) == ("doors", "obstacles", "90_turns", "180_turns", ALL)
-    column = Column("doors", 1000, 5.0, {"straight": 0.99, "left_door": 0.75})
+    assert case_groups(RunConfig(TaskSpec("hallway"))) == (
+        "doors",
+        "obstacles",
+        "90_turns",
+        "180_turns",
+        ALL_CASES,
+    )
+    column = GroupResult("doors", 1000, 5.0, {"straight": 0.99, "left_door": 0.75})
     assert column.mean == pytest.approx(0.87)
     assert column.spread == pytest.approx(0.1697, abs=1e-4)
-    rows = rows_of([column])
+    rows = format_crosstable([column])
     assert rows[0].split() == ["tested", "on", "doors"]
     assert rows[-1].split() == ["dissertation", "0.797"]
 
@@ -183,23 +208,23 @@ def test_a_reward_that_cannot_be_called_is_told_before_it_runs(
     if source is not None:
         file.write_text(source)
     with pytest.raises(RewardFileError, match=said):
-        parameters_of(file)
+        reward_parameters(file)
 
 
 @pytest.mark.parametrize("task", ["turn", "wheelchairs"])
 def test_a_reward_is_told_the_facts_of_each_world(tmp_path: Path, task: str) -> None:
     from kit.learning.environment.batch import BatchEnv
-    from kit.learning.training.student_reward import FACTS
+    from kit.learning.environment.transition import TRANSITION_FIELDS
 
     file = tmp_path / "mine.py"
     file.write_text(
-        f"def reward({', '.join(FACTS)}):\n"
+        f"def reward({', '.join(TRANSITION_FIELDS)}):\n"
         "    first = distance[0] if isinstance(distance, list) else distance\n"
         "    rays = ranges[0] if isinstance(ranges[0], list) else ranges\n"
         "    assert len(rays) == 91 and len(target) == 2 and isinstance(collided, bool)\n"
         "    return 1000 * step + first + max_steps\n"
     )
-    resolved = TaskChoice(task).resolve()
+    resolved = TaskSpec(task).resolve()
     batch = BatchEnv(resolved, 6, 1)
     batch.reset()
     step = batch.step(np.zeros((6, 2) if task == "wheelchairs" else 6, dtype=np.int64))

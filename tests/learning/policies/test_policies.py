@@ -7,42 +7,44 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.environment.tasks import UnknownTask, find_task
 from kit.learning.policies.policies import (
-    Chance,
-    Layer,
-    Lstm,
-    Network,
+    ActionSampling,
+    ActionValueTable,
+    LinearLayer,
+    LstmLayer,
     Policy,
     PolicyError,
-    Table,
+    PolicyNetwork,
     load_policy,
+    policy_bytes,
     save_policy,
-    to_bytes,
 )
 from kit.learning.training.algorithms import ALGORITHMS, Algorithm
 from kit.learning.training.presets import find_preset
-from kit.learning.training.training import fitted, make_learner
+from kit.learning.training.training import fit_task_spec, make_learner
 
 
-def layer(rng: np.random.Generator, inputs: int, outputs: int) -> Layer:
+def layer(rng: np.random.Generator, inputs: int, outputs: int) -> LinearLayer:
     weights, bias = rng.normal(size=(inputs, outputs)), rng.normal(size=outputs)
-    return Layer(weights.astype(np.float32), bias.astype(np.float32))
+    return LinearLayer(weights.astype(np.float32), bias.astype(np.float32))
 
 
 def made(choices: tuple[int, ...] = (3,), *, recurrent: bool = False, seed: int = 0) -> Policy:
     """A policy that sees nine numbers."""
     rng = np.random.default_rng(seed)
-    lstm = Lstm(layer(rng, 9, 20), layer(rng, 5, 20)) if recurrent else None
+    lstm = LstmLayer(layer(rng, 9, 20), layer(rng, 5, 20)) if recurrent else None
     layers = (layer(rng, 5 if recurrent else 9, 8), layer(rng, 8, sum(choices)))
-    return Policy(Network(layers, "tanh", lstm), choices, Chance("softmax"), TaskChoice("turn"), 1234)
+    return Policy(
+        PolicyNetwork(layers, "tanh", lstm), choices, ActionSampling("softmax"), TaskSpec("turn"), 1234
+    )
 
 
 def table() -> Policy:
     values = np.arange(27 * 3, dtype=np.float32).reshape(27, 3) % 7
-    brain = Table(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
-    return Policy(brain, (3,), Chance("epsilon", 0.5), TaskChoice("turn"), 9)
+    brain = ActionValueTable(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
+    return Policy(brain, (3,), ActionSampling("epsilon", 0.5), TaskSpec("turn"), 9)
 
 
 POLICIES = {"network": made(), "two heads": made((4, 4)), "memory": made(recurrent=True), "table": table()}
@@ -53,7 +55,7 @@ SEEN = np.random.default_rng(1).random((50, 9), dtype=np.float32)
 def test_comes_back_from_its_file_as_it_was(policy: Policy, tmp_path: Path) -> None:
     save_policy(policy, tmp_path / "p.npz")
     back = load_policy(tmp_path / "p.npz")
-    assert to_bytes(back) == to_bytes(policy)
+    assert policy_bytes(back) == policy_bytes(policy)
     assert (back.choices, back.chance, back.trained_on, back.steps) == (
         *(policy.choices, policy.chance, policy.trained_on),
         policy.steps,
@@ -66,7 +68,7 @@ def test_comes_back_from_its_file_as_it_was(policy: Policy, tmp_path: Path) -> N
 @pytest.mark.parametrize("keep", [0, 10, 200, 900])
 def test_half_a_file_is_refused(keep: int, tmp_path: Path) -> None:
     file = tmp_path / "p.npz"
-    file.write_bytes(to_bytes(made())[:keep])
+    file.write_bytes(policy_bytes(made())[:keep])
     with pytest.raises(PolicyError, match=r"p\.npz"):
         load_policy(file)
 
@@ -104,11 +106,11 @@ def test_memory_is_cleared_where_an_episode_begins() -> None:
 
 def test_softmax_draws_in_proportion() -> None:
     bias = np.log(np.array([0.5, 0.3, 0.2], dtype=np.float32))
-    brain = Network((Layer(np.zeros((9, 3), np.float32), bias),), "tanh")
+    brain = PolicyNetwork((LinearLayer(np.zeros((9, 3), np.float32), bias),), "tanh")
     policy = replace(made(), brain=brain)
     drawn = policy.player(20_000, np.random.default_rng(0)).act(np.zeros((20_000, 9)))
     assert np.bincount(drawn) / 20_000 == pytest.approx([0.5, 0.3, 0.2], abs=0.02)
-    cold = replace(policy, chance=Chance("softmax", 0.01)).player(1000, np.random.default_rng(0))
+    cold = replace(policy, chance=ActionSampling("softmax", 0.01)).player(1000, np.random.default_rng(0))
     assert not cold.act(np.zeros((1000, 9))).any()
 
 
@@ -128,16 +130,16 @@ def test_a_policy_that_does_not_fit_says_what_it_was_made_for() -> None:
 
 
 def test_a_choice_goes_into_a_file_and_back() -> None:
-    choice = TaskChoice("hallway", ("doors",), measured_to="axle", tells_target=True, scale=0.5)
-    assert TaskChoice.from_dict(choice.as_dict()) == choice
+    choice = TaskSpec("hallway", ("doors",), measured_to="axle", tells_target=True, scale=0.5)
+    assert TaskSpec.from_dict(choice.as_dict()) == choice
     task = choice.resolve()
     assert (task.measured_to, task.observation.target, task.reward.scale) == ("axle", True, 0.5)
     assert len(task.courses()) == 3
     for wrong in (None, {}, {"task": "turn", "colour": 1}):
         with pytest.raises(ValueError, match="choice"):
-            TaskChoice.from_dict(wrong)
+            TaskSpec.from_dict(wrong)
     with pytest.raises(UnknownTask, match="algorithm-1"):
-        TaskChoice("turn", reward="algorithm1").resolve()
+        TaskSpec("turn", reward="algorithm1").resolve()
 
 
 NEURAL = [row for row in ALGORITHMS.values() if row.neural]
@@ -146,7 +148,7 @@ NEURAL = [row for row in ALGORITHMS.values() if row.neural]
 @pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
 @pytest.mark.parametrize("algorithm", NEURAL, ids=lambda row: row.name)
 def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
-    choice = fitted(TaskChoice("wheelchairs"), algorithm)
+    choice = fit_task_spec(TaskSpec("wheelchairs"), algorithm)
     task = choice.resolve()
     preset = replace(find_preset("kit", algorithm, "wheelchairs"), worlds=225 if algorithm.several else 2)
     if algorithm.name == "trpo":

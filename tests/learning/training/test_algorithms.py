@@ -7,46 +7,48 @@ from importlib.util import find_spec
 
 import pytest
 
-from kit.learning.environment.actions import THREE
-from kit.learning.environment.episode_stats import Episode
-from kit.learning.environment.observations import NINE
+from kit.learning.environment.actions import THREE_MOVES
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.observations import NINE_NUMBERS
 from kit.learning.environment.rewards import PROGRESS
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.environment.tasks import TASKS, Start, find_task
-from kit.learning.policies.evaluation import Examiner
-from kit.learning.policies.policies import Table
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.environment.tasks import TASKS, StartVariation, find_task
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.policies import ActionValueTable
 from kit.learning.training.algorithms import ALGORITHMS, Algorithm, UnknownAlgorithm, find_algorithm
 from kit.learning.training.presets import (
     PRESETS,
-    Falling,
+    ARSSettings,
+    LinearSchedule,
+    OnPolicyParams,
     Preset,
-    Replay,
-    Rollouts,
-    Search,
-    Tabular,
+    ReplayParams,
+    TabularParams,
     find_preset,
 )
-from kit.learning.training.stopping_rules import TrainUntil
+from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import make_learner
 
 STRAIGHT_ON = replace(
     find_task("hallway").on("straight"),
     name="straight-on",
-    start=Start(shifted=False),
-    actions=THREE,
-    observation=NINE,
+    start=StartVariation(shifted=False),
+    actions=THREE_MOVES,
+    observation=NINE_NUMBERS,
     reward=PROGRESS,
     max_steps=60,
 )
 """Ahead is right at every step, and pays at once."""
 
-_RATE = Falling(3e-3, 3e-3)
-_UNTIL = TrainUntil(every=1000)
-_REPLAY = Replay(learning_starts=300, train_freq=1, gradient_steps=1, target_update_interval=100, gamma=0.9)
-_PPO = Rollouts(n_steps=32, batch_size=256, n_epochs=6)
-_ANY = Preset(Rollouts(n_steps=32), _UNTIL, 6_000, worlds=16, learning_rate=_RATE)
+_RATE = LinearSchedule(3e-3, 3e-3)
+_UNTIL = TrainUntilGoal(every=1000)
+_REPLAY = ReplayParams(
+    learning_starts=300, train_freq=1, gradient_steps=1, target_update_interval=100, gamma=0.9
+)
+_PPO = OnPolicyParams(n_steps=32, batch_size=256, n_epochs=6)
+_ANY = Preset(OnPolicyParams(n_steps=32), _UNTIL, 6_000, worlds=16, learning_rate=_RATE)
 QUICK = {
-    "a2c": replace(_ANY, settings=Rollouts(n_steps=8)),
+    "a2c": replace(_ANY, settings=OnPolicyParams(n_steps=8)),
     "trpo": _ANY,
     "ppo": replace(_ANY, settings=_PPO),
     "maskable-ppo": replace(_ANY, settings=_PPO),
@@ -55,12 +57,12 @@ QUICK = {
     "qrdqn": replace(_ANY, settings=_REPLAY, layers=(16,)),
     "boltzmann-dqn": replace(_ANY, settings=replace(_REPLAY, temperature=0.1)),
     "ars": Preset(
-        Search(n_delta=4, n_top=2, n_eval_episodes=4),
+        ARSSettings(n_delta=4, n_top=2, n_eval_episodes=4),
         *(_UNTIL, 60_000, 4),
-        learning_rate=Falling(0.05, 0.05),
+        learning_rate=LinearSchedule(0.05, 0.05),
     ),
-    "q-learning": Preset(Tabular(gamma=0.9), _UNTIL, 20_000, worlds=8),
-    "sarsa": Preset(Tabular(gamma=0.9), _UNTIL, 20_000, worlds=8),
+    "q-learning": Preset(TabularParams(gamma=0.9), _UNTIL, 20_000, worlds=8),
+    "sarsa": Preset(TabularParams(gamma=0.9), _UNTIL, 20_000, worlds=8),
 }
 needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
 
@@ -70,12 +72,12 @@ class Onlooker:
 
     def __init__(self) -> None:
         self.stops = 0
-        self.episodes: list[Episode] = []
+        self.episodes: list[EpisodeStats] = []
 
     def between(self) -> None:
         self.stops += 1
 
-    def saw(self, episode: Episode) -> None:
+    def saw(self, episode: EpisodeStats) -> None:
         self.episodes.append(episode)
 
 
@@ -87,9 +89,9 @@ ROWS = [
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
     preset = QUICK[algorithm.name]
-    choice = TaskChoice("hallway", ("straight",))
+    choice = TaskSpec("hallway", ("straight",))
     learner, onlooker = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3), Onlooker()
-    examiner = Examiner(STRAIGHT_ON)
+    examiner = Evaluator(STRAIGHT_ON)
     before = examiner.test(learner.policy(), 20, 1).mean
     learner.learn(preset.steps, onlooker)
     assert examiner.test(learner.policy(), 20, 1).mean == 1.0 > before or before == 1.0
@@ -101,7 +103,7 @@ def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
-    choice = TaskChoice("hallway", ("straight",))
+    choice = TaskSpec("hallway", ("straight",))
     first = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3)
     first.learn(600, Onlooker())
     parts = first.save()
@@ -109,8 +111,8 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     second.load(parts)
     assert second.steps == first.steps
     one, other = (learner.policy() for learner in (first, second))
-    if not isinstance(one.brain, Table):
-        assert not isinstance(other.brain, Table)
+    if not isinstance(one.brain, ActionValueTable):
+        assert not isinstance(other.brain, ActionValueTable)
         assert [layer.weights.tolist() for layer in one.brain.layers] == [
             layer.weights.tolist() for layer in other.brain.layers
         ]
@@ -124,8 +126,8 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
 @pytest.mark.parametrize("algorithm", ROWS)
 def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
-    learner = make_learner(algorithm, preset, TaskChoice("hallway"), STRAIGHT_ON, seed=3)
-    examiner = Examiner(STRAIGHT_ON)
+    learner = make_learner(algorithm, preset, TaskSpec("hallway"), STRAIGHT_ON, seed=3)
+    examiner = Evaluator(STRAIGHT_ON)
     known, before = learner.remember(), examiner.test(learner.policy(), 10, 1)
     learner.learn(1200, Onlooker())
     learner.recall(known)

@@ -8,30 +8,39 @@ from dataclasses import replace
 
 import pytest
 
-from kit.learning.environment.task_spec import TaskChoice
-from kit.learning.training.events import Ended, Event, Examined, Noted, Progress, Started
-from kit.learning.training.run_status import RECENT, Logbook, Plan, Standing, plan_of
+from kit.learning.environment.task_spec import TaskSpec
+from kit.learning.training.events import (
+    Evaluated,
+    TrainingEnded,
+    TrainingEvent,
+    TrainingNote,
+    TrainingProgress,
+    TrainingStarted,
+)
+from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker, plan_of_run
 from kit.learning.training.runs import RunConfig
 
 A, B = "turn_a_to_b", "turn_b_to_a"
-PLAN = Plan("turn", (A, B), 10_000, 0.9, True)
-BATCH = Progress(1000, 1.0, 1200.0, {A: [3, 1, 0], B: [0, 0, 4]}, 2.0, 30.0, {"reached": 4.0, "late": -2.0})
-TEST = Examined(1000, 1.1, {A: [9, 1, 0], B: [5, 0, 5]}, True)
+PLAN = RunPlan("turn", (A, B), 10_000, 0.9, True)
+BATCH = TrainingProgress(
+    1000, 1.0, 1200.0, {A: [3, 1, 0], B: [0, 0, 4]}, 2.0, 30.0, {"reached": 4.0, "late": -2.0}
+)
+TEST = Evaluated(1000, 1.1, {A: [9, 1, 0], B: [5, 0, 5]}, True)
 
 
-def stands(*events: Event, alive: bool = True) -> Standing:
-    logbook = Logbook(PLAN)
+def stands(*events: TrainingEvent, alive: bool = True) -> RunStatus:
+    logbook = RunTracker(PLAN)
     for event in events:
         logbook.add(event)
     return logbook.standing(alive=alive, order="go")
 
 
-def batch(steps: int, **changes: object) -> Progress:
+def batch(steps: int, **changes: object) -> TrainingProgress:
     return replace(BATCH, steps=steps, seconds=steps / 1000, **changes)  # type: ignore[arg-type]  # by name
 
 
 def test_curves_and_cases() -> None:
-    found = stands(Started(0.0, 0), BATCH, TEST, batch(2000))
+    found = stands(TrainingStarted(0.0, 0), BATCH, TEST, batch(2000))
     assert found.batches.steps.tolist() == [1000, 2000]
     assert found.batches.outcomes.tolist() == [[3, 1, 4]] * 2
     assert found.looks.mean.tolist() == pytest.approx([0.7])
@@ -49,7 +58,7 @@ def test_recent_figures_are_weighed_by_episodes_and_forget() -> None:
     found = stands(BATCH, batch(2000, episodes=many, reward=8.0, terms={"reached": 8.0}))
     assert found.reward == pytest.approx((8 * 2.0 + 40 * 8.0) / 48)
     assert found.terms == pytest.approx({"reached": (8 * 4.0 + 40 * 8.0) / 48, "late": -2.0})
-    later = stands(BATCH, *(batch(2000 + 1000 * k, episodes=many, reward=1.0) for k in range(RECENT)))
+    later = stands(BATCH, *(batch(2000 + 1000 * k, episodes=many, reward=1.0) for k in range(RECENT_REPORTS)))
     assert later.reward == 1.0
 
 
@@ -70,7 +79,13 @@ def test_time_left_counts_tests_in_and_ends_with_the_training() -> None:
 
 def test_what_a_killed_learner_had_done_since_its_checkpoint_is_gone() -> None:
     found = stands(
-        BATCH, TEST, batch(2000), batch(3000), replace(TEST, steps=3000), Started(1.0, 2000), batch(2500)
+        BATCH,
+        TEST,
+        batch(2000),
+        batch(3000),
+        replace(TEST, steps=3000),
+        TrainingStarted(1.0, 2000),
+        batch(2500),
     )
     assert found.batches.steps.tolist() == [1000, 2000, 2500]
     assert found.looks.steps.tolist() == [1000]
@@ -79,8 +94,8 @@ def test_what_a_killed_learner_had_done_since_its_checkpoint_is_gone() -> None:
 def test_the_newest_word_is_told() -> None:
     assert stands(BATCH).note == ""
     assert "worst 0.500" in stands(TEST, batch(2000)).note
-    assert stands(TEST, Noted("on we go")).note == "on we go"
-    ended = stands(BATCH, Ended("stopped", 1000, 1.0, "as asked"), alive=False)
+    assert stands(TEST, TrainingNote("on we go")).note == "on we go"
+    ended = stands(BATCH, TrainingEnded("stopped", 1000, 1.0, "as asked"), alive=False)
     assert (ended.note, ended.summary.state) == ("stopped: as asked", "stopped")
 
 
@@ -92,11 +107,11 @@ def test_nothing_has_happened_yet() -> None:
 
 
 def test_the_plan_of_a_run() -> None:
-    config = RunConfig(TaskChoice("turn"), seed=3, steps=5000, goal=0.5)
-    plan = plan_of(config)
+    config = RunConfig(TaskSpec("turn"), seed=3, steps=5000, goal=0.5)
+    plan = plan_of_run(config)
     assert (plan.steps, plan.goal, plan.cases) == (5000, 0.5, (A, B))
     assert "seed 3" in plan.title
-    assert plan_of(replace(config, keep_training=True)).goal is None
+    assert plan_of_run(replace(config, keep_training=True)).goal is None
 
 
 def test_a_face_that_follows_a_run_needs_no_torch() -> None:

@@ -9,46 +9,54 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.training.events import (
-    Ended,
+    Evaluated,
     EventReader,
     EventWriter,
-    Examined,
-    Noted,
-    Progress,
-    Started,
-    from_line,
-    to_line,
+    TrainingEnded,
+    TrainingNote,
+    TrainingProgress,
+    TrainingStarted,
+    decode_event,
+    encode_event,
 )
-from kit.learning.training.runs import Run, RunConfig, RunError, all_runs, find_run, new_run, summarise
+from kit.learning.training.runs import (
+    RunConfig,
+    RunError,
+    TrainingRun,
+    create_run,
+    find_run,
+    list_runs,
+    summarise_events,
+)
 
-CONFIG = RunConfig(TaskChoice("turn"), "q-learning", seed=3)
+CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)
 EVENTS = (
-    Started(1.5, 0, {"numpy": "2"}),
-    Progress(100, 0.5, 200.0, {"a": [1, 2, 3]}, -1.0, 20.0, {"reached": 2.0}, None),
-    Examined(100, 0.6, {"a": [9, 1, 0]}, True, 3.0),
-    Examined(200, 0.9, {"a": [5, 5, 0]}, False, 3.0, "why"),
-    Noted("so"),
-    Ended("finished", 200, 1.0, "sure"),
+    TrainingStarted(1.5, 0, {"numpy": "2"}),
+    TrainingProgress(100, 0.5, 200.0, {"a": [1, 2, 3]}, -1.0, 20.0, {"reached": 2.0}, None),
+    Evaluated(100, 0.6, {"a": [9, 1, 0]}, True, 3.0),
+    Evaluated(200, 0.9, {"a": [5, 5, 0]}, False, 3.0, "why"),
+    TrainingNote("so"),
+    TrainingEnded("finished", 200, 1.0, "sure"),
 )
 
 
 @pytest.mark.parametrize("event", EVENTS, ids=lambda event: type(event).__name__)
 def test_events_come_back_from_their_lines(event: object) -> None:
-    line = to_line(event)  # type: ignore[arg-type]  # one of the kinds
+    line = encode_event(event)  # type: ignore[arg-type]  # one of the kinds
     assert line.endswith(b"\n")
     assert line.count(b"\n") == 1
-    assert from_line(line) == event
+    assert decode_event(line) == event
     for wrong in (line[:-5], b"[]", b"null", b'{"event": "later"}', b'{"event": "noted"}', b"\xff"):
-        assert from_line(wrong) is None
+        assert decode_event(wrong) is None
 
 
 def test_a_reader_gets_each_event_once_and_no_half_lines(tmp_path: Path) -> None:
     file = tmp_path / "events.jsonl"
     reader = EventReader(file)
     assert list(reader.new()) == []
-    lines = b"".join(map(to_line, EVENTS))
+    lines = b"".join(map(encode_event, EVENTS))
     found = []
     for end in range(0, len(lines) + 1, 7):
         file.write_bytes(lines[:end])
@@ -61,7 +69,7 @@ def test_a_reader_gets_each_event_once_and_no_half_lines(tmp_path: Path) -> None
 
 def test_a_writer_cuts_off_what_a_killed_one_left(tmp_path: Path) -> None:
     file = tmp_path / "events.jsonl"
-    file.write_bytes(to_line(EVENTS[0]) + to_line(EVENTS[1])[:-9])
+    file.write_bytes(encode_event(EVENTS[0]) + encode_event(EVENTS[1])[:-9])
     with EventWriter(file) as writer:
         writer.write(EVENTS[2])
     assert tuple(EventReader(file).new()) == (EVENTS[0], EVENTS[2])
@@ -95,51 +103,51 @@ def _write_too_much(file: Path) -> None:
 
 def test_where_a_run_stands_follows_from_its_events() -> None:
     def state(count: int, alive: bool = False, order: str = "go") -> str:
-        return summarise(EVENTS[:count], alive=alive, order=order).state  # type: ignore[arg-type]  # an Order
+        return summarise_events(EVENTS[:count], alive=alive, order=order).state  # type: ignore[arg-type]  # an Order
 
     assert state(0) == "new"
     assert state(2) == "interrupted"
     assert state(2, alive=True) == "running"
     assert state(2, alive=True, order="pause") == "paused"
     assert state(6) == "finished"
-    summary = summarise(EVENTS, alive=False, order="go")
+    summary = summarise_events(EVENTS, alive=False, order="go")
     assert (summary.best, summary.tested, summary.steps) == (EVENTS[2], EVENTS[3], 200)
-    assert summarise((*EVENTS, EVENTS[0]), alive=False, order="go").state == "interrupted"
+    assert summarise_events((*EVENTS, EVENTS[0]), alive=False, order="go").state == "interrupted"
 
 
 def test_a_run_is_found_by_name_and_the_last_without(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="kit train turn"):
         find_run(tmp_path)
-    first, second = new_run(tmp_path, CONFIG), new_run(tmp_path, CONFIG)
+    first, second = create_run(tmp_path, CONFIG), create_run(tmp_path, CONFIG)
     assert first.name != second.name
-    assert {run.name for run in all_runs(tmp_path)} == {first.name, second.name}
+    assert {run.name for run in list_runs(tmp_path)} == {first.name, second.name}
     assert find_run(tmp_path, first.name) == first
     assert first.config() == CONFIG
     with pytest.raises(RunError, match=first.name):
         find_run(tmp_path, first.name[:-1])
     with pytest.raises(RunError, match=f"--resume {first.name}"):
-        new_run(tmp_path, CONFIG, first.name)
+        create_run(tmp_path, CONFIG, first.name)
 
 
 @pytest.mark.parametrize("name", ["", "../x", "a b", "-x", ".hidden", "x" * 200])
 def test_a_name_that_is_none_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(RunError, match="letters"):
-        new_run(tmp_path, CONFIG, name)
+        create_run(tmp_path, CONFIG, name)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_damaged_configuration_is_named(tmp_path: Path) -> None:
-    run = new_run(tmp_path, CONFIG)
+    run = create_run(tmp_path, CONFIG)
     for text in ("{", "[]", '{"choice": {"task": "turn"}, "more": 1}', "null"):
         (run.folder / "config.json").write_text(text)
         with pytest.raises(RunError, match=r"config\.json"):
             run.config()
     with pytest.raises(RunError, match="no run"):
-        Run(tmp_path / "none").config()
+        TrainingRun(tmp_path / "none").config()
 
 
 def test_orders_arrive_and_nonsense_does_not(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     assert run.asked() == "go"
     run.ask("pause")
     assert run.asked() == "pause"
@@ -148,7 +156,7 @@ def test_orders_arrive_and_nonsense_does_not(tmp_path: Path) -> None:
 
 
 def test_two_cannot_train_one_run(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     assert not run.alive
     with run.held():
         assert run.alive
@@ -158,7 +166,7 @@ def test_two_cannot_train_one_run(tmp_path: Path) -> None:
 
 
 def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     with (tmp_path / "lock").open("ab") as look:
         fcntl.flock(look, fcntl.LOCK_SH)
         threading.Timer(0.05, fcntl.flock, (look, fcntl.LOCK_UN)).start()
@@ -167,7 +175,7 @@ def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
 
 
 def test_the_older_checkpoint_stands_in_for_a_damaged_one(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     assert run.load_checkpoint() is None
     run.save_checkpoint({"a": b"1"})
     run.save_checkpoint({"a": b"2"})
@@ -184,7 +192,7 @@ def test_the_older_checkpoint_stands_in_for_a_damaged_one(tmp_path: Path) -> Non
 
 
 def test_a_kill_between_two_checkpoints_leaves_one(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     run.save_checkpoint({"a": b"1"})
     newer, older = run.checkpoints
     newer.replace(older)
@@ -192,7 +200,7 @@ def test_a_kill_between_two_checkpoints_leaves_one(tmp_path: Path) -> None:
 
 
 def test_a_flipped_bit_is_noticed(tmp_path: Path) -> None:
-    run = Run(tmp_path)
+    run = TrainingRun(tmp_path)
     run.save_checkpoint({"a": b"x" * 1000})
     data = bytearray(run.checkpoints[0].read_bytes())
     data[500] ^= 1
@@ -204,4 +212,4 @@ def test_a_flipped_bit_is_noticed(tmp_path: Path) -> None:
 
 def test_a_run_without_a_policy_says_so(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="no policy yet"):
-        Run(tmp_path).policy()
+        TrainingRun(tmp_path).policy()

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from kit.learning.training.stopping_rules import (
-    Count,
-    Counts,
-    Memory,
+    CaseCount,
+    CaseCounts,
+    StoppingMemory,
     TrainThenTest,
-    TrainUntil,
-    UntilSure,
+    TrainUntilGoal,
+    TrainUntilSure,
     accuracy,
-    worst,
+    worst_share,
 )
 
 
@@ -26,24 +26,26 @@ class Tries:
         self.cases = len(shares[0])
         self.sizes: list[int] = []
 
-    def __call__(self, episodes: int) -> Counts:
+    def __call__(self, episodes: int) -> CaseCounts:
         each = -(-episodes // self.cases)
         self.sizes.append(each)
-        return {f"case {i}": Count(round(share * each), each) for i, share in enumerate(next(self._shares))}
+        return {
+            f"case {i}": CaseCount(round(share * each), each) for i, share in enumerate(next(self._shares))
+        }
 
 
 def test_the_first_goes_on_whatever_happens_and_keeps_the_newest() -> None:
     strategy = TrainThenTest(every=10)
     for shares in ((1.0, 1.0), (0.1, 0.1)):
-        verdict = strategy.look(10, Memory(), Tries(shares))
+        verdict = strategy.look(10, StoppingMemory(), Tries(shares))
         assert verdict.keep
         assert not verdict.stop
         assert not verdict.go_back
 
 
 def test_the_second_stops_at_the_first_good_test() -> None:
-    strategy = TrainUntil(every=10, episodes=20, goal=0.8)
-    verdict = strategy.look(10, Memory(), Tries((0.7, 0.7)))
+    strategy = TrainUntilGoal(every=10, episodes=20, goal=0.8)
+    verdict = strategy.look(10, StoppingMemory(), Tries((0.7, 0.7)))
     assert not verdict.stop
     verdict = strategy.look(20, verdict.memory, Tries((1.0, 0.6)))
     assert verdict.stop
@@ -52,26 +54,26 @@ def test_the_second_stops_at_the_first_good_test() -> None:
 
 
 def test_the_second_remembers_the_best() -> None:
-    strategy = TrainUntil(every=10)
-    memory = strategy.look(10, Memory(), Tries((0.7, 0.7))).memory
+    strategy = TrainUntilGoal(every=10)
+    memory = strategy.look(10, StoppingMemory(), Tries((0.7, 0.7))).memory
     worse = strategy.look(20, memory, Tries((0.5, 0.5)))
     assert not worse.keep
     assert worse.memory.best_steps == 10
     assert strategy.look(30, worse.memory, Tries((0.7, 0.72))).keep
 
 
-SURE = UntilSure(every=10, goal=0.95, screening=40, confirming=500)
+SURE = TrainUntilSure(every=10, goal=0.95, screening=40, confirming=500)
 
 
 def test_a_pooled_accuracy_does_not_hide_a_bad_case() -> None:
     tries = Tries((1.0, 1.0, 0.5))
-    assert not SURE.look(10, Memory(), tries).stop
+    assert not SURE.look(10, StoppingMemory(), tries).stop
     assert tries.sizes == [40]
 
 
 def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
     tries = Tries((1.0, 1.0), (0.998, 0.996))
-    verdict = SURE.look(10, Memory(), tries)
+    verdict = SURE.look(10, StoppingMemory(), tries)
     assert verdict.stop
     assert verdict.keep
     assert tries.sizes == [40, 500]
@@ -79,15 +81,15 @@ def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
 
 
 def test_luck_in_the_short_test_is_not_enough() -> None:
-    verdict = SURE.look(10, Memory(), Tries((1.0, 1.0), (0.96, 0.96)))
+    verdict = SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
     assert not verdict.stop
     assert verdict.memory.confirmations == 1
 
 
 def test_trying_often_makes_it_harder() -> None:
     shares = (0.974, 0.974)
-    assert SURE.look(10, Memory(), Tries((1.0, 1.0), shares)).stop
-    assert not SURE.look(10, Memory(confirmations=50), Tries((1.0, 1.0), shares)).stop
+    assert SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), shares)).stop
+    assert not SURE.look(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
 
 
 def test_a_mediocre_policy_is_all_but_never_passed() -> None:
@@ -97,12 +99,12 @@ def test_a_mediocre_policy_is_all_but_never_passed() -> None:
     class Coin:
         cases = 2
 
-        def __call__(self, episodes: int) -> Counts:
+        def __call__(self, episodes: int) -> CaseCounts:
             each = episodes // 2
-            return {str(i): Count(int(rng.binomial(each, 0.93)), each) for i in range(2)}
+            return {str(i): CaseCount(int(rng.binomial(each, 0.93)), each) for i in range(2)}
 
-    def passes(strategy: UntilSure | TrainUntil) -> bool:
-        memory = Memory()
+    def passes(strategy: TrainUntilSure | TrainUntilGoal) -> bool:
+        memory = StoppingMemory()
         for steps in range(60):
             verdict = strategy.look(steps, memory, Coin())
             if verdict.stop:
@@ -111,17 +113,17 @@ def test_a_mediocre_policy_is_all_but_never_passed() -> None:
         return False
 
     assert sum(passes(SURE) for _ in range(50)) == 0
-    assert sum(passes(TrainUntil(every=1, episodes=20, goal=0.95)) for _ in range(50)) == 50
+    assert sum(passes(TrainUntilGoal(every=1, episodes=20, goal=0.95)) for _ in range(50)) == 50
 
 
 def test_the_longer_test_counts_more_than_the_luckier() -> None:
-    memory = SURE.look(10, Memory(), Tries((1.0, 1.0), (0.96, 0.97))).memory
+    memory = SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.97))).memory
     assert not SURE.look(20, memory, Tries((1.0, 1.0), (0.9, 0.9))).keep
     assert not replace(SURE, goal=1.1).look(20, memory, Tries((1.0, 1.0))).keep
 
 
 def test_what_was_forgotten_is_fetched_back_a_few_times() -> None:
-    memory = SURE.look(10, Memory(), Tries((0.9, 0.9))).memory
+    memory = SURE.look(10, StoppingMemory(), Tries((0.9, 0.9))).memory
     for _ in range(SURE.patience):
         verdict = SURE.look(20, memory, Tries((0.1, 0.2)))
         assert verdict.go_back
@@ -132,25 +134,25 @@ def test_what_was_forgotten_is_fetched_back_a_few_times() -> None:
 
 
 def test_a_small_setback_is_left_alone() -> None:
-    memory = SURE.look(10, Memory(), Tries((0.9, 0.9))).memory
+    memory = SURE.look(10, StoppingMemory(), Tries((0.9, 0.9))).memory
     assert not SURE.look(20, memory, Tries((0.7, 0.7))).go_back
 
 
 def test_side_by_side_decides_among_those_that_arrive() -> None:
-    def pair(share: float, adjacency: float) -> Counts:
-        return {"straight": Count(round(500 * share), 500, adjacency)}
+    def pair(share: float, adjacency: float) -> CaseCounts:
+        return {"straight": CaseCount(round(500 * share), 500, adjacency)}
 
     class Once:
         cases = 1
 
-        def __init__(self, counts: Counts) -> None:
+        def __init__(self, counts: CaseCounts) -> None:
             self._counts = counts
 
-        def __call__(self, episodes: int) -> Counts:
+        def __call__(self, episodes: int) -> CaseCounts:
             return self._counts
 
     strategy = replace(SURE, to_the_end=True, enough=0.95)
-    first = strategy.look(10, Memory(), Once(pair(1.0, 0.6)))
+    first = strategy.look(10, StoppingMemory(), Once(pair(1.0, 0.6)))
     assert not first.stop
     second = strategy.look(20, first.memory, Once(pair(0.99, 0.9)))
     assert second.keep
@@ -159,4 +161,4 @@ def test_side_by_side_decides_among_those_that_arrive() -> None:
 
 
 def test_nothing_tried_is_nothing_reached() -> None:
-    assert accuracy({}) == worst({}) == Count(0, 0).share == 0.0
+    assert accuracy({}) == worst_share({}) == CaseCount(0, 0).share == 0.0

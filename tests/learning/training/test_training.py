@@ -13,24 +13,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.episode_stats import Episode
-from kit.learning.environment.task_spec import TaskChoice
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.environment.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS
-from kit.learning.training.events import Examined, Noted, Progress, Started
-from kit.learning.training.optional_deps import LearnerMissing
+from kit.learning.training.events import Evaluated, TrainingNote, TrainingProgress, TrainingStarted
+from kit.learning.training.optional_deps import LearnExtraMissing
 from kit.learning.training.presets import KIT_PPO_HALLWAY
-from kit.learning.training.runs import Run, RunConfig, RunError, new_run
-from kit.learning.training.stopping_rules import Count, TrainThenTest, UntilSure
-from kit.learning.training.training import chosen_preset, fitted, make_learner, shares_of_practice, train
-from kit.learning.training.worker import start
+from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
+from kit.learning.training.stopping_rules import CaseCount, TrainThenTest, TrainUntilSure
+from kit.learning.training.training import fit_task_spec, make_learner, practice_shares, resolve_preset, train
+from kit.learning.training.worker import start_worker
 
-TABLE = RunConfig(TaskChoice("turn"), "q-learning", steps=20_000, keep_training=True)
+TABLE = RunConfig(TaskSpec("turn"), "q-learning", steps=20_000, keep_training=True)
 """Needs no torch; runs for about a second."""
 ENDLESS = replace(TABLE, steps=10**9)
 needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")
 
 
-def events(run: Run, kind: type) -> list[object]:
+def events(run: TrainingRun, kind: type) -> list[object]:
     return [event for event in run.events() if isinstance(event, kind)]
 
 
@@ -42,27 +42,27 @@ def until(condition: object, seconds: float = 30.0) -> None:
 
 
 def test_a_training_tells_its_story(tmp_path: Path) -> None:
-    run = new_run(tmp_path, TABLE)
+    run = create_run(tmp_path, TABLE)
     ended = train(run)
     assert ended.how == "finished"
     told = run.events()
-    assert isinstance(told[0], Started)
+    assert isinstance(told[0], TrainingStarted)
     assert told[0].versions["numpy"]
     assert told[-1] == ended
-    progress = [event for event in told if isinstance(event, Progress)]
+    progress = [event for event in told if isinstance(event, TrainingProgress)]
     assert [event.steps for event in progress] == sorted({event.steps for event in progress})
     assert progress[-1].steps == ended.steps >= 20_000
     assert sum(sum(counts) for event in progress for counts in event.episodes.values()) > 20
     ends = [event for event in progress if event.reward is not None]
     assert all(sum(event.terms.values()) == pytest.approx(event.reward, abs=1e-3) for event in ends)
-    tests = [event for event in told if isinstance(event, Examined)]
+    tests = [event for event in told if isinstance(event, Evaluated)]
     assert set(tests[-1].cases) == {"turn_a_to_b", "turn_b_to_a"}
     assert run.policy().steps == tests[-1].steps
     assert run.summary().state == "finished"
 
 
 def test_the_same_seed_learns_the_same(tmp_path: Path) -> None:
-    runs = [new_run(tmp_path, TABLE) for _ in range(2)] + [new_run(tmp_path, replace(TABLE, seed=1))]
+    runs = [create_run(tmp_path, TABLE) for _ in range(2)] + [create_run(tmp_path, replace(TABLE, seed=1))]
     for run in runs:
         train(run)
     same, again, other = (run.best_policy.read_bytes() for run in runs)
@@ -70,9 +70,9 @@ def test_the_same_seed_learns_the_same(tmp_path: Path) -> None:
 
 
 def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
-    run = new_run(tmp_path, ENDLESS)
-    process = start(run)
-    until(lambda: events(run, Progress))
+    run = create_run(tmp_path, ENDLESS)
+    process = start_worker(run)
+    until(lambda: events(run, TrainingProgress))
     run.ask("pause")
     until(lambda: run.summary().state == "paused" and run.checkpoints[0].exists())
     time.sleep(0.3)
@@ -90,33 +90,33 @@ def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("after", [0.0, 0.6])
 def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
-    run = new_run(tmp_path, replace(ENDLESS, seed=2))
-    first = start(run)
-    until(lambda: events(run, Started))
+    run = create_run(tmp_path, replace(ENDLESS, seed=2))
+    first = start_worker(run)
+    until(lambda: events(run, TrainingStarted))
     time.sleep(after)
     os.kill(first.pid, signal.SIGKILL)
     first.wait()
     assert run.summary().state == "interrupted"
-    second = start(run)
-    until(lambda: len(events(run, Started)) == 2)
-    until(lambda: isinstance(run.events()[-1], Progress))
-    assert events(run, Noted)
+    second = start_worker(run)
+    until(lambda: len(events(run, TrainingStarted)) == 2)
+    until(lambda: isinstance(run.events()[-1], TrainingProgress))
+    assert events(run, TrainingNote)
     os.kill(second.pid, signal.SIGTERM)  # what a shutdown sends: a checkpoint is left
     assert second.wait(20) == 0
     steps = run.summary().steps
-    third = start(run)
-    until(lambda: len(events(run, Started)) == 3)
-    began = events(run, Started)[-1]
-    assert isinstance(began, Started)
+    third = start_worker(run)
+    until(lambda: len(events(run, TrainingStarted)) == 3)
+    began = events(run, TrainingStarted)[-1]
+    assert isinstance(began, TrainingStarted)
     assert began.steps >= steps > 0
     run.ask("stop")
     assert third.wait(20) == 0
 
 
 def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
-    run = new_run(tmp_path, ENDLESS)
-    process = start(run)
-    until(lambda: events(run, Progress))
+    run = create_run(tmp_path, ENDLESS)
+    process = start_worker(run)
+    until(lambda: events(run, TrainingProgress))
     assert os.getsid(process.pid) == process.pid
     os.kill(process.pid, signal.SIGHUP)
     count = len(run.events())
@@ -128,7 +128,7 @@ def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
 
 
 def test_a_damaged_checkpoint_costs_a_little(tmp_path: Path) -> None:
-    run = new_run(tmp_path, TABLE)
+    run = create_run(tmp_path, TABLE)
     train(run)
     newer, older = run.checkpoints
     older.write_bytes(newer.read_bytes())
@@ -137,14 +137,14 @@ def test_a_damaged_checkpoint_costs_a_little(tmp_path: Path) -> None:
         (run.folder / "config.json").read_text().replace("20000", "25000")
     )
     train(run)
-    (note,) = events(run, Noted)
-    assert isinstance(note, Noted)
+    (note,) = events(run, TrainingNote)
+    assert isinstance(note, TrainingNote)
     assert "checkpoint.zip is damaged" in note.text
     assert run.summary().steps >= 25_000
 
 
 def test_a_full_disk_is_told_and_the_run_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = new_run(tmp_path, TABLE)
+    run = create_run(tmp_path, TABLE)
 
     def full(*args: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -172,7 +172,7 @@ BAD_REWARDS = {
 def test_a_bad_reward_ends_the_run_with_its_fault(tmp_path: Path, source: str, said: str) -> None:
     file = tmp_path / "mine.py"
     file.write_text(source)
-    run = new_run(tmp_path, replace(TABLE, reward_file=str(file)))
+    run = create_run(tmp_path, replace(TABLE, reward_file=str(file)))
     ended = train(run)
     assert ended.how == "failed"
     assert said in ended.reason
@@ -183,11 +183,11 @@ def test_a_student_s_reward_is_what_is_learned(tmp_path: Path) -> None:
     """Paid for crashing soon, an agent crashes soon."""
     file = tmp_path / "mine.py"
     file.write_text("def reward(collided):\n    return 5.0 if collided else -0.1\n")
-    run = new_run(tmp_path, replace(TABLE, reward_file=str(file), steps=30_000))
+    run = create_run(tmp_path, replace(TABLE, reward_file=str(file), steps=30_000))
     file.write_text("syntax error (the run has its own copy)")
     assert train(run).how == "finished"
-    last = events(run, Progress)[-1]
-    assert isinstance(last, Progress)
+    last = events(run, TrainingProgress)[-1]
+    assert isinstance(last, TrainingProgress)
     assert last.length is not None
     assert last.length < 40
     assert last.terms == {}
@@ -197,7 +197,7 @@ def test_a_student_s_reward_is_what_is_learned(tmp_path: Path) -> None:
 
 @needs_learner
 def test_a_network_s_run_is_whole_too(tmp_path: Path) -> None:
-    run = new_run(tmp_path, RunConfig(TaskChoice("turn"), steps=16_384))
+    run = create_run(tmp_path, RunConfig(TaskSpec("turn"), steps=16_384))
     assert train(run).how == "finished"
     assert run.policy().steps == 16_384
     if find_spec("tensorboard"):
@@ -206,46 +206,46 @@ def test_a_network_s_run_is_whole_too(tmp_path: Path) -> None:
 
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kit.learning.training.optional_deps.find_spec", lambda name: None)
-    run = new_run(tmp_path, RunConfig(TaskChoice("turn")))
-    with pytest.raises(LearnerMissing, match=r"torch.*\n.*pip install"):
+    run = create_run(tmp_path, RunConfig(TaskSpec("turn")))
+    with pytest.raises(LearnExtraMissing, match=r"torch.*\n.*pip install"):
         train(run)
-    assert train(new_run(tmp_path, replace(TABLE, steps=100))).how == "finished"
+    assert train(create_run(tmp_path, replace(TABLE, steps=100))).how == "finished"
 
 
 def test_a_configuration_changes_its_preset() -> None:
-    preset = chosen_preset(RunConfig(TaskChoice("turn"), steps=7, worlds=3, learning_rate=0.5, goal=0.6))
+    preset = resolve_preset(RunConfig(TaskSpec("turn"), steps=7, worlds=3, learning_rate=0.5, goal=0.6))
     assert (preset.steps, preset.worlds) == (7, 3)
     assert preset.learning_rate is not None
     assert preset.learning_rate.at(1.0) == preset.learning_rate.at(0.0) == 0.5
-    assert isinstance(preset.strategy, UntilSure)
+    assert isinstance(preset.strategy, TrainUntilSure)
     assert preset.strategy.goal == 0.6
-    assert isinstance(chosen_preset(TABLE).strategy, TrainThenTest)
+    assert isinstance(resolve_preset(TABLE).strategy, TrainThenTest)
 
 
 def test_a_pair_s_moves_become_one_number_where_they_must() -> None:
-    choice = TaskChoice("wheelchairs")
-    assert fitted(choice, ALGORITHMS["ppo"]) == choice
-    assert fitted(choice, ALGORITHMS["dqn"]).resolve().actions.one_number
-    assert fitted(TaskChoice("turn"), ALGORITHMS["dqn"]) == TaskChoice("turn")
+    choice = TaskSpec("wheelchairs")
+    assert fit_task_spec(choice, ALGORITHMS["ppo"]) == choice
+    assert fit_task_spec(choice, ALGORITHMS["dqn"]).resolve().actions.one_number
+    assert fit_task_spec(TaskSpec("turn"), ALGORITHMS["dqn"]) == TaskSpec("turn")
 
 
 def test_what_went_wrong_is_practised_more() -> None:
-    counts = {"easy": Count(40, 40), "hard": Count(20, 40), "slippery": Count(39, 40)}
-    easy, hard, slippery = shares_of_practice(counts, 0.5)
+    counts = {"easy": CaseCount(40, 40), "hard": CaseCount(20, 40), "slippery": CaseCount(39, 40)}
+    easy, hard, slippery = practice_shares(counts, 0.5)
     assert easy + hard + slippery == pytest.approx(1)
     assert 1 / 6 < easy < slippery < hard
-    assert shares_of_practice(counts, 0.0) == pytest.approx(np.full(3, 1 / 3))
+    assert practice_shares(counts, 0.0) == pytest.approx(np.full(3, 1 / 3))
 
 
 class Onlooker:
     def between(self) -> None: ...
 
-    def saw(self, episode: Episode) -> None: ...
+    def saw(self, episode: EpisodeStats) -> None: ...
 
 
 @needs_learner
 def test_hard_cases_get_more_of_the_worlds() -> None:
-    choice = TaskChoice("hallway", ("straight", "center_door"))
+    choice = TaskSpec("hallway", ("straight", "center_door"))
     preset = replace(KIT_PPO_HALLWAY, worlds=60)
     learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=1)
     learner.deal(np.array([0.25, 0.75]))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import allows
 from kit.school.game import leaderboard
@@ -95,7 +95,7 @@ def test_every_level_can_be_opened_one_after_the_other() -> None:
 def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
     file = tmp_path / "mine.py"
     file.write_text(FORWARD.format(speed=speed))
-    finish, recording = race(replace(FIRST, par=2.0), find(str(file)))
+    finish, recording = race(replace(FIRST, par=2.0), find_controller(str(file)))
     assert finish.reached is reached
     assert finish.failure is None
     assert recording.ticks > 0
@@ -105,7 +105,7 @@ def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
 def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
     file = tmp_path / "mine.py"
     file.write_text(source)
-    finish, _ = race(replace(FIRST, par=1.0), find(str(file)))
+    finish, _ = race(replace(FIRST, par=1.0), find_controller(str(file)))
     assert finish.foul
     assert finish.stars(10.0) == (False, False, False)
 
@@ -128,7 +128,7 @@ def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
     file = desk / "controllers" / "mine.py"
     places = [str(desk / "progress.db"), str(desk / "levels.npz")]
     file.write_text(WRITER.replace("{places!r}", repr(places)))
-    finish, _ = race(replace(FIRST, par=2.0), find(str(file)))
+    finish, _ = race(replace(FIRST, par=2.0), find_controller(str(file)))
     assert finish.failure is None
     assert finish.reached
     assert not any(Path(place).exists() for place in places)
@@ -137,7 +137,7 @@ def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
 def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("1/0\n")
-    finish, _ = race(FIRST, find(str(file)))
+    finish, _ = race(FIRST, find_controller(str(file)))
     assert finish.failure is not None
     assert not finish.reached
 

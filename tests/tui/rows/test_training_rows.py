@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from kit.learning.environment.episode_stats import Outcome
+from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import TASKS
-from kit.learning.training.events import Event, Examined, Progress
-from kit.learning.training.run_status import Logbook, Plan, Standing
+from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
+from kit.learning.training.run_status import RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
 from kit.tui.screens.training_keys import TRAINING_HELP, farewell, keys
 from kit.tui.widgets.text_rows import Row
@@ -21,26 +21,26 @@ def text(row: Row) -> str:
     return "".join(part for part, _ in row)
 
 
-def standing(*events: Event, cases: tuple[str, ...] = ("a", "b"), alive: bool = True) -> Standing:
-    logbook = Logbook(Plan("title", cases, 4_000_000, 0.9, True))
+def standing(*events: TrainingEvent, cases: tuple[str, ...] = ("a", "b"), alive: bool = True) -> RunStatus:
+    logbook = RunTracker(RunPlan("title", cases, 4_000_000, 0.9, True))
     for event in events:
         logbook.add(event)
     return logbook.standing(alive=alive, order="go")
 
 
-def full(cases: tuple[str, ...], terms: int) -> Standing:
+def full(cases: tuple[str, ...], terms: int) -> RunStatus:
     """As much of everything as there can be."""
-    batch = Progress(
+    batch = TrainingProgress(
         *(1_234_567, 4000.0, 123_456.0, {case: [7, 2, 1] for case in cases}, -1234.5, 200.0),
         {f"turning_with_room{number}": -1234.56 for number in range(terms)},
         0.5,
     )
     later = replace(batch, steps=1_300_000, seconds=5000.0)
-    return standing(batch, Examined(1, 1.0, {case: [95, 3, 2] for case in cases}, True), later, cases=cases)
+    return standing(batch, Evaluated(1, 1.0, {case: [95, 3, 2] for case in cases}, True), later, cases=cases)
 
 
 def test_outcomes_are_called_as_in_the_learning_side() -> None:
-    assert [part.name for part in training_rows.OUTCOMES] == [outcome.value for outcome in Outcome]
+    assert [part.name for part in training_rows.OUTCOMES] == [outcome.value for outcome in EpisodeOutcome]
     assert all(part.glyph.isascii() for part in training_rows.ASCII_OUTCOMES)
 
 
@@ -63,7 +63,7 @@ def test_with_much_room_all_is_on_one_page() -> None:
 
 
 def test_bars_show_what_the_counts_say() -> None:
-    batch = Progress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
+    batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
     rows = [text(row) for row in training_rows.pages(standing(batch), 34, 9)[0]]
     assert "█" * 10 + "▒" * 6 + "░" * 4 in rows[1]
     assert rows[1].split()[-2:] == ["50", "-"]
@@ -72,7 +72,7 @@ def test_bars_show_what_the_counts_say() -> None:
 
 def test_a_hundred_means_all() -> None:
     assert "99 " in text(
-        training_rows.pages(standing(Examined(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
+        training_rows.pages(standing(Evaluated(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
     )
 
 
@@ -103,7 +103,7 @@ def test_the_lines_fit_into_eighty_columns() -> None:
 
 
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:
-    batch = Progress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
+    batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
     found = standing(batch, alive=False)
     assert "p goes on" in text(training_rows.note("mine", found, 80))
     assert "interrupted" in text(training_rows.heading("mine", found, 80))

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.controllers.workspace_files import open_desk
+from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
 from kit.school.game.levels import all_levels
 from kit.school.progress import Kind, Progress
@@ -40,7 +40,7 @@ def play(scene: Scene, progress: Progress, folder: Path) -> None:
         app: App[None] = KitApp(terminal)
         async with app.run_test(size=(80, 24)) as pilot:
             assert isinstance(app, KitApp)
-            screen = LevelsScreen(app.kit_theme, progress, open_desk(folder))
+            screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder))
             await app.push_screen(screen)
             await pilot.pause()
             await scene(screen, pilot)

@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.controllers.workspace_files import open_desk
+from kit.controllers import prepare_workspace
 from kit.school.progress import FILE, Kind, Progress
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.start_keys import MENU
@@ -25,7 +25,7 @@ class House:
 
     def __init__(self, folder: Path) -> None:
         self.lessons = write_lessons(folder / "lessons", more=2)
-        self.workspace = open_desk(folder / "home")
+        self.workspace = prepare_workspace(folder / "home")
 
     def note(self, *events: tuple[Kind, str]) -> None:
         with Progress(self.workspace.folder) as progress:

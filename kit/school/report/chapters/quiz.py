@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.policies.confidence_intervals import wilson
+from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.school.quiz.answers import Outcome
 from kit.school.report.chapters.setting import SHARE, Setting, means_bars, means_table, slug, title_of
 from kit.school.report.document import (
@@ -94,7 +94,7 @@ def _by_question(setting: Setting, topic: str) -> Table:
                     group.name,
                     len(replies),
                     share,
-                    wilson(counts[0], len(replies)) if replies else None,
+                    wilson_interval(counts[0], len(replies)) if replies else None,
                     *counts[1:],
                     p,
                 )
@@ -194,7 +194,14 @@ def _bank(setting: Setting) -> Iterator[Block]:
         counts = [sum(each.outcome is outcome for each in replies) for outcome in Outcome]
         share = counts[0] / len(replies) if replies else None
         rows.append(
-            (title_of(item.topic), item.id, len(replies), share, wilson(counts[0], len(replies)), *counts[1:])
+            (
+                title_of(item.topic),
+                item.id,
+                len(replies),
+                share,
+                wilson_interval(counts[0], len(replies)),
+                *counts[1:],
+            )
         )
     if rows:
         yield Table(

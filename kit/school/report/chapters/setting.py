@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.learning.policies.confidence_intervals import Interval
+from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import Bars, Caution, Cell, Column, Style, Table
 from kit.school.report.expertise import SMALL, Division
@@ -133,10 +133,10 @@ def means_bars(
     )
 
 
-def within(interval: Interval, bounds: tuple[float, float]) -> Interval:
+def within(interval: ConfidenceInterval, bounds: tuple[float, float]) -> ConfidenceInterval:
     """The part of an interval that can be."""
     low, high = bounds
-    return Interval(
+    return ConfidenceInterval(
         max(interval.low, low) if interval.low == interval.low else interval.low,
         min(interval.high, high) if interval.high == interval.high else interval.high,
     )

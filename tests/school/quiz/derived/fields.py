@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from kit.fields import adjacency
-from kit.fields.charges import Field, LineCharge, PointCharge, TensionPoint
+from kit.fields.charges import ChargeField, LineCharge, PointCharge, TensionPoint
 from kit.school.quiz.items import Item
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -63,7 +63,7 @@ def stuck_before_a_wall(item: Item, folder: Path) -> Finding:
     same with the wall as without it."""
     target, wall = PointCharge(4, 0, 15.0), LineCharge(2, -1, 2, 1, -1.0)
     way = np.stack((np.linspace(0.0, 1.99, 2000), np.zeros(2000)), axis=1)
-    both = Field.of([target, wall]).forces(way)[:, 0]
+    both = ChargeField.of([target, wall]).forces(way)[:, 0]
     (stop,) = np.flatnonzero((both[:-1] > 0) & (both[1:] <= 0))
     pull = float(target.force(way[stop])[0])
     hidden = not np.isclose(both[stop] - wall.force(way[stop])[0], pull)
@@ -96,13 +96,15 @@ def arctangent(item: Item, folder: Path) -> Finding:
 
 
 def wrapped_difference(item: Item, folder: Path) -> Finding:
-    return nearest(item, abs(math.degrees(adjacency.wrapped(math.radians(179) - math.radians(-179)))), 1e-6)
+    return nearest(
+        item, abs(math.degrees(adjacency.wrap_angles(math.radians(179) - math.radians(-179)))), 1e-6
+    )
 
 
 def side_by_side(item: Item, folder: Path) -> Finding:
     """Near and facing the same way in both cases; abeam in one of them."""
-    behind = bool(adjacency.by_geometry((0, 0, 0), (0.4, 0, 0)))
-    abeam = bool(adjacency.by_geometry((0, 0, 0), (0, -0.4, 0)))
+    behind = bool(adjacency.is_adjacent_by_poses((0, 0, 0), (0.4, 0, 0)))
+    abeam = bool(adjacency.is_adjacent_by_poses((0, 0, 0), (0, -0.4, 0)))
     reason = "abeam counts" if abeam and not behind else "near or facing is enough"
     return Finding(
         reason,

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from kit.learning.environment.env import TaskEnv, TurnEnv
-from kit.learning.environment.rewards import ALGORITHM_3, Reward, Weight
+from kit.learning.environment.rewards import ALGORITHM_3, Reward, TermWeight
 from kit.learning.environment.tasks import TURN
 from kit.learning.environment.transition import Transition
-from kit.learning.policies.confidence_intervals import wilson
-from kit.learning.training.presets import Falling
+from kit.learning.policies.confidence_intervals import wilson_interval
+from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
 from kit.school.quiz.items import Item
 from tests.learning.worlds import sampled
@@ -123,7 +123,7 @@ def _transition(**changes: object) -> Transition:
 
 def entering_loop(item: Item, folder: Path) -> Finding:
     """What each behaviour earns in 200 steps, by the kit's own term."""
-    reward = Reward("entering", (Weight("entering", 100.0),))
+    reward = Reward("entering", (TermWeight("entering", 100.0),))
 
     def earned(inside: Sequence[bool]) -> float:
         return sum(
@@ -146,7 +146,7 @@ def reached_early(item: Item, folder: Path) -> Finding:
 
 
 def round_trip(item: Item, folder: Path) -> Finding:
-    reward = Reward("progress", (Weight("progress", 1.0),))
+    reward = Reward("progress", (TermWeight("progress", 1.0),))
     to_go = [3.0, 2.5, 2.0, 2.5, 3.0]
     earned = sum(
         float(reward(_transition(previous_to_go=np.array([before]), to_go=np.array([after]))))
@@ -188,7 +188,7 @@ def _updated(
     """The value of state 0, action 0, after one of the kit's own updates towards state 1, whose actions are worth 10
     and 4."""
     learner = kind.__new__(kind)  # without the worlds, which an update does not need
-    learner._settings = SimpleNamespace(gamma=0.9, rate=Falling(0.5, 0.5))  # type: ignore[assignment]  # all it reads
+    learner._settings = SimpleNamespace(gamma=0.9, rate=LinearSchedule(0.5, 0.5))  # type: ignore[assignment]  # all it reads
     learner._slower = 1.0
     learner._values = np.array([[2.0, 0.0], [10.0, 4.0]])
     step: Any = SimpleNamespace(
@@ -225,7 +225,7 @@ def timeout_update(item: Item, folder: Path) -> Finding:
 
 
 def twenty_of_twenty(item: Item, folder: Path) -> Finding:
-    return nearest(item, wilson(20, 20, 0.95).low, 0.01)
+    return nearest(item, wilson_interval(20, 20, 0.95).low, 0.01)
 
 
 def lucky_test(item: Item, folder: Path) -> Finding:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from kit.controllers import find
+from kit.controllers import find_controller
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
@@ -98,7 +98,7 @@ def teleop_home(item: Item, folder: Path) -> Finding:
         start = session.place.start
         assert start is not None
         assert session.place.robot is not None
-        session.drive_with(find("teleop"))
+        session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         assert session.failure is None
         session.keys.publish(["p_up"])
@@ -207,7 +207,7 @@ def endless_loop(item: Item, folder: Path) -> Finding:
     file.write_text(ENDLESS)
     with Session(place_on_map(find_map("simple"))) as session:
         assert session.place.robot is not None
-        session.drive_with(find(str(file)))
+        session.drive_with(find_controller(str(file)))
         session.wait_until_driven()
         for _ in range(200):
             session.runner.tick()
