@@ -249,7 +249,7 @@ def test_check_in_every_way(tmp_path: Path) -> None:
     )
     assert code == 1
     assert "3 of 6 points. Not passed yet." in text
-    assert "hint 2 of 3: two" in text
+    assert "Hint 2 of 3: two" in text
     assert "--hints 3" in text
     assert "kit replay" in text
     assert load(replay).ticks == 400

@@ -113,7 +113,7 @@ def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progre
         await seen(pilot, "The target is reached, and the drive is kept.")
         await until(pilot, file.exists, "the file")
         await pilot.press("escape")
-        await seen(pilot, "[no] It is a drive")  # for it was not driven all the way
+        await seen(pilot, "[error] It is a drive")  # for it was not driven all the way
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
 
