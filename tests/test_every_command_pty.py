@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.exercise_files import lay_out, solution
-from kit.school.lessons.reading import lesson_names, lessons_folder, read
-from kit.school.lessons.records import Command, How, Lesson, Step
+from kit.school.lessons.exercise_files import install_exercise, read_solution
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
+from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.workspace import open_workspace
 from tests.tui.test_play_pty import KIT, User
 
@@ -24,38 +24,42 @@ ENDLESS = ("echo", "hz", "bw")
 """Words of verbs that listen until Ctrl-C."""
 
 
-def _found(how: How) -> dict[str, tuple[str, Step, Command]]:
+def _found(how: CommandKind) -> dict[str, tuple[str, LessonStep, LessonCommand]]:
     """Each different command once, by the lesson that prints it first."""
     return {
-        f"{command.place} {command.line}" if how is How.BESIDE else command.line: (name, step, command)
+        f"{command.map_name} {command.line}" if how is CommandKind.BESIDE else command.line: (
+            name,
+            step,
+            command,
+        )
         for name in reversed(lesson_names())
-        for step in read(lessons_folder() / name).steps
+        for step in read_lesson(lessons_folder() / name).steps
         for command in step.commands
-        if command.how is how
+        if command.kind is how
     }
 
 
-SCREENS = _found(How.SCREEN)
-BESIDE = _found(How.BESIDE)
+SCREENS = _found(CommandKind.SCREEN)
+BESIDE = _found(CommandKind.BESIDE)
 
 
 def _lesson(name: str) -> Lesson:
-    return read(lessons_folder() / name)
+    return read_lesson(lessons_folder() / name)
 
 
-def _filled(name: str, step: Step, line: str) -> list[str]:
+def _filled(name: str, step: LessonStep, line: str) -> list[str]:
     """The command's arguments, with the student's own files laid out and solved."""
     program, *arguments = shlex.split(_with_files(name, step, line))
     assert program == "kit"
     return arguments
 
 
-def _with_files(name: str, step: Step, line: str) -> str:
+def _with_files(name: str, step: LessonStep, line: str) -> str:
     if step.exercise is None:
         return line
     lesson, workspace = _lesson(name), open_workspace()
-    file = lay_out(workspace, lesson, step.exercise)
-    for other, text in solution(lesson, step.exercise).items():
+    file = install_exercise(workspace, lesson, step.exercise)
+    for other, text in read_solution(lesson, step.exercise).items():
         (file.parent / other).write_text(text)
     return line.replace("{file}", str(file)).replace("{folder}", str(file.parent))
 
@@ -82,7 +86,7 @@ def test_a_screen_opens_and_is_left_with_ctrl_c(
     monkeypatch.chdir(tmp_path)
     name, step, command = SCREENS[line]
     for before in step.commands[: step.commands.index(command)]:
-        if before.how is How.ALONE:
+        if before.kind is CommandKind.ALONE:
             subprocess.run(
                 [sys.executable, "-m", "kit", *_filled(name, step, before.line)],
                 check=True,
@@ -125,7 +129,7 @@ def test_a_question_to_a_world_beside_is_answered(
     monkeypatch.chdir(tmp_path)
     name, step, command = BESIDE[key]
     arguments = _filled(name, step, command.line)
-    place = shlex.split(_with_files(name, step, command.place))
+    place = shlex.split(_with_files(name, step, command.map_name))
     with _screen("play", *place) as user:
         user.until(lambda: "heading" in user.text, "the world", 90.0)
         endless = any(word in ENDLESS for word in arguments) and "--once" not in arguments

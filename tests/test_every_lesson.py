@@ -17,16 +17,24 @@ from grader.reading import read as read_assignment
 from grader.self_test import STARTER, try_works
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level
-from kit.school.lessons.checking import check
-from kit.school.lessons.exercise_files import folder_of, lay_out, solution
-from kit.school.lessons.reading import lesson_names, lessons_folder, outcomes, read, solutions_folder
-from kit.school.lessons.records import Exercise, How, Lesson, StepKind
+from kit.school.lessons.checking import check_exercise
+from kit.school.lessons.exercise_files import exercise_folder, install_exercise, read_solution
+from kit.school.lessons.reading import (
+    lesson_names,
+    lessons_folder,
+    read_lesson,
+    read_outcomes,
+    solutions_folder,
+)
+from kit.school.lessons.records import CommandKind, Exercise, Lesson, StepKind
 from kit.workspace import Workspace, open_workspace
 
 NAMES = lesson_names()
 SLOW_S = 20.0
 """Exercises that promise no quicker check are proven with the long tests."""
-EXERCISES = [(name, exercise.name) for name in NAMES for exercise in read(lessons_folder() / name).exercises]
+EXERCISES = [
+    (name, exercise.name) for name in NAMES for exercise in read_lesson(lessons_folder() / name).exercises
+]
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
 WITHOUT_SECRETS = ("drive", "reward")
@@ -36,7 +44,7 @@ SLOWER = 3.0
 
 
 def lesson_of(name: str) -> Lesson:
-    return read(lessons_folder() / name)
+    return read_lesson(lessons_folder() / name)
 
 
 def exercise_of(name: str, exercise: str) -> tuple[Lesson, Exercise]:
@@ -97,19 +105,19 @@ def test_nothing_is_solved_that_is_not_asked() -> None:
 def test_the_student_s_way(tmp_path: Path, name: str, exercise: str) -> None:
     """What is laid out fails politely, the solution earns everything, within the promised time."""
     lesson, task = exercise_of(name, exercise)
-    file = lay_out(open_workspace(tmp_path / "desk"), lesson, task)
+    file = install_exercise(open_workspace(tmp_path / "desk"), lesson, task)
     if file.exists():
-        starter = check(task, file)
+        starter = check_exercise(task, file)
         assert starter.verdict == "fail", starter.problem
         assert all(each.status not in ("student_error", "timeout") for each in starter.lost)
         assert any(each.said for each in starter.lost)
     if file.suffix != ".npz":
-        for other, text in solution(lesson, task).items():
+        for other, text in read_solution(lesson, task).items():
             (file.parent / other).parent.mkdir(parents=True, exist_ok=True)
             (file.parent / other).write_text(text)
         _take_what_is_no_text(name, exercise, file.parent)
         began = time.monotonic()
-        solved = check(task, file)
+        solved = check_exercise(task, file)
         took = time.monotonic() - began
         assert solved.passed, [(each.id, each.status, each.said) for each in solved.lost] or solved.problem
         assert took <= SLOWER * task.seconds
@@ -162,19 +170,19 @@ def test_its_commands_run_one_after_the_other(tmp_path: Path, name: str) -> None
     workspace = open_workspace(tmp_path / "workspace")
     for step in lesson.steps:
         if step.exercise is not None:
-            file = lay_out(workspace, lesson, step.exercise)
-            for other, text in solution(lesson, step.exercise).items():
+            file = install_exercise(workspace, lesson, step.exercise)
+            for other, text in read_solution(lesson, step.exercise).items():
                 (file.parent / other).write_text(text)
             _take_what_is_no_text(name, step.exercise.name, file.parent)
         for command in step.commands:
-            if command.how is How.ALONE:
+            if command.kind is CommandKind.ALONE:
                 _run(_filled(command.line, workspace, lesson, step.exercise), tmp_path)
 
 
 def _filled(line: str, workspace: Workspace, lesson: Lesson, exercise: Exercise | None) -> str:
     if exercise is None:
         return line
-    folder = folder_of(workspace, lesson, exercise)
+    folder = exercise_folder(workspace, lesson, exercise)
     return line.replace("{file}", str(folder / exercise.file)).replace("{folder}", str(folder))
 
 
@@ -194,5 +202,5 @@ def _run(line: str, folder: Path) -> None:
 
 
 def test_every_outcome_is_carried_and_once_described() -> None:
-    carried = Counter(each for name in NAMES for each in lesson_of(name).carries)
-    assert set(carried) == set(outcomes())
+    carried = Counter(each for name in NAMES for each in lesson_of(name).outcome_ids)
+    assert set(carried) == set(read_outcomes())

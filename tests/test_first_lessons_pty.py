@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.exercise_files import folder_of, lay_out
-from kit.school.lessons.lesson_progress import Standing, standing
-from kit.school.lessons.reading import lesson_names, lessons_folder, read, solutions_folder
-from kit.school.lessons.records import Exercise, Lesson, Step
-from kit.school.progress import Kind, Progress
+from kit.school.lessons.exercise_files import exercise_folder, install_exercise
+from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, solutions_folder
+from kit.school.lessons.records import Exercise, Lesson, LessonStep
+from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import KIT, User
 
@@ -46,8 +46,8 @@ def user() -> Iterator[Callable[..., User]]:
 
 def solve(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> None:
     """Writes what the reference solution says over the student's files."""
-    lay_out(workspace, lesson, exercise)
-    folder = folder_of(workspace, lesson, exercise)
+    install_exercise(workspace, lesson, exercise)
+    folder = exercise_folder(workspace, lesson, exercise)
     found = solutions_folder() / lesson.name / exercise.name
     single = found / f"solution{Path(exercise.file).suffix}"
     files = {exercise.file: single} if single.is_file() else _below(found / "solution")
@@ -59,18 +59,24 @@ def _below(folder: Path) -> dict[str, Path]:
     return {each.relative_to(folder).as_posix(): each for each in folder.rglob("*") if each.is_file()}
 
 
-def right(step: Step) -> int:
-    return 1 + next(number for number, option in enumerate(step.options) if option.right)
+def right(step: LessonStep) -> int:
+    return 1 + next(number for number, option in enumerate(step.options) if option.is_right)
 
 
-def stand(workspace: Workspace, lesson: Lesson) -> Standing:
-    with Progress(workspace.folder) as progress:
-        return standing(lesson, progress.events())
+def stand(workspace: Workspace, lesson: Lesson) -> LessonProgress:
+    with ProgressJournal(workspace.folder) as progress:
+        return lesson_progress_from_events(lesson, progress.events())
 
 
-def reached(found: Standing) -> tuple[object, ...]:
+def reached(found: LessonProgress) -> tuple[object, ...]:
     """What both ways must agree on; how often one checked is nobody's business."""
-    return found.gone_through, found.predictions, found.passed, found.best, found.is_done
+    return (
+        found.completed_steps,
+        found.predictions,
+        found.passed_exercises,
+        found.best_shares,
+        found.is_completed,
+    )
 
 
 def expected(lesson: Lesson) -> tuple[object, ...]:
@@ -92,7 +98,7 @@ def wait_for(condition: Callable[[], bool], user: User, what: str) -> None:
 
 @pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: str) -> None:
-    lesson = read(lessons_folder() / name)
+    lesson = read_lesson(lessons_folder() / name)
     screen = user("lesson", name)
     count = len(lesson.steps)
     for step in lesson.steps:
@@ -110,7 +116,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
             solve(workspace, lesson, step.exercise)
             screen.send(b"r")
             wait_for(
-                lambda step=step: step.exercise.name in stand(workspace, lesson).passed,  # type: ignore[misc]
+                lambda step=step: step.exercise.name in stand(workspace, lesson).passed_exercises,  # type: ignore[misc]
                 screen,
                 f"{step.exercise.name} to pass",
             )
@@ -118,7 +124,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
             screen.send(b"n")
     if lesson.steps[-1].exercise is None:
         screen.send(b"n")
-        wait_for(lambda: stand(workspace, lesson).is_done, screen, "the end")
+        wait_for(lambda: stand(workspace, lesson).is_completed, screen, "the end")
     screen.send(b"\x03")
     assert screen.wait() == 0
     screen.assert_sane()
@@ -127,7 +133,7 @@ def test_on_the_screen(workspace: Workspace, user: Callable[..., User], name: st
 
 @pytest.mark.parametrize("name", ONE_BY_ONE)
 def test_line_by_line(workspace: Workspace, name: str) -> None:
-    lesson = read(lessons_folder() / name)
+    lesson = read_lesson(lessons_folder() / name)
     lines = []
     for step in lesson.steps:
         if step.options:
@@ -151,7 +157,7 @@ def test_line_by_line(workspace: Workspace, name: str) -> None:
 
 
 def test_a_step_is_not_gone_through_before_its_prediction(workspace: Workspace) -> None:
-    lesson = read(lessons_folder() / FIRST[0])
+    lesson = read_lesson(lessons_folder() / FIRST[0])
     done = subprocess.run(
         [sys.executable, "-m", "kit", "lesson", "1", "--plain"],
         input="n\nnonsense\n9\ng 99\nb\n?\nq\n",
@@ -162,6 +168,6 @@ def test_a_step_is_not_gone_through_before_its_prediction(workspace: Workspace) 
     )
     assert done.returncode == 0
     assert "Traceback" not in done.stdout + done.stderr
-    with Progress(workspace.folder) as progress:
-        assert progress.events(Kind.STEP) == progress.events(Kind.PREDICTION) == []
-    assert not stand(workspace, lesson).is_begun
+    with ProgressJournal(workspace.folder) as progress:
+        assert progress.events(EventKind.STEP) == progress.events(EventKind.PREDICTION) == []
+    assert not stand(workspace, lesson).has_started

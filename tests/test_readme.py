@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from kit.cli import VERBS
-from kit.school.lessons.reading import lesson_names, lessons_folder, read
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
@@ -17,9 +17,9 @@ def table() -> str:
     """The lessons, and what each carries."""
     rows = ["| Lesson | Minutes | Exercises | Carries |", "|---|---|---|---|"]
     for name in lesson_names():
-        lesson = read(lessons_folder() / name)
+        lesson = read_lesson(lessons_folder() / name)
         exercises = ", ".join(exercise.name for exercise in lesson.exercises)
-        rows.append(f"| {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.carries)} |")
+        rows.append(f"| {name} | {lesson.minutes} | {exercises} | {', '.join(lesson.outcome_ids)} |")
     return "\n".join(rows) + "\n"
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.exercise_files import folder_of
+from kit.school.lessons.exercise_files import exercise_folder
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.workspace import open_workspace
 
@@ -79,7 +79,7 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     assert all(name.partition("-")[0] in listed for name in lesson_names())
     lesson = find_lesson("2")
     exercise = lesson.exercises[0]
-    file = folder_of(open_workspace(tmp_path / "workspace"), lesson, exercise) / exercise.file
+    file = exercise_folder(open_workspace(tmp_path / "workspace"), lesson, exercise) / exercise.file
     number = next(step.number for step in lesson.steps if step.exercise is exercise)
     walked = subprocess.run(
         [python, "-m", "kit", "lesson", "2", "--plain"],

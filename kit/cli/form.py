@@ -16,7 +16,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.progress import Progress
+    from kit.school.progress import ProgressJournal
     from kit.school.survey.form_session import Answers
     from kit.school.survey.questions import Form, Phase, Question, Value
 
@@ -42,7 +42,7 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     a question blank, and blank it stays: nobody counts it as anything else. What you say goes to your teacher only
     when you export your progress and hand it in.
     """
-    from kit.school.progress import Kind, Progress
+    from kit.school.progress import EventKind, ProgressJournal
     from kit.school.survey.form_session import Answers
     from kit.school.survey.questions import Phase
     from kit.school.survey.reading import read_form
@@ -50,40 +50,44 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
 
     with _mistakes_explained():
         form = read_form()
-        with Progress(open_workspace(workspace).folder) as progress:
-            if progress.notice:
-                click.echo(progress.notice, err=True)
-            answers = Answers.of(form, progress.events(Kind.FORM))
-            chosen = Phase(phase) if phase else _phase_now(form, answers, progress)
+        with ProgressJournal(open_workspace(workspace).folder) as journal:
+            if journal.notice:
+                click.echo(journal.notice, err=True)
+            answers = Answers.of(form, journal.events(EventKind.FORM))
+            chosen = Phase(phase) if phase else _phase_now(form, answers, journal)
             if show:
                 _show(form, answers, [Phase(phase)] if phase else list(Phase))
             else:
-                _ask_all(form, chosen, progress, again=again)
+                _ask_all(form, chosen, journal, again=again)
 
 
-def _phase_now(form: Form, answers: Answers, progress: Progress) -> Phase:
+def _phase_now(form: Form, answers: Answers, journal: ProgressJournal) -> Phase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
-    from kit.school.progress import Kind
+    from kit.school.progress import EventKind
     from kit.school.quiz.answers import Occasion, answers_of
     from kit.school.survey.form_session import still_open
     from kit.school.survey.questions import Phase
 
     if answers.started(Phase.AFTER) and not still_open(form, answers, Phase.AFTER):
         last = max(
-            each.at for each in progress.events(Kind.FORM) if each.content.get("phase") == Phase.AFTER.value
+            each.timestamp
+            for each in journal.events(EventKind.FORM)
+            if each.content.get("phase") == Phase.AFTER.value
         )
-        quiz = [each for each in answers_of(progress.events(Kind.ANSWER)) if each.occasion is Occasion.QUIZ]
+        quiz = [
+            each for each in answers_of(journal.events(EventKind.ANSWER)) if each.occasion is Occasion.QUIZ
+        ]
         if any(each.time > datetime.fromisoformat(last) for each in quiz):
             return Phase.QUIZZED
     if answers.started(Phase.AFTER) or not still_open(form, answers, Phase.BEFORE):
         return Phase.AFTER
-    begun = answers.started(Phase.BEFORE) or not progress.events(Kind.ATTEMPT)
+    begun = answers.started(Phase.BEFORE) or not journal.events(EventKind.ATTEMPT)
     return Phase.BEFORE if begun else Phase.AFTER
 
 
-def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> None:
+def _ask_all(form: Form, phase: Phase, journal: ProgressJournal, *, again: bool) -> None:
     """Asks what is open. Which questions come can change with each answer, so they are looked up each time."""
-    from kit.school.progress import Kind
+    from kit.school.progress import EventKind
     from kit.school.survey.form_session import Answers, asked, still_open
 
     done: list[Question] = []
@@ -92,7 +96,7 @@ def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> No
     back_to: Question | None = None
     introduced = False
     while True:
-        answers = Answers.of(form, progress.events(Kind.FORM))
+        answers = Answers.of(form, journal.events(EventKind.FORM))
         ahead = asked(form, answers, phase) if again else still_open(form, answers, phase)
         question = back_to or next((each for each in ahead if each not in done), None)
         if question is None:
@@ -116,7 +120,7 @@ def _ask_all(form: Form, phase: Phase, progress: Progress, *, again: bool) -> No
             if back_to is question:
                 click.echo("  This is the first of this sitting.")
             continue
-        progress.add(Kind.FORM, question.id, {"phase": phase.value, "value": reply.value})
+        journal.add(EventKind.FORM, question.id, {"phase": phase.value, "value": reply.value})
         done.append(question)
     click.echo(
         f"Thank you, that was all.{_NEXT.get(phase.value, '')}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kit.school.game.levels import Level
     from kit.school.game.player_progress import LevelStanding
     from kit.school.game.race import Driver, Finish
-    from kit.school.progress import Progress
+    from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
@@ -27,30 +27,30 @@ PLACES = 5
 
 
 @contextmanager
-def _opened(workspace: Path | None) -> Iterator[tuple[Progress, Workspace]]:
+def _opened(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace]]:
     """The journal and the desk; every mistake ends the verb with a message."""
     from kit.controllers import prepare_workspace
     from kit.school.game.leaderboard import FameError
     from kit.school.game.levels import UnknownLevel
-    from kit.school.progress import Progress, ProgressError
+    from kit.school.progress import ProgressError, ProgressJournal
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
     try:
         desk = prepare_workspace(workspace)
-        with Progress(desk.folder) as progress:
-            if progress.notice:
-                click.echo(progress.notice, err=True)
-            yield progress, desk
+        with ProgressJournal(desk.folder) as journal:
+            if journal.notice:
+                click.echo(journal.notice, err=True)
+            yield journal, desk
     except (ProgressError, WorkspaceError, WorldError, UnknownLevel, FameError, FileNotFoundError) as error:
         options.fail(str(error))
 
 
-def _standings(progress: Progress) -> tuple[LevelStanding, ...]:
+def _standings(journal: ProgressJournal) -> tuple[LevelStanding, ...]:
     from kit.school.game.levels import all_levels
     from kit.school.game.player_progress import standings
 
-    return standings(all_levels(), progress.events())
+    return standings(all_levels(), journal.events())
 
 
 @click.group(invoke_without_command=True)
@@ -72,13 +72,13 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     context.obj = workspace
     if context.invoked_subcommand is not None:
         return
-    with _opened(workspace) as (progress, desk):
+    with _opened(workspace) as (journal, desk):
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
             from kit.cli.game_screen import show_on_screen
 
-            show_on_screen(progress, desk, terminal)
-        _list(_standings(progress))
+            show_on_screen(journal, desk, terminal)
+        _list(_standings(journal))
 
 
 @command.command("play")
@@ -90,18 +90,18 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
     from kit.school.game.levels import find_level
     from kit.school.game.race import Driver
 
-    with _opened(workspace) as (progress, desk):
+    with _opened(workspace) as (journal, desk):
         chosen = find_level(level)
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
             from kit.cli.game_screen import show_on_screen
 
-            show_on_screen(progress, desk, terminal, chosen)
+            show_on_screen(journal, desk, terminal, chosen)
         from kit.cli.game_plain import drive_by_lines
 
         click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
         finish, recording = drive_by_lines(chosen, desk)
-        _note(progress, desk, chosen, Driver.KEYS, finish, recording)
+        _note(journal, desk, chosen, Driver.KEYS, finish, recording)
 
 
 @command.command("race")
@@ -120,7 +120,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         options.fail(
             "Say who drives: --controller NAME or --agent RUN, one of them. `kit game play` is by hand."
         )
-    with _opened(workspace) as (progress, desk):
+    with _opened(workspace) as (journal, desk):
         chosen = find_level(level)
         try:
             if controller is not None:
@@ -135,7 +135,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
             options.fail(str(error))
         finally:
             _tell(None)
-        _note(progress, desk, chosen, driver, finish, recording)
+        _note(journal, desk, chosen, driver, finish, recording)
 
 
 @command.command("fame")
@@ -169,11 +169,11 @@ def join(workspace: Path | None, name: str | None) -> None:
     """Put your name and best times where all users of this machine can see them."""
     from kit.school.game.leaderboard import hall, publish
 
-    with _opened(workspace) as (progress, _):
-        called = name or progress.called
+    with _opened(workspace) as (journal, _):
+        called = name or journal.student_name
         if not called or not called.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
-        publish(hall(), called, _standings(progress))
+        publish(hall(), called, _standings(journal))
         click.echo(f"{called} is in the hall of fame of this machine ({hall()}). `kit game leave` undoes it.")
 
 
@@ -200,7 +200,12 @@ def _list(found: tuple[LevelStanding, ...]) -> None:
 
 
 def _note(
-    progress: Progress, desk: Workspace, level: Level, driver: Driver, finish: Finish, recording: Recording
+    journal: ProgressJournal,
+    desk: Workspace,
+    level: Level,
+    driver: Driver,
+    finish: Finish,
+    recording: Recording,
 ) -> None:
     """Keeps a drive, and says what it earned."""
     from kit.school.game.drive_records import note
@@ -210,7 +215,7 @@ def _note(
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    noted = note(progress, desk, level, driver, finish, recording)
+    noted = note(journal, desk, level, driver, finish, recording)
     end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
     click.echo(f"{level.title}: {end}, {finish.bumps} bumps.")
     for title, has in zip(

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
     from kit.school.game.levels import Level
-    from kit.school.progress import Progress
+    from kit.school.progress import ProgressJournal
     from kit.tui.terminal import TerminalDecision
     from kit.workspace import Workspace
 
 
 def show_on_screen(
-    progress: Progress, desk: Workspace, terminal: TerminalDecision, level: Level | None = None
+    journal: ProgressJournal, desk: Workspace, terminal: TerminalDecision, level: Level | None = None
 ) -> NoReturn:
     """The map of levels, or one level at once; ends the verb when that is left."""
     os.environ.update(terminal.environment())
@@ -21,6 +21,6 @@ def show_on_screen(
     from kit.tui.screens.levels import LevelsScreen
 
     app = KitApp(terminal)
-    app.begin(LevelsScreen(app.kit_theme, progress, desk, level))
+    app.begin(LevelsScreen(app.kit_theme, journal, desk, level))
     app.run()
     raise SystemExit(app.return_code or 0)

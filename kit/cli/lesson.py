@@ -11,8 +11,8 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.cli.waiting import Intake
-    from kit.school.lessons.records import Scene
-    from kit.school.progress import Progress
+    from kit.school.lessons.records import LessonScene
+    from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
 
@@ -38,62 +38,75 @@ def command(
     from kit.cli.lesson_plain import PlainLesson
     from kit.cli.waiting import Intake
     from kit.controllers import prepare_workspace
-    from kit.school.lessons.exercise_files import WorkError
-    from kit.school.lessons.lesson_session import Visit
+    from kit.school.lessons.exercise_files import ExerciseFilesError
+    from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.reading import UnknownLesson, find_lesson
-    from kit.school.progress import Progress, ProgressError
+    from kit.school.progress import ProgressError, ProgressJournal
     from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
     try:
         desk = prepare_workspace(workspace)
-        with Progress(desk.folder) as progress:
-            if progress.notice:
-                click.echo(progress.notice, err=True)
+        with ProgressJournal(desk.folder) as journal:
+            if journal.notice:
+                click.echo(journal.notice, err=True)
             terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if name is None:
                 if not terminal.plain.value:
                     from kit.cli.lesson_screen import show_list
 
                     show_list(desk, terminal)
-                _list(progress)
+                _list(journal)
                 return
             lesson = find_lesson(name)
             if not terminal.plain.value:
                 from kit.cli.lesson_screen import show_on_screen
 
-                show_on_screen(lesson, progress, desk, terminal)
+                show_on_screen(lesson, journal, desk, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
             intake = Intake()
             PlainLesson(
-                Visit(lesson, progress, desk),
+                LessonSession(lesson, journal, desk),
                 watch=_watch,
                 drive=lambda scene, file: _drive(scene, file, desk, intake),
                 intake=intake,
             ).run()
-    except (UnknownLesson, WorkspaceError, ProgressError, WorkError, WorldError, FileNotFoundError) as error:
+    except (
+        UnknownLesson,
+        WorkspaceError,
+        ProgressError,
+        ExerciseFilesError,
+        WorldError,
+        FileNotFoundError,
+    ) as error:
         options.fail(str(error))
     except KeyboardInterrupt:
         click.echo("\nYour progress is kept.")
 
 
-def _list(progress: Progress) -> None:
-    from kit.school.lessons.catalogue import entries
+def _list(journal: ProgressJournal) -> None:
+    from kit.school.lessons.catalogue import list_lessons
 
-    for each in entries(progress.events()):
-        stand = each.standing
-        if stand is None:
+    for each in list_lessons(journal.events()):
+        progress = each.progress
+        if progress is None:
             click.echo(f"{each.name}: cannot be read.\n    {each.problem}")
             continue
-        lesson = stand.lesson
-        mark = "done" if each.is_done else f"{stand.done}/{len(lesson.steps)}" if each.is_begun else ""
+        lesson = progress.lesson
+        mark = (
+            "done"
+            if each.is_completed
+            else f"{progress.completed_count}/{len(lesson.steps)}"
+            if each.has_started
+            else ""
+        )
         number = each.name.partition("-")[0]
         click.echo(f"{number}  {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
         click.echo(f"    {lesson.summary}")
     click.echo("\n`kit lesson NUMBER` opens one.")
 
 
-def _watch(scene: Scene) -> None:
+def _watch(scene: LessonScene) -> None:
     """A scene in words and two pictures: how it begins and how it ends."""
     from kit.cli.plain import HEIGHT, WIDTH
     from kit.controllers import find_controller
@@ -103,7 +116,7 @@ def _watch(scene: Scene) -> None:
     from kit.run.session import Session
     from kit.run.view import Showing
 
-    place = find_place(scene.place, scene.case, None)
+    place = find_place(scene.map_name, scene.case, None)
     with Session(place, seed=scene.seed, watched=True) as session:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
@@ -117,13 +130,13 @@ def _watch(scene: Scene) -> None:
         click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
 
 
-def _drive(scene: Scene, file: str, desk: Workspace, intake: Intake) -> None:
+def _drive(scene: LessonScene, file: str, desk: Workspace, intake: Intake) -> None:
     """The student drives line by line; the recording is kept in ``file``."""
     from kit.cli.plain import Plain, play_plainly
     from kit.controllers import find_controller
     from kit.run.scenario import find_place
 
-    place = find_place(scene.place, scene.case, None)
+    place = find_place(scene.map_name, scene.case, None)
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
     )

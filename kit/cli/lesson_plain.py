@@ -10,11 +10,11 @@ import click
 
 from kit.cli.waiting import Intake, Lines
 from kit.host.file_watcher import FileWatch
-from kit.school.lessons.checking import CheckReport, handed_in
-from kit.school.lessons.lesson_session import Visit
-from kit.school.lessons.markup import parsed, plain, rows
+from kit.school.lessons.checking import CheckReport, submission_path
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import WIDTH
-from kit.school.lessons.records import Command, Exercise, Scene, Step, StepKind
+from kit.school.lessons.records import Exercise, LessonCommand, LessonScene, LessonStep, StepKind
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import plain as plain_line
 
@@ -41,26 +41,26 @@ class PlainLesson:
 
     def __init__(
         self,
-        visit: Visit,
+        session: LessonSession,
         *,
-        watch: Callable[[Scene], None],
-        drive: Callable[[Scene, str], None],
+        watch: Callable[[LessonScene], None],
+        drive: Callable[[LessonScene, str], None],
         intake: Intake | None = None,
     ) -> None:
         """``watch``: shows a scene in words; ``drive``: has the student drive it and keep the recording, with the
         lines of the same ``intake``."""
-        self._visit = visit
+        self._visit = session
         self._watch = watch
         self._drive = drive
         self._lines = Lines(_nobody_looks_in, intake)
         self._file: FileWatch | None = None
-        self.step = visit.first_step
+        self.step = session.first_step
         self.is_over = False
 
     def run(self) -> None:
         """Reads lines from standard input until ``q`` or its end."""
         lesson = self._visit.lesson
-        done = self._visit.standing.done
+        done = self._visit.lesson_progress.completed_count
         click.echo(f"{lesson.title}. {lesson.summary} About {lesson.minutes} minutes.")
         if done:
             click.echo(f"{done} of {len(lesson.steps)} steps are done; going on at step {self.step.number}.")
@@ -93,7 +93,7 @@ class PlainLesson:
     def show(self) -> None:
         """The step, from its title on."""
         step, count = self.step, len(self._visit.lesson.steps)
-        mark = " (done)" if self._visit.standing.is_step_done(step) else ""
+        mark = " (done)" if self._visit.lesson_progress.is_step_completed(step) else ""
         click.echo(f"\nStep {step.number} of {count}, {step.kind}: {step.title}{mark}")
         click.echo(f"Goal: {step.goal}\n")
         if step.picture:
@@ -111,15 +111,15 @@ class PlainLesson:
         step = self.step
         if not 1 <= number <= len(step.options):
             raise Mistake(f"choose 1 to {len(step.options)}")
-        kept = self._visit.foreseen(step)
-        option = self._visit.foresee(step, number - 1)
+        kept = self._visit.prediction(step)
+        option = self._visit.predict(step, number - 1)
         if kept is not None and kept is not option:
             click.echo(f"You foresaw first: {kept.text} That stays noted.")
         if step.scene is not None and kept is None:
             self._watch(step.scene)
-        right = next(each for each in step.options if each.right)
-        click.echo(_wrapped(f"{'Right.' if option.right else 'Not so.'} {option.feedback}"))
-        if not option.right:
+        right = next(each for each in step.options if each.is_right)
+        click.echo(_wrapped(f"{'Right.' if option.is_right else 'Not so.'} {option.feedback}"))
+        if not option.is_right:
             click.echo(_wrapped(f"It is: {right.text.rstrip('.')}. {right.feedback}"))
         click.echo(self._keys())
 
@@ -132,11 +132,11 @@ class PlainLesson:
     def on(self) -> None:
         """The next step; what was done of this one is noted."""
         step = self.step
-        if self._predicts and self._visit.foreseen(step) is None:
+        if self._predicts and self._visit.prediction(step) is None:
             raise Mistake(f"first say what you expect: 1 to {len(step.options)}")
         if step.exercise is None:
-            self._visit.go_through(step)
-        elif not self._visit.standing.is_step_done(step):
+            self._visit.complete_step(step)
+        elif not self._visit.lesson_progress.is_step_completed(step):
             click.echo("This exercise is not passed yet; you can come back to it.")
         if step.number == len(self._visit.lesson.steps):
             self._end()
@@ -148,12 +148,12 @@ class PlainLesson:
         exercise = self._exercise()
         click.echo("Checking...")
         try:
-            with self._visit.check(exercise) as running:
+            with self._visit.start_check(exercise) as running:
                 report = running.wait()
         except KeyboardInterrupt:
             click.echo("\nStopped; it does not count. r checks again, q leaves.")
             return
-        self._visit.take(exercise, report)
+        self._visit.record(exercise, report)
         for line in report_lines(report):
             click.echo(line)
         if report.is_passed:
@@ -165,14 +165,14 @@ class PlainLesson:
         exercise = self._exercise()
         hint = self._visit.next_hint(exercise)
         if hint is not None:
-            more = f" ({hint.more} more)" if hint.more else ""
+            more = f" ({hint.remaining} more)" if hint.remaining else ""
             click.echo(_wrapped(f"Hint {hint.number} for “{hint.criterion.title}”{more}: {hint.text}"))
             return
-        opened = self._visit.hints(exercise)
+        opened = self._visit.opened_hints(exercise)
         if not opened:
             raise Mistake(
                 "no hint was written for what is missing"
-                if (report := self._visit.report(exercise)) is not None and report.lost_criteria
+                if (report := self._visit.latest_report(exercise)) is not None and report.lost_criteria
                 else "there is a hint when a check (r) has shown what is missing"
             )
         click.echo("These are all hints for it:")
@@ -187,7 +187,7 @@ class PlainLesson:
             click.echo(f"--- {name}\n{text.rstrip()}")
 
     def printed(self) -> None:
-        report = self._visit.report(self._exercise())
+        report = self._visit.latest_report(self._exercise())
         if report is None:
             raise Mistake("there is something to see when a check (r) has run it")
         logs = [each.log for each in report.criteria if each.log]
@@ -197,14 +197,14 @@ class PlainLesson:
         exercise = self._exercise()
         if answer != "yes":
             raise Mistake("`x yes` lays the exercise out as at first; what you have is kept beside it")
-        kept = self._visit.begin_again(exercise)
+        kept = self._visit.reset(exercise)
         click.echo("The exercise is as at first." + (f" What you had is in {kept}" if kept else ""))
         self._open(exercise)
 
     def watch(self) -> None:
         if self.step.scene is None:
             raise Mistake("there is nothing moving in this step")
-        if self._predicts and self._visit.foreseen(self.step) is None:
+        if self._predicts and self._visit.prediction(self.step) is None:
             raise Mistake(f"first say what you expect: 1 to {len(self.step.options)}")
         self._watch(self.step.scene)
 
@@ -212,7 +212,7 @@ class PlainLesson:
         exercise, scene = self._exercise(), self.step.scene
         if not self._by_hand or scene is None:
             raise Mistake("this exercise is written, not driven")
-        self._drive(scene, str(self._visit.file(exercise)))
+        self._drive(scene, str(self._visit.exercise_file(exercise)))
         self.check()
 
     def help(self) -> None:
@@ -227,7 +227,7 @@ class PlainLesson:
 
     @property
     def _is_passed(self) -> bool:
-        return self._visit.standing.is_step_done(self.step)
+        return self._visit.lesson_progress.is_step_completed(self.step)
 
     @property
     def _by_hand(self) -> bool:
@@ -238,19 +238,19 @@ class PlainLesson:
         return self.step.exercise
 
     def _open(self, exercise: Exercise) -> None:
-        file = self._visit.lay_out(exercise)
-        self._file = None if self._by_hand else FileWatch(handed_in(exercise, file))
+        file = self._visit.install(exercise)
+        self._file = None if self._by_hand else FileWatch(submission_path(exercise, file))
         click.echo(f"Your file: {file}")
 
-    def _ask(self, step: Step) -> None:
+    def _ask(self, step: LessonStep) -> None:
         click.echo(_wrapped(step.question))
         for number, option in enumerate(step.options, 1):
             click.echo(_wrapped(f"{number}. {option.text}", "   "))
-        kept = self._visit.foreseen(step)
+        kept = self._visit.prediction(step)
         if kept is not None:
             click.echo(f"You foresaw: {kept.text}")
 
-    def _commands(self, commands: Sequence[Command]) -> None:
+    def _commands(self, commands: Sequence[LessonCommand]) -> None:
         if commands:
             click.echo(
                 "\nIn another terminal:" if len(commands) == 1 else "\nIn another terminal, one by one:"
@@ -260,13 +260,13 @@ class PlainLesson:
         click.echo()
 
     def _filled(self, text: str) -> str:
-        return "\n".join(plain(row) for row in rows(parsed(self._filled_line(text)), WIDTH))
+        return "\n".join(plain_text(row) for row in wrap_blocks(parse_markup(self._filled_line(text)), WIDTH))
 
     def _filled_line(self, text: str) -> str:
         """With the student's own paths."""
         if self.step.exercise is None:
             return text
-        file = self._visit.file(self.step.exercise)
+        file = self._visit.exercise_file(self.step.exercise)
         return text.replace("{file}", str(file)).replace("{folder}", str(file.parent))
 
     def _keys(self) -> str:
@@ -275,9 +275,9 @@ class PlainLesson:
         return "\n" + "  ".join([*choose, *fitting])
 
     def _end(self) -> None:
-        standing = self._visit.standing
+        progress = self._visit.lesson_progress
         lesson = self._visit.lesson
-        open_steps = [str(step.number) for step in lesson.steps if not standing.is_step_done(step)]
+        open_steps = [str(step.number) for step in lesson.steps if not progress.is_step_completed(step)]
         if open_steps:
             click.echo(f"That was the last step. Still open: {', '.join(open_steps)}. `g 3` goes to step 3.")
             return

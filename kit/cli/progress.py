@@ -12,21 +12,21 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.progress import Progress
+    from kit.school.progress import ProgressJournal
 
 
 @contextmanager
-def _opened(workspace: Path | None) -> Iterator[Progress]:
+def _opened(workspace: Path | None) -> Iterator[ProgressJournal]:
     """The journal; every mistake ends the verb with a message."""
-    from kit.school.progress import Progress, ProgressError
+    from kit.school.progress import ProgressError, ProgressJournal
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
     try:
-        with Progress(open_workspace(workspace).folder) as progress:
-            if progress.notice:
-                click.echo(progress.notice, err=True)
-            yield progress
+        with ProgressJournal(open_workspace(workspace).folder) as journal:
+            if journal.notice:
+                click.echo(journal.notice, err=True)
+            yield journal
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
         options.fail(str(error))
 
@@ -44,8 +44,8 @@ def command(context: click.Context, workspace: Path | None) -> None:
     """
     context.obj = workspace
     if context.invoked_subcommand is None:
-        with _opened(workspace) as progress:
-            _show(progress)
+        with _opened(workspace) as journal:
+            _show(journal)
 
 
 @command.command("export")
@@ -53,8 +53,8 @@ def command(context: click.Context, workspace: Path | None) -> None:
 @click.pass_obj
 def export(workspace: Path | None, file: Path) -> None:
     """Write everything to FILE, whole or not at all."""
-    with _opened(workspace) as progress:
-        click.echo(f"{file}: {progress.export(file)} entries.")
+    with _opened(workspace) as journal:
+        click.echo(f"{file}: {journal.export(file)} entries.")
 
 
 @command.command("import")
@@ -64,9 +64,9 @@ def take_over(workspace: Path | None, file: Path) -> None:
     """Add what an exported FILE holds; what is here already is left as it is."""
     from kit.school.progress import read_export
 
-    with _opened(workspace) as progress:
+    with _opened(workspace) as journal:
         events = read_export(file)
-        new = progress.take_over(events)
+        new = journal.import_events(events)
         click.echo(f"{file}: {len(events)} entries, {new} of them new.")
 
 
@@ -75,34 +75,34 @@ def take_over(workspace: Path | None, file: Path) -> None:
 @click.pass_obj
 def name_yourself(workspace: Path | None, name: str) -> None:
     """Say what to call you: in the hall of fame, and in what you export."""
-    from kit.school.progress import Kind
+    from kit.school.progress import EventKind
 
     shown = " ".join(name.split())
     if not 1 <= len(shown) <= 40 or not shown.isprintable():
         options.fail("A name is 1 to 40 printable characters.")
-    with _opened(workspace) as progress:
-        progress.add(Kind.ABOUT, "name", {"value": shown})
+    with _opened(workspace) as journal:
+        journal.add(EventKind.ABOUT, "name", {"value": shown})
         click.echo(f"You are {shown}.")
 
 
-def _show(progress: Progress) -> None:
-    from kit.school.lessons.catalogue import entries
+def _show(journal: ProgressJournal) -> None:
+    from kit.school.lessons.catalogue import list_lessons
 
-    events = progress.events()
+    events = journal.events()
     if not events:
         click.echo("Nothing yet. `kit lesson 1` is a good begin.")
         return
-    shelf = entries(events)
+    shelf = list_lessons(events)
     for each in shelf:
-        stand = each.standing
-        if stand is None:
+        progress = each.progress
+        if progress is None:
             click.echo(f"{each.name:<28} cannot be read; `kit lesson {each.number}` says why")
             continue
-        exercises = stand.lesson.exercises
-        passed = sum(exercise.name in stand.passed for exercise in exercises)
-        bar = "".join("#" if stand.is_step_done(step) else "." for step in stand.lesson.steps)
-        tries = sum(stand.attempts.values())
+        exercises = progress.lesson.exercises
+        passed = sum(exercise.name in progress.passed_exercises for exercise in exercises)
+        bar = "".join("#" if progress.is_step_completed(step) else "." for step in progress.lesson.steps)
+        tries = sum(progress.attempt_counts.values())
         checks = f"{tries} checks" if tries else ""
         click.echo(f"{each.name:<28} {bar:<12} {passed}/{len(exercises)} exercises  {checks}")
-    finished = sum(each.is_done for each in shelf)
+    finished = sum(each.is_completed for each in shelf)
     click.echo(f"\n{finished} lessons done. `kit quiz --scores` shows the quiz, `kit game` the levels.")

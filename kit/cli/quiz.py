@@ -12,7 +12,7 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.progress import Event, Progress
+    from kit.school.progress import ProgressEvent, ProgressJournal
     from kit.school.quiz.answers import Choice
     from kit.school.quiz.items import Bank, Item
     from kit.school.quiz.quiz_session import Plan, Sitting
@@ -70,8 +70,8 @@ def command(
     from kit.school.progress import ProgressError
 
     try:
-        with _progress(workspace) as progress:
-            sitting = _sitting(progress, bank, plan, again)
+        with _progress(workspace) as journal:
+            sitting = _sitting(journal, bank, plan, again)
             if sitting.item is None:
                 _print_finished(sitting)
             elif terminal.plain.value:
@@ -104,23 +104,23 @@ def _plan(bank: Bank, lesson: str | None, today: bool) -> Plan:
         options.fail(str(error))
 
 
-def _progress(workspace: Path | None) -> Progress:
-    from kit.school.progress import Progress
+def _progress(workspace: Path | None) -> ProgressJournal:
+    from kit.school.progress import ProgressJournal
     from kit.workspace import WorkspaceError, open_workspace
 
     try:
-        progress = Progress(open_workspace(workspace).folder)
+        journal = ProgressJournal(open_workspace(workspace).folder)
     except WorkspaceError as error:
         options.fail(str(error))
-    if progress.notice:
-        click.echo(progress.notice, err=True)
-    return progress
+    if journal.notice:
+        click.echo(journal.notice, err=True)
+    return journal
 
 
-def _sitting(progress: Progress, bank: Bank, plan: Plan, again: bool) -> Sitting:
+def _sitting(journal: ProgressJournal, bank: Bank, plan: Plan, again: bool) -> Sitting:
     from kit.school.quiz.quiz_session import Sitting, student_seed
 
-    return Sitting(progress, bank, plan, seed=student_seed(progress), anew=again)
+    return Sitting(journal, bank, plan, seed=student_seed(journal), anew=again)
 
 
 def _print_scores(bank: Bank, workspace: Path | None) -> None:
@@ -130,11 +130,11 @@ def _print_scores(bank: Bank, workspace: Path | None) -> None:
     from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.schedule import schedule_of
 
-    events: list[Event] = []
+    events: list[ProgressEvent] = []
     try:
         if (options.desk(workspace).folder / FILE).exists():  # else looking would make it
-            with _progress(workspace) as progress:
-                events = progress.events()
+            with _progress(workspace) as journal:
+                events = journal.events()
     except ProgressError as error:
         options.fail(str(error))
     for line in scores_lines(bank, answers_of(events), schedule_of(bank, events, local_now())):

@@ -72,10 +72,12 @@ def _tell(desk: Workspace) -> None:
     for line in filter(None, (notice, overview.problem)):
         click.echo(line, err=True)
     entry = overview.going_on
-    if entry is not None and entry.standing is not None:
-        step = entry.standing.next_step
+    if entry is not None and entry.progress is not None:
+        step = entry.progress.next_step
         where = (
-            f", step {step.number}: {step.title}" if entry.is_begun else f". {entry.standing.lesson.summary}"
+            f", step {step.number}: {step.title}"
+            if entry.has_started
+            else f". {entry.progress.lesson.summary}"
         )
         click.echo(
             f"{'Begin' if overview.is_new else 'Go on'}: `kit lesson {entry.number}`, {entry.title}{where}"

@@ -26,9 +26,9 @@ from kit.workspace import write_atomically
 FILE: Final = "progress.db"
 FORMAT: Final = "robot-learning-kit progress"
 VERSION: Final = 1
-WAIT_S: Final = 10.0
+LOCK_TIMEOUT_S: Final = 10.0
 """How long to wait for another process of the same student that is writing."""
-LONGEST: Final = 64 * 1024
+MAX_CONTENT_LENGTH: Final = 64 * 1024
 """Characters of one event's content: a student's answer fits, a file that was read by mistake does not."""
 
 _SCHEMA: Final = """
@@ -51,7 +51,7 @@ class ProgressError(Exception):
     """Progress cannot be read or written; the message says why and what to do."""
 
 
-class Kind(StrEnum):
+class EventKind(StrEnum):
     """What an event tells."""
 
     STEP = "step"
@@ -66,14 +66,14 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class ProgressEvent:
     """One thing that happened."""
 
     uid: str
     """Made once, anywhere: the same event imported twice stays one."""
-    at: str
+    timestamp: str
     """UTC, ISO 8601 with microseconds."""
-    kind: Kind
+    kind: EventKind
     subject: str
     """What it is about: a lesson's step, an exercise, an item, a level."""
     content: Mapping[str, Any]
@@ -81,7 +81,7 @@ class Event:
 
     @property
     def time(self) -> datetime:
-        return datetime.fromisoformat(self.at)
+        return datetime.fromisoformat(self.timestamp)
 
     def number(self, key: str) -> float | None:
         """A finite number of the content; None for anything else, for who wrote an imported file is not known."""
@@ -100,7 +100,7 @@ class Event:
         return value if isinstance(value, str) and value.isprintable() else ""
 
 
-class Progress:
+class ProgressJournal:
     """The journal of one student. Every method raises ProgressError where the disk refuses."""
 
     def __init__(self, folder: Path) -> None:
@@ -128,25 +128,25 @@ class Progress:
 
     def add(
         self,
-        kind: Kind,
+        kind: EventKind,
         subject: str,
         content: Mapping[str, Any] | None = None,
         *,
         now: datetime | None = None,
-    ) -> Event:
+    ) -> ProgressEvent:
         """Notes one event. When this returns, it is on the disk."""
         at = (now or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="microseconds")
-        event = Event(uuid.uuid4().hex, at, kind, subject, dict(content or {}))
+        event = ProgressEvent(uuid.uuid4().hex, at, kind, subject, dict(content or {}))
         self._write([event])
         return event
 
     @property
-    def called(self) -> str:
+    def student_name(self) -> str:
         """What the student wants to be called, as last said; empty: nothing was."""
-        said = [name for event in self.events(Kind.ABOUT, "name") if (name := event.text("value"))]
+        said = [name for event in self.events(EventKind.ABOUT, "name") if (name := event.text("value"))]
         return said[-1] if said else ""
 
-    def events(self, kind: Kind | None = None, subject: str | None = None) -> list[Event]:
+    def events(self, kind: EventKind | None = None, subject: str | None = None) -> list[ProgressEvent]:
         """All events in the order of their time, or those of one kind, or about one subject."""
         wanted = [("kind", kind), ("subject", subject)]
         conditions = " AND ".join(f"{column} = ?" for column, value in wanted if value is not None)
@@ -155,7 +155,7 @@ class Progress:
             rows = self._connection.execute(
                 f"{query} ORDER BY at, number", [str(value) for _, value in wanted if value is not None]
             )
-            return [event for row in rows if (event := _of_row(row)) is not None]
+            return [event for row in rows if (event := _event_from_row(row)) is not None]
         except sqlite3.Error as error:
             raise self._unusable(error) from None
 
@@ -168,7 +168,7 @@ class Progress:
             "events": [
                 {
                     "uid": each.uid,
-                    "at": each.at,
+                    "at": each.timestamp,
                     "kind": each.kind.value,
                     "subject": each.subject,
                     "content": each.content,
@@ -184,31 +184,33 @@ class Progress:
             raise ProgressError(f"{file}: cannot be written ({error.strerror}).") from None
         return len(events)
 
-    def take_over(self, events: Iterable[Event]) -> int:
+    def import_events(self, events: Iterable[ProgressEvent]) -> int:
         """Adds events of another journal, all or none; those that are here already are left. Returns how many are new."""
         return self._write(events)
 
-    def _write(self, events: Iterable[Event]) -> int:
-        rows = [_row_of(each) for each in events]
-        too_long = next((row for row in rows if len(row[4]) > LONGEST), None)
+    def _write(self, events: Iterable[ProgressEvent]) -> int:
+        rows = [_row_from_event(each) for each in events]
+        too_long = next((row for row in rows if len(row[4]) > MAX_CONTENT_LENGTH), None)
         if too_long is not None:
-            raise ProgressError(f"{too_long[3]}: {len(too_long[4])} characters are too many; {LONGEST} fit.")
+            raise ProgressError(
+                f"{too_long[3]}: {len(too_long[4])} characters are too many; {MAX_CONTENT_LENGTH} fit."
+            )
         try:
             try:
                 return _insert(self._connection, rows)
             except sqlite3.OperationalError:
                 if not self._has_moved():
                     raise
-                self._bring_back()
+                self._restore_file()
                 return _insert(self._connection, rows)
         except sqlite3.Error as error:
             raise self._unusable(error) from None
 
     def _has_moved(self) -> bool:
         """Whether somebody has taken away the file that was opened, or put another in its place."""
-        return _identity(self._file) != self._opened
+        return _file_identity(self._file) != self._opened
 
-    def _bring_back(self) -> None:
+    def _restore_file(self) -> None:
         """What was confirmed is in the file that was taken away, which lives for as long as it is open."""
         rows = self._connection.execute(_ALL).fetchall()
         self._connection.close()
@@ -216,8 +218,8 @@ class Progress:
         _insert(self._connection, rows)
 
     def _connect(self) -> sqlite3.Connection:
-        connection = _connected(self._file)
-        self._opened = _identity(self._file)
+        connection = _open_connection(self._file)
+        self._opened = _file_identity(self._file)
         return connection
 
     def _check(self) -> None:
@@ -237,11 +239,11 @@ class Progress:
         aside = self._file.with_name(f"{self._file.stem}.damaged-{stamp}{self._file.suffix}")
         fresh = self._file.with_name(f".{self._file.name}.{stamp}")
         try:
-            found = _identity(self._file)
-            saved = [_row_of(event) for event in _salvaged(self._file)]
-            with closing(_connected(fresh)) as connection:
+            found = _file_identity(self._file)
+            saved = [_row_from_event(event) for event in _salvaged_events(self._file)]
+            with closing(_open_connection(fresh)) as connection:
                 _insert(connection, saved)
-            if _identity(self._file) == found:  # else another process has mended it meanwhile
+            if _file_identity(self._file) == found:  # else another process has mended it meanwhile
                 _keep_as(self._file, aside)
                 fresh.replace(self._file)
             self._connection = self._connect()
@@ -267,9 +269,9 @@ class Progress:
         )
 
 
-def _connected(file: Path) -> sqlite3.Connection:
+def _open_connection(file: Path) -> sqlite3.Connection:
     # Other threads of one face may ask; SQLite serialises them itself.
-    connection = sqlite3.connect(file, timeout=WAIT_S, check_same_thread=False)
+    connection = sqlite3.connect(file, timeout=LOCK_TIMEOUT_S, check_same_thread=False)
     try:
         # Not the write-ahead log: it needs shared memory, which network homes do not have.
         connection.execute("PRAGMA synchronous = FULL")
@@ -291,7 +293,7 @@ def _insert(connection: sqlite3.Connection, rows: Sequence[_Row]) -> int:
     return connection.total_changes - before
 
 
-def _identity(file: Path) -> tuple[int, int] | None:
+def _file_identity(file: Path) -> tuple[int, int] | None:
     """Which file is there now, whatever it holds."""
     try:
         status = file.stat()
@@ -311,7 +313,7 @@ def _keep_as(file: Path, aside: Path) -> None:
             os.replace(f"{file}{ending}", f"{aside}{ending}")  # noqa: PTH105
 
 
-def read_export(file: Path) -> list[Event]:
+def read_export(file: Path) -> list[ProgressEvent]:
     """The events of an exported file. Raises ProgressError with what is wrong with it."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
@@ -329,15 +331,15 @@ def read_export(file: Path) -> list[Event]:
         raise ProgressError(
             f"{file}: is of version {content.get('version')}; this kit reads version {VERSION}."
         )
-    return [_of_export(each, index, file) for index, each in enumerate(content["events"], 1)]
+    return [_event_from_export(each, index, file) for index, each in enumerate(content["events"], 1)]
 
 
-def _of_export(content: Any, index: int, file: Path) -> Event:
+def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
     try:
-        event = Event(
+        event = ProgressEvent(
             str(content["uid"]),
             _utc(str(content["at"])),
-            Kind(content["kind"]),
+            EventKind(content["kind"]),
             str(content["subject"]),
             dict(content["content"]),
         )
@@ -354,26 +356,26 @@ def _utc(at: str) -> str:
     return time.astimezone(UTC).isoformat(timespec="microseconds")
 
 
-def _row_of(event: Event) -> _Row:
+def _row_from_event(event: ProgressEvent) -> _Row:
     content = json.dumps(dict(event.content), ensure_ascii=False)
-    return event.uid, event.at, event.kind.value, event.subject, content
+    return event.uid, event.timestamp, event.kind.value, event.subject, content
 
 
-def _of_row(row: _Row) -> Event | None:
+def _event_from_row(row: _Row) -> ProgressEvent | None:
     """The event of a row; None for one of a newer kit, which is kept and not understood."""
     uid, at, kind, subject, content = row
     try:
-        event = Event(uid, at, Kind(kind), subject, json.loads(content))
+        event = ProgressEvent(uid, at, EventKind(kind), subject, json.loads(content))
         is_whole = isinstance(event.content, dict) and event.time.tzinfo is not None
     except (TypeError, ValueError, RecursionError):
         return None
     return event if is_whole else None
 
 
-def _salvaged(file: Path) -> Iterator[Event]:
+def _salvaged_events(file: Path) -> Iterator[ProgressEvent]:
     """What can be read of a damaged file, row by row, until nothing can."""
     seen: set[int] = set()
-    with suppress(sqlite3.Error), closing(sqlite3.connect(file, timeout=WAIT_S)) as connection:
+    with suppress(sqlite3.Error), closing(sqlite3.connect(file, timeout=LOCK_TIMEOUT_S)) as connection:
         for order in ("ASC", "DESC"):
             with suppress(sqlite3.Error, UnicodeDecodeError):
                 for number, *row in connection.execute(
@@ -382,6 +384,6 @@ def _salvaged(file: Path) -> Iterator[Event]:
                     if number in seen:
                         break
                     seen.add(number)
-                    event = _of_row(tuple(row))
+                    event = _event_from_row(tuple(row))
                     if event is not None:
                         yield event

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatch
-from kit.school.lessons.checking import Check, CheckReport, handed_in
+from kit.school.lessons.checking import CheckReport, ExerciseCheck, submission_path
 from kit.school.lessons.exercise_files import STARTER
-from kit.school.lessons.lesson_session import Visit
+from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 
 BY_HAND = ".npz"
@@ -54,16 +54,16 @@ class FolderWatch:
 class ExerciseModel:
     """One exercise of a visit. ``poll`` it a few times a second; ``close`` it when done.
 
-    Raises WorkError where the student's files cannot be laid out.
+    Raises ExerciseFilesError where the student's files cannot be laid out.
     """
 
-    def __init__(self, visit: Visit, exercise: Exercise) -> None:
+    def __init__(self, session: LessonSession, exercise: Exercise) -> None:
         self.exercise = exercise
-        self._visit = visit
-        self.file: Path = visit.lay_out(exercise)
+        self._visit = session
+        self.file: Path = session.install(exercise)
         """What the student edits."""
-        self._watch = FileWatch(handed_in(self.exercise, self.file))
-        self._check: Check | None = None
+        self._watch = FileWatch(submission_path(self.exercise, self.file))
+        self._check: ExerciseCheck | None = None
 
     @property
     def by_hand(self) -> bool:
@@ -78,20 +78,20 @@ class ExerciseModel:
     @property
     def seconds(self) -> float | None:
         """How long the check has been running; None while none is."""
-        return None if self._check is None else self._check.seconds
+        return None if self._check is None else self._check.elapsed_s
 
     @property
     def report(self) -> CheckReport | None:
         """The newest check's."""
-        return self._visit.report(self.exercise)
+        return self._visit.latest_report(self.exercise)
 
     def start(self) -> None:
         """Starts a check, unless one is running."""
         if self._check is None:
             self._watch = FileWatch(
-                handed_in(self.exercise, self.file)
+                submission_path(self.exercise, self.file)
             )  # what is checked now need not be checked once more
-            self._check = self._visit.check(self.exercise)
+            self._check = self._visit.start_check(self.exercise)
 
     def poll(self) -> bool:
         """Starts a check where the file was saved, and takes in one that has ended; says whether one has.
@@ -106,14 +106,14 @@ class ExerciseModel:
         if report is None:
             return False
         self.close()
-        self._visit.take(self.exercise, report)
+        self._visit.record(self.exercise, report)
         return True
 
     def start_over(self) -> Path | None:
-        """The exercise as at first; where the former files were kept. Raises WorkError."""
+        """The exercise as at first; where the former files were kept. Raises ExerciseFilesError."""
         self.close()
-        kept = self._visit.begin_again(self.exercise)
-        self._watch = FileWatch(handed_in(self.exercise, self.file))
+        kept = self._visit.reset(self.exercise)
+        self._watch = FileWatch(submission_path(self.exercise, self.file))
         return kept
 
     def close(self) -> None:

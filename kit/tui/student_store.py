@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is drawn first
-    from kit.school.lessons.catalogue import Entry
-    from kit.school.lessons.lesson_session import Visit
+    from kit.school.lessons.catalogue import LessonEntry
+    from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.records import Lesson
-    from kit.school.progress import Progress
+    from kit.school.progress import ProgressJournal
 
 
 @dataclass(frozen=True, slots=True)
 class StudentOverview:
     """Where a student stands."""
 
-    shelf: tuple[Entry, ...] = ()
-    going_on: Entry | None = None
+    shelf: tuple[LessonEntry, ...] = ()
+    going_on: LessonEntry | None = None
     """Where to go on; None: all is done, or there is nothing."""
     due: int | None = None
     """Questions due today; None: they cannot be read."""
@@ -30,12 +30,12 @@ class StudentOverview:
 
     @property
     def done(self) -> int:
-        return sum(each.is_done for each in self.shelf)
+        return sum(each.is_completed for each in self.shelf)
 
     @property
     def is_new(self) -> bool:
         """Whether nothing was done yet."""
-        return not any(each.is_begun for each in self.shelf)
+        return not any(each.has_started for each in self.shelf)
 
 
 class StudentStore:
@@ -44,16 +44,16 @@ class StudentStore:
     def __init__(self, workspace: Workspace, lessons: Path | None = None) -> None:
         self.workspace = workspace
         self._lessons = lessons
-        self._progress: Progress | None = None
+        self._progress: ProgressJournal | None = None
         self._opening = threading.Lock()
 
-    def progress(self) -> Progress:
+    def progress(self) -> ProgressJournal:
         """The journal, opened when it is first asked for. Raises ProgressError."""
-        from kit.school.progress import Progress
+        from kit.school.progress import ProgressJournal
 
         with self._opening:
             if self._progress is None:
-                self._progress = Progress(self.workspace.folder)
+                self._progress = ProgressJournal(self.workspace.folder)
             return self._progress
 
     def take_notice(self) -> str:
@@ -65,21 +65,21 @@ class StudentStore:
 
     def read_overview(self) -> StudentOverview:
         """Reads everything. Slow: to be called in another thread."""
-        from kit.school.lessons.catalogue import entries, going_on
+        from kit.school.lessons.catalogue import list_lessons, next_lesson
         from kit.school.progress import ProgressError
 
         try:
             events = self.progress().events()
-            shelf = entries(events, self._lessons)
+            shelf = list_lessons(events, self._lessons)
         except (ProgressError, FileNotFoundError) as error:
             return StudentOverview(problem=str(error))
-        return StudentOverview(shelf, going_on(shelf), self._due())
+        return StudentOverview(shelf, next_lesson(shelf), self._due())
 
-    def visit(self, lesson: Lesson) -> Visit:
+    def visit(self, lesson: Lesson) -> LessonSession:
         """To go through a lesson. Raises ProgressError."""
-        from kit.school.lessons.lesson_session import Visit
+        from kit.school.lessons.lesson_session import LessonSession
 
-        return Visit(lesson, self.progress(), self.workspace)
+        return LessonSession(lesson, self.progress(), self.workspace)
 
     def close(self) -> None:
         with self._opening:

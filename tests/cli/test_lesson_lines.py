@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.reading import lessons_folder
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 
 LINES = "g 4\nd\ndrive 0.3 0 2\nquit\ng 3\nq\n"
 
@@ -31,8 +31,8 @@ def test_lines_that_come_at_once_are_all_heeded(tmp_path: Path) -> None:
         said = lesson.stdout.read()
     assert "does nothing here" not in said
     assert said.rindex("Step 3 of") > said.index("Checking")
-    with Progress(tmp_path) as progress:
-        (attempt,) = progress.events(Kind.ATTEMPT)
+    with ProgressJournal(tmp_path) as progress:
+        (attempt,) = progress.events(EventKind.ATTEMPT)
     assert attempt.content["points"] > 0
 
 
@@ -48,8 +48,8 @@ def test_one_lesson_that_cannot_be_read_does_not_hide_the_others(
     monkeypatch.setattr("kit.school.lessons.catalogue.lessons_folder", lambda: lessons)
     desk = tmp_path / "desk"
     desk.mkdir()
-    with Progress(desk) as progress:
-        progress.add(Kind.STEP, "01-drive/1")
+    with ProgressJournal(desk) as progress:
+        progress.add(EventKind.STEP, "01-drive/1")
     done = CliRunner().invoke(main, [*words, "--workspace", str(desk)])
     assert done.exit_code == 0, done.output
     assert "02-braking" in done.output

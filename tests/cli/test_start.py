@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.cli.start import WAYS
-from kit.school.progress import FILE, Kind, Progress
+from kit.school.progress import FILE, EventKind, ProgressJournal
 
 
 def said(*words: str) -> str:
@@ -25,8 +25,8 @@ def test_a_new_student_is_told_where_to_begin() -> None:
 
 def test_it_goes_on_where_the_student_left_off(tmp_path: Path) -> None:
     (tmp_path / "home").mkdir()
-    with Progress(tmp_path / "home") as progress:
-        progress.add(Kind.STEP, "01-drive/1")
+    with ProgressJournal(tmp_path / "home") as progress:
+        progress.add(EventKind.STEP, "01-drive/1")
     assert "Go on: `kit lesson 1`" in said("start", "--plain", "--workspace", str(tmp_path / "home"))
 
 

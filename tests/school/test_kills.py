@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import pytest
 
-from kit.school.progress import Event, Kind, Progress, read_export
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal, read_export
 
 KILLS = 20
 ENTRIES = 20_000
@@ -28,7 +28,7 @@ class Case(NamedTuple):
     words: tuple[str, ...]
     lines: str
     confirmed: Callable[[str], int]
-    kept: Callable[[list[Event]], int]
+    kept: Callable[[list[ProgressEvent]], int]
     """How many of such things the journal holds."""
 
 
@@ -46,13 +46,13 @@ CASES = {
         ("lesson", "1", "--plain"),
         "2\nn\nn\nn\n",
         _steps,
-        lambda events: sum(each.kind is Kind.STEP for each in events),
+        lambda events: sum(each.kind is EventKind.STEP for each in events),
     ),
     "quiz": Case(
         ("quiz", "--plain"),
         "1\n3\n" * 12,
         _answers,
-        lambda events: len({each.subject for each in events if each.kind is Kind.ANSWER}),
+        lambda events: len({each.subject for each in events if each.kind is EventKind.ANSWER}),
     ),
     "export": Case(("progress", "export", "{file}"), "", lambda said: 0, len),
 }
@@ -68,7 +68,7 @@ def test_a_killed_verb_has_kept_what_it_confirmed(name: str, tmp_path: Path) -> 
         folder = tmp_path / f"{number}"
         # Some moments lie behind the end, where the machine is no slower than before.
         said, _ = _run(case, folder, whole * chance.uniform(0.3, 1.3))
-        with Progress(folder) as progress:
+        with ProgressJournal(folder) as progress:
             assert progress.notice == ""
             events = progress.events()
         assert case.kept(events) >= case.confirmed(said)
@@ -83,9 +83,11 @@ def _run(case: Case, folder: Path, moment: float | None) -> tuple[str, float]:
     """What it said until it was killed, and how long it ran."""
     folder.mkdir()
     if case.words[-1] == "{file}":
-        with Progress(folder) as progress:
-            progress.take_over(
-                Event(f"{number}", "2026-01-01T00:00:00.000000+00:00", Kind.STEP, f"01-drive/{number}", {})
+        with ProgressJournal(folder) as progress:
+            progress.import_events(
+                ProgressEvent(
+                    f"{number}", "2026-01-01T00:00:00.000000+00:00", EventKind.STEP, f"01-drive/{number}", {}
+                )
                 for number in range(ENTRIES)
             )
     words = [word.format(file=folder / "export.json") for word in case.words]

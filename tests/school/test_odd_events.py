@@ -11,9 +11,9 @@ import pytest
 
 from kit.school.game.levels import Level, all_levels
 from kit.school.game.player_progress import standings
-from kit.school.lessons.lesson_progress import standing
+from kit.school.lessons.lesson_progress import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import answers_of
 from kit.school.quiz.items import Bank
 from kit.school.quiz.reading import read_bank
@@ -52,31 +52,31 @@ def test_what_nobody_could_have_done_is_passed_over(bank: Bank, levels: tuple[Le
     numbers = count()
     item = bank.items[0].id
 
-    def event(kind: Kind, subject: str, **content: object) -> Event:
-        return Event(f"{next(numbers)}", "2026-01-01T00:00:00.000000+00:00", kind, subject, content)
+    def event(kind: EventKind, subject: str, **content: object) -> ProgressEvent:
+        return ProgressEvent(f"{next(numbers)}", "2026-01-01T00:00:00.000000+00:00", kind, subject, content)
 
     events = [
-        event(Kind.STEP, "01-drive/²"),
-        event(Kind.STEP, "01-drive/" + "9" * 6000),
-        event(Kind.STEP, "\x1b[2J/1"),
-        event(Kind.PREDICTION, "01-drive/1", chosen=odd, right=odd),
-        event(Kind.ATTEMPT, "01-drive/flag", points=odd, max_points=odd, verdict="fail", lost=odd),
-        event(Kind.ATTEMPT, "01-drive/flag", points=odd, max_points=5.0, verdict="fail", seconds=odd),
-        event(Kind.ATTEMPT, "01-drive/readout", points=1.0, max_points=5.0, verdict=odd),
-        event(Kind.HINT, "01-drive/flag/reached", step=odd),
-        event(Kind.FINISH, "first-drive", driver="keys", reached=True, seconds=odd, bumps=0),
-        event(Kind.FINISH, "first-drive", driver="keys", reached=True, seconds=1.0, bumps=odd),
-        event(Kind.FINISH, "first-drive", driver=odd, reached=True, seconds=1.0, bumps=0),
-        event(Kind.ANSWER, item, chosen=odd, not_sure=odd, right=odd, confidence=odd, occasion="quiz"),
-        event(Kind.ANSWER, item, chosen=1, right=True, confidence=odd, occasion="spaced", topic=odd),
-        event(Kind.ANSWER, item, chosen=1, right=True, confidence=1, occasion=odd),
-        event(Kind.FORM, "experience.ros1", phase="before", value=odd),
-        event(Kind.FORM, "experience.ros1", phase=odd, value=3),
-        event(Kind.ABOUT, "name", value=odd),
+        event(EventKind.STEP, "01-drive/²"),
+        event(EventKind.STEP, "01-drive/" + "9" * 6000),
+        event(EventKind.STEP, "\x1b[2J/1"),
+        event(EventKind.PREDICTION, "01-drive/1", chosen=odd, right=odd),
+        event(EventKind.ATTEMPT, "01-drive/flag", points=odd, max_points=odd, verdict="fail", lost=odd),
+        event(EventKind.ATTEMPT, "01-drive/flag", points=odd, max_points=5.0, verdict="fail", seconds=odd),
+        event(EventKind.ATTEMPT, "01-drive/readout", points=1.0, max_points=5.0, verdict=odd),
+        event(EventKind.HINT, "01-drive/flag/reached", step=odd),
+        event(EventKind.FINISH, "first-drive", driver="keys", reached=True, seconds=odd, bumps=0),
+        event(EventKind.FINISH, "first-drive", driver="keys", reached=True, seconds=1.0, bumps=odd),
+        event(EventKind.FINISH, "first-drive", driver=odd, reached=True, seconds=1.0, bumps=0),
+        event(EventKind.ANSWER, item, chosen=odd, not_sure=odd, right=odd, confidence=odd, occasion="quiz"),
+        event(EventKind.ANSWER, item, chosen=1, right=True, confidence=odd, occasion="spaced", topic=odd),
+        event(EventKind.ANSWER, item, chosen=1, right=True, confidence=1, occasion=odd),
+        event(EventKind.FORM, "experience.ros1", phase="before", value=odd),
+        event(EventKind.FORM, "experience.ros1", phase=odd, value=3),
+        event(EventKind.ABOUT, "name", value=odd),
     ]
-    lesson = standing(find_lesson("1"), events)
-    assert not lesson.is_done
-    assert all(0.0 <= share <= 1.0 for share in lesson.best.values())
+    lesson = lesson_progress_from_events(find_lesson("1"), events)
+    assert not lesson.is_completed
+    assert all(0.0 <= share <= 1.0 for share in lesson.best_shares.values())
     assert work_of(events)["01-drive"].passed == 0
     for level in standings(levels, events):
         assert all(0.0 < seconds < math.inf for seconds in level.best.values())

@@ -14,43 +14,43 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.progress import FILE, Event, Kind, Progress, ProgressError, read_export
+from kit.school.progress import FILE, EventKind, ProgressError, ProgressEvent, ProgressJournal, read_export
 
 
 def test_events_come_back_in_the_order_of_their_time(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
-        late = progress.add(Kind.STEP, "b/1", now=datetime(2026, 2, 1, tzinfo=UTC))
+    with ProgressJournal(tmp_path) as progress:
+        late = progress.add(EventKind.STEP, "b/1", now=datetime(2026, 2, 1, tzinfo=UTC))
         early = progress.add(
-            Kind.ANSWER, "q", {"chosen": None, "text": "ü"}, now=datetime(2026, 1, 1, tzinfo=UTC)
+            EventKind.ANSWER, "q", {"chosen": None, "text": "ü"}, now=datetime(2026, 1, 1, tzinfo=UTC)
         )
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert progress.events() == [early, late]
-        assert progress.events(Kind.ANSWER) == [early]
+        assert progress.events(EventKind.ANSWER) == [early]
         assert progress.events(subject="b/1") == [late]
         assert progress.notice == ""
 
 
 def test_the_last_name_said_is_the_one(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
-        assert progress.called == ""
-        progress.add(Kind.ABOUT, "name", {"value": "Ada"})
-        progress.add(Kind.ABOUT, "name", {"value": "Ada L"})
-        assert progress.called == "Ada L"
+    with ProgressJournal(tmp_path) as progress:
+        assert progress.student_name == ""
+        progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
+        progress.add(EventKind.ABOUT, "name", {"value": "Ada L"})
+        assert progress.student_name == "Ada L"
 
 
 def test_what_is_exported_comes_in_elsewhere_once(tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()
     there.mkdir()
-    with Progress(here) as progress:
+    with ProgressJournal(here) as progress:
         for number in range(30):
-            progress.add(Kind.STEP, f"01-drive/{number}")
+            progress.add(EventKind.STEP, f"01-drive/{number}")
         assert progress.export(tmp_path / "ada.json") == 30
         known = progress.events()
-    with Progress(there) as other:
-        own = other.add(Kind.STEP, "02/1")
+    with ProgressJournal(there) as other:
+        own = other.add(EventKind.STEP, "02/1")
         events = read_export(tmp_path / "ada.json")
-        assert (other.take_over(events), other.take_over(events)) == (30, 0)
+        assert (other.import_events(events), other.import_events(events)) == (30, 0)
         assert {each.uid for each in other.events()} == {own.uid, *(each.uid for each in known)}
 
 
@@ -67,8 +67,8 @@ BROKEN = {
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_damaged_export_is_refused_whole(tmp_path: Path, name: str) -> None:
     file = tmp_path / "ada.json"
-    with Progress(tmp_path) as progress:
-        progress.add(Kind.STEP, "01/1")
+    with ProgressJournal(tmp_path) as progress:
+        progress.add(EventKind.STEP, "01/1")
         progress.export(file)
     file.write_text(BROKEN[name](file.read_text()))
     with pytest.raises(ProgressError, match=r"ada\.json"):
@@ -76,12 +76,12 @@ def test_a_damaged_export_is_refused_whole(tmp_path: Path, name: str) -> None:
 
 
 def test_a_damaged_journal_is_set_aside_and_what_can_be_read_is_kept(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
-        progress.take_over(
-            Event(
+    with ProgressJournal(tmp_path) as progress:
+        progress.import_events(
+            ProgressEvent(
                 f"{number:032x}",
                 f"2026-01-01T00:00:{number % 60:02}+00:00",
-                Kind.STEP,
+                EventKind.STEP,
                 f"lesson/{number}",
                 {"x": "y" * 40},
             )
@@ -92,21 +92,25 @@ def test_a_damaged_journal_is_set_aside_and_what_can_be_read_is_kept(tmp_path: P
     middle = len(content) // 2 // 4096 * 4096
     content[middle : middle + 8192] = b"\xff" * 8192
     file.write_bytes(content)
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert "damaged" in progress.notice
         assert 500 < len(progress.events()) < 2001
-        progress.add(Kind.STEP, "goes on")
+        progress.add(EventKind.STEP, "goes on")
     (aside,) = tmp_path.glob("progress.damaged-*.db")
     assert aside.read_bytes() == bytes(content)
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert progress.notice == ""
 
 
 def _damaged(folder: Path, count: int = 2000) -> None:
-    with Progress(folder) as progress:
-        progress.take_over(
-            Event(
-                f"{number:032x}", "2026-01-01T00:00:00+00:00", Kind.STEP, f"lesson/{number}", {"x": "y" * 40}
+    with ProgressJournal(folder) as progress:
+        progress.import_events(
+            ProgressEvent(
+                f"{number:032x}",
+                "2026-01-01T00:00:00+00:00",
+                EventKind.STEP,
+                f"lesson/{number}",
+                {"x": "y" * 40},
             )
             for number in range(count)
         )
@@ -127,8 +131,8 @@ def test_a_kill_while_it_is_set_aside_loses_nothing(
     with monkeypatch.context() as patch:
         patch.setattr(moment, killed)
         with pytest.raises(KeyboardInterrupt):
-            Progress(tmp_path)
-    with Progress(tmp_path) as progress:
+            ProgressJournal(tmp_path)
+    with ProgressJournal(tmp_path) as progress:
         assert "damaged" in progress.notice
         assert len(progress.events()) > 500
 
@@ -143,23 +147,23 @@ def test_a_full_disk_while_it_is_set_aside_loses_nothing(
     with monkeypatch.context() as patch:
         patch.setattr("kit.school.progress._insert", full)
         with pytest.raises(ProgressError, match="full"):
-            Progress(tmp_path)
-    with Progress(tmp_path) as progress:
+            ProgressJournal(tmp_path)
+    with ProgressJournal(tmp_path) as progress:
         assert len(progress.events()) > 500
 
 
 @pytest.mark.parametrize("other", [False, True], ids=["taken away", "another in its place"])
 def test_a_file_taken_away_while_it_is_open_loses_nothing(tmp_path: Path, other: bool) -> None:
-    with Progress(tmp_path) as progress:
-        first = progress.add(Kind.STEP, "01/1")
+    with ProgressJournal(tmp_path) as progress:
+        first = progress.add(EventKind.STEP, "01/1")
         (tmp_path / FILE).unlink()
         if other:
-            with Progress(tmp_path) as second:
-                second.add(Kind.STEP, "01/9")
-        progress.add(Kind.STEP, "01/2")
+            with ProgressJournal(tmp_path) as second:
+                second.add(EventKind.STEP, "01/9")
+        progress.add(EventKind.STEP, "01/2")
         known = [each.subject for each in progress.events()]
     assert sorted(known) == sorted(["01/1", "01/2", *(["01/9"] if other else [])])
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert first in progress.events()
         assert [each.subject for each in progress.events()] == known
 
@@ -174,34 +178,34 @@ ODD = {
 
 @pytest.mark.parametrize("name", ODD)
 def test_a_row_that_somebody_wrote_is_left_alone(tmp_path: Path, name: str) -> None:
-    with Progress(tmp_path) as progress:
-        mine = progress.add(Kind.STEP, "01/1")
+    with ProgressJournal(tmp_path) as progress:
+        mine = progress.add(EventKind.STEP, "01/1")
     with sqlite3.connect(tmp_path / FILE) as other:
         other.execute(
             "INSERT INTO events (uid, at, kind, subject, content) VALUES ('u', ?, 'step', 's', ?)", ODD[name]
         )
     other.close()
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert progress.events() == [mine]
 
 
 def test_times_of_another_zone_come_in_order(tmp_path: Path) -> None:
     file = tmp_path / "ada.json"
-    with Progress(tmp_path) as progress:
-        progress.add(Kind.STEP, "later", now=datetime(2026, 1, 1, 8, tzinfo=UTC))
+    with ProgressJournal(tmp_path) as progress:
+        progress.add(EventKind.STEP, "later", now=datetime(2026, 1, 1, 8, tzinfo=UTC))
         progress.export(file)
         exported = file.read_text().replace("2026-01-01T08:00:00.000000+00:00", "2026-01-01T09:00:00+02:00")
         file.write_text(exported.replace(progress.events()[0].uid, "another").replace("later", "earlier"))
-        progress.take_over(read_export(file))
+        progress.import_events(read_export(file))
         assert [each.subject for each in progress.events()] == ["earlier", "later"]
 
 
 @pytest.mark.parametrize("content", [b"nonsense" * 200, b""], ids=["nonsense", "empty"])
 def test_what_is_no_database_is_set_aside_or_begun(tmp_path: Path, content: bytes) -> None:
     (tmp_path / FILE).write_bytes(content)
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert bool(progress.notice) is bool(content)
-        progress.add(Kind.STEP, "01/1")
+        progress.add(EventKind.STEP, "01/1")
         assert len(progress.events()) == 1
 
 
@@ -209,31 +213,31 @@ def test_another_database_is_not_taken_for_ours(tmp_path: Path) -> None:
     with sqlite3.connect(tmp_path / FILE) as other:
         other.execute("CREATE TABLE events (something TEXT)")
     other.close()
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert "damaged" in progress.notice
 
 
 def test_a_folder_that_cannot_be_used_says_so(tmp_path: Path) -> None:
     with pytest.raises(ProgressError, match="nowhere"):
-        Progress(tmp_path / "nowhere")
+        ProgressJournal(tmp_path / "nowhere")
 
 
 def test_an_answer_that_is_a_whole_book_is_refused(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         with pytest.raises(ProgressError, match="characters"):
-            progress.add(Kind.FORM, "q", {"value": "x" * 100_000})
+            progress.add(EventKind.FORM, "q", {"value": "x" * 100_000})
         assert progress.events() == []
 
 
 def test_an_event_of_a_newer_kit_is_kept_and_left_alone(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
-        progress.add(Kind.STEP, "01/1")
+    with ProgressJournal(tmp_path) as progress:
+        progress.add(EventKind.STEP, "01/1")
     with sqlite3.connect(tmp_path / FILE) as other:
         other.execute(
             "INSERT INTO events (uid, at, kind, subject, content) VALUES ('u', '2030-01-01T00:00:00+00:00', 'song', 's', '{}')"
         )
     other.close()
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert len(progress.events()) == 1
         assert progress.notice == ""
 
@@ -263,7 +267,7 @@ def _killed(tmp_path: Path, moment: float) -> None:
         time.sleep(moment)
         student.send_signal(signal.SIGKILL)
         confirmed = [line.strip() for line in student.stdout if line.endswith("\n")]
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         assert progress.notice == ""
         known = {event.uid for event in progress.events()}
     assert set(confirmed) <= known

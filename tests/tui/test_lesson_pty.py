@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.test_play_pty import KIT, ROBOT, User
 from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
@@ -89,13 +89,13 @@ def test_a_student_goes_through_a_lesson_leaves_and_comes_back(
     again.send(b"\x03")
     assert again.wait() == 0
     again.assert_sane()
-    with Progress(tmp_path / "home") as progress:
+    with ProgressJournal(tmp_path / "home") as progress:
         kinds = [event.kind for event in progress.events()]
-        attempts = [event.content["verdict"] for event in progress.events(Kind.ATTEMPT)]
-    assert kinds.count(Kind.PREDICTION) == 1
-    assert kinds.count(Kind.STEP) == 3
+        attempts = [event.content["verdict"] for event in progress.events(EventKind.ATTEMPT)]
+    assert kinds.count(EventKind.PREDICTION) == 1
+    assert kinds.count(EventKind.STEP) == 3
     assert attempts == ["fail", "pass"]
-    assert kinds.count(Kind.HINT) == kinds.count(Kind.SOLUTION) == 1
+    assert kinds.count(EventKind.HINT) == kinds.count(EventKind.SOLUTION) == 1
 
 
 def test_a_screen_that_a_command_opens_comes_back_with_ctrl_c(lesson: Callable[[], User]) -> None:

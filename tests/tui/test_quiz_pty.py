@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import open_workspace
 from tests.tui.test_play_pty import KIT, User
 from tests.tui.widgets.test_world_view_pty import cpu_seconds, run_on
@@ -31,8 +31,8 @@ def quiz() -> Iterator[Open]:
 
 
 def kept() -> int:
-    with Progress(open_workspace().folder) as progress:
-        return len(progress.events(Kind.ANSWER))
+    with ProgressJournal(open_workspace().folder) as progress:
+        return len(progress.events(EventKind.ANSWER))
 
 
 def test_answers_thoughts_and_out(quiz: Open) -> None:

@@ -11,7 +11,7 @@ from kit.school.game.ghosts import keep
 from kit.school.game.levels import Level, all_levels
 from kit.school.game.player_progress import improves, standings
 from kit.school.game.race import Driver, Finish
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace
 
 
@@ -27,7 +27,7 @@ class Noted:
 
 
 def note(
-    progress: Progress,
+    journal: ProgressJournal,
     workspace: Workspace,
     level: Level,
     driver: Driver,
@@ -35,7 +35,7 @@ def note(
     recording: Recording,
 ) -> Noted:
     """Notes a drive. A recording that cannot be written costs the ghost, not the stars. Raises ProgressError."""
-    (before,) = standings([level], progress.events(Kind.FINISH))
+    (before,) = standings([level], journal.events(EventKind.FINISH))
     is_best = improves(before, driver, finish)
     kept = None
     if is_best:
@@ -43,19 +43,19 @@ def note(
             kept = keep(workspace, level, driver.value, recording)
         except OSError:
             kept = None
-    progress.add(Kind.FINISH, level.id, finish.as_event(driver, None if kept is None else kept.name))
-    _tell_the_hall(progress)
+    journal.add(EventKind.FINISH, level.id, finish.as_event(driver, None if kept is None else kept.name))
+    _tell_the_hall(journal)
     return Noted(finish.stars(level.par), is_best, kept)
 
 
-def _tell_the_hall(progress: Progress) -> None:
+def _tell_the_hall(journal: ProgressJournal) -> None:
     """Brings the entry in the hall of fame up to date, where the player is in it."""
     folder = leaderboard.hall()
     if not leaderboard.has_joined(folder):
         return
     mine = next((each.name for each in leaderboard.entries(folder) if each.is_mine), "")
-    name = mine or progress.called or "somebody"
+    name = mine or journal.student_name or "somebody"
     try:
-        leaderboard.publish(folder, name, standings(all_levels(), progress.events(Kind.FINISH)))
+        leaderboard.publish(folder, name, standings(all_levels(), journal.events(EventKind.FINISH)))
     except leaderboard.FameError:
         return  # the drive counts without it

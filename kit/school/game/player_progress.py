@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from kit.school.game.levels import Level
 from kit.school.game.race import Driver, Finish
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 
 STARS = 3
 
@@ -30,7 +30,7 @@ class LevelStanding:
         return sum(self.stars)
 
 
-def finish_of(event: Event) -> tuple[Driver, Finish] | None:
+def finish_of(event: ProgressEvent) -> tuple[Driver, Finish] | None:
     """What a ``finish`` event says; None where it cannot be understood."""
     seconds, bumps = event.number("seconds"), event.number("bumps")
     driver = next((each for each in Driver if each.value == event.content.get("driver")), None)
@@ -39,12 +39,12 @@ def finish_of(event: Event) -> tuple[Driver, Finish] | None:
     return driver, Finish(event.content.get("reached") is True, seconds, int(bumps))
 
 
-def standings(levels: Sequence[Level], events: Sequence[Event]) -> tuple[LevelStanding, ...]:
+def standings(levels: Sequence[Level], events: Sequence[ProgressEvent]) -> tuple[LevelStanding, ...]:
     """Every level's standing."""
     finished: dict[str, list[tuple[Driver, Finish]]] = {level.id: [] for level in levels}
     for event in events:
         if (
-            event.kind is Kind.FINISH
+            event.kind is EventKind.FINISH
             and event.subject in finished
             and (found := finish_of(event)) is not None
         ):

@@ -20,7 +20,7 @@ from typing import Any, Final, Self
 from kit.school.lessons.records import Exercise
 from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
-LONGEST_S: Final = 300.0
+TIMEOUT_S: Final = 300.0
 """A check that takes longer has hung, and is ended."""
 
 
@@ -75,16 +75,16 @@ class CheckReport:
         }
 
 
-class Check:
+class ExerciseCheck:
     """A check that runs. ``poll`` it, or ``wait``; leaving the context ends it and everything it started."""
 
     def __init__(self, exercise: Exercise, file: Path, *, recording: Path | None = None) -> None:
         """``file``: what the student edits; where it came with others, their folder is handed in.
         ``recording``: where to save the worst episode."""
-        self._began = time.monotonic()
+        self._started_at = time.monotonic()
         self._recording = recording
-        self._out = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
-        self._said = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
+        self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
+        self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._report: CheckReport | None = None
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
@@ -100,15 +100,15 @@ class Check:
             return
         if recording is not None:
             recording.unlink(missing_ok=True)
-        command = [sys.executable, "-m", "grader", "check", str(handed_in(exercise, file))]
+        command = [sys.executable, "-m", "grader", "check", str(submission_path(exercise, file))]
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
         command += ["--replay", str(recording)] if recording is not None else []
         try:
             self._process = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
-                stdout=self._out,
-                stderr=self._said,
+                stdout=self._stdout,
+                stderr=self._stderr,
                 # From another folder than the student's: nothing that lies there is imported by our own process.
                 cwd=exercise.folder,
                 start_new_session=True,
@@ -127,19 +127,19 @@ class Check:
         self.close()
 
     @property
-    def seconds(self) -> float:
+    def elapsed_s(self) -> float:
         """How long it has been running."""
-        return time.monotonic() - self._began
+        return time.monotonic() - self._started_at
 
     def poll(self) -> CheckReport | None:
         """What came of it; None while it runs."""
         if self._report is None and self._process is not None:
             if self._process.poll() is not None:
-                self._report = self._read()
-            elif self.seconds > LONGEST_S:
+                self._report = self._read_report()
+            elif self.elapsed_s > TIMEOUT_S:
                 self._kill()
                 self._report = _without_result(
-                    f"The check did not end within {LONGEST_S:g} s and was stopped.", GradingVerdict.BROKEN
+                    f"The check did not end within {TIMEOUT_S:g} s and was stopped.", GradingVerdict.BROKEN
                 )
         return self._report
 
@@ -148,14 +148,14 @@ class Check:
         while (report := self.poll()) is None:
             assert self._process is not None
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(max(0.01, min(1.0, LONGEST_S - self.seconds)))
+                self._process.wait(max(0.01, min(1.0, TIMEOUT_S - self.elapsed_s)))
         return report
 
     def close(self) -> None:
         """Ends it. May be called twice."""
         self._kill()
-        self._out.close()
-        self._said.close()
+        self._stdout.close()
+        self._stderr.close()
 
     def _kill(self) -> None:
         if self._process is None or self._process.poll() is not None:
@@ -170,13 +170,13 @@ class Check:
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
 
-    def _read(self) -> CheckReport:
-        self._out.seek(0)
-        self._said.seek(0)
-        said = self._said.read().decode(errors="replace").strip()
+    def _read_report(self) -> CheckReport:
+        self._stdout.seek(0)
+        self._stderr.seek(0)
+        said = self._stderr.read().decode(errors="replace").strip()
         try:
-            content = json.loads(self._out.read())
-            return _with_result(GradingResult.from_dict(content), self.seconds, self._recording)
+            content = json.loads(self._stdout.read())
+            return _with_result(GradingResult.from_dict(content), self.elapsed_s, self._recording)
         except (ValueError, KeyError, TypeError):
             assert self._process is not None
             # Exit code 2: the submission cannot be read, which the student can mend.
@@ -187,13 +187,13 @@ class Check:
             return _without_result(f"The check broke: {last}", GradingVerdict.BROKEN)
 
 
-def check(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
+def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
     """Checks an exercise and waits for what comes of it."""
-    with Check(exercise, file, recording=recording) as running:
+    with ExerciseCheck(exercise, file, recording=recording) as running:
         return running.wait()
 
 
-def handed_in(exercise: Exercise, file: Path) -> Path:
+def submission_path(exercise: Exercise, file: Path) -> Path:
     """The file, or the folder it came in where the starter is a folder."""
     return file.parent if (exercise.folder / "starter").is_dir() else file
 

@@ -15,56 +15,58 @@ STARTER: Final = "starter"
 SOLUTION: Final = "solution"
 
 
-class WorkError(Exception):
+class ExerciseFilesError(Exception):
     """The student's files cannot be laid out; the message says why."""
 
 
-def folder_of(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
+def exercise_folder(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
     """Where the student's files of an exercise lie."""
     return workspace.lessons / lesson.name / exercise.name
 
 
-def file_of(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
+def exercise_file(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
     """What the student edits."""
-    return folder_of(workspace, lesson, exercise) / exercise.file
+    return exercise_folder(workspace, lesson, exercise) / exercise.file
 
 
-def lay_out(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
+def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
     """Makes what is missing of the exercise's files, and touches nothing that is there. Returns the file to edit.
 
-    Raises WorkError.
+    Raises ExerciseFilesError.
     """
-    folder = folder_of(workspace, lesson, exercise)
+    folder = exercise_folder(workspace, lesson, exercise)
     try:
-        for name, content in _starter(exercise):
+        for name, content in _starter_files(exercise):
             file = folder / name
             if not file.exists():
                 file.parent.mkdir(parents=True, exist_ok=True)
                 write_atomically(file, content)
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise WorkError(f"{folder}: the exercise cannot be laid out ({error.strerror}).") from None
+        raise ExerciseFilesError(f"{folder}: the exercise cannot be laid out ({error.strerror}).") from None
     return folder / exercise.file
 
 
-def begin_again(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, now: datetime) -> Path | None:
+def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, now: datetime) -> Path | None:
     """Lays the exercise out anew. What was there is kept in a folder beside; returned, or None if nothing was there.
 
-    Raises WorkError.
+    Raises ExerciseFilesError.
     """
-    folder = folder_of(workspace, lesson, exercise)
+    folder = exercise_folder(workspace, lesson, exercise)
     kept = None
     if folder.exists():
         kept = folder.with_name(f"{folder.name}.{now:%Y%m%d-%H%M%S-%f}")
         try:
             folder.rename(kept)
         except OSError as error:
-            raise WorkError(f"{folder}: cannot be kept under another name ({error.strerror}).") from None
-    lay_out(workspace, lesson, exercise)
+            raise ExerciseFilesError(
+                f"{folder}: cannot be kept under another name ({error.strerror})."
+            ) from None
+    install_exercise(workspace, lesson, exercise)
     return kept
 
 
-def solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
+def read_solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
     """The reference solution's files: name -> text, the file to edit first; those that are no text are left out.
     Empty where solutions were not installed."""
     try:
@@ -75,7 +77,7 @@ def solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
     if single.is_file():
         files = [(exercise.file, single.read_bytes())]
     elif (found / SOLUTION).is_dir():
-        files = list(_files(found / SOLUTION))
+        files = list(_folder_files(found / SOLUTION))
     else:
         return {}
     texts = {}
@@ -87,17 +89,17 @@ def solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
     return texts
 
 
-def _starter(exercise: Exercise) -> Iterator[tuple[str, bytes]]:
+def _starter_files(exercise: Exercise) -> Iterator[tuple[str, bytes]]:
     whole = exercise.folder / STARTER
     if whole.is_dir():
-        yield from _files(whole)
+        yield from _folder_files(whole)
         return
     single = exercise.folder / f"{STARTER}{Path(exercise.file).suffix}"
     if single.is_file():
         yield exercise.file, single.read_bytes()
 
 
-def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
+def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     for file in sorted(folder.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             yield file.relative_to(folder).as_posix(), file.read_bytes()

@@ -6,65 +6,65 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from kit.school.lessons.records import Exercise, Lesson, Step
-from kit.school.progress import Event, Kind
+from kit.school.lessons.records import Exercise, Lesson, LessonStep
+from kit.school.progress import EventKind, ProgressEvent
 
 LONGEST_NUMBER: Final = 4
 """Digits of a step's."""
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class LessonProgress:
     """What is done of one lesson."""
 
     lesson: Lesson
-    gone_through: frozenset[int]
+    completed_steps: frozenset[int]
     """Numbers of the steps that were gone through."""
     predictions: dict[int, int]
     """Step -> the option that was foreseen first; later ones do not count."""
-    best: dict[str, float]
+    best_shares: dict[str, float]
     """Exercise -> the best share of its points so far, 0 to 1."""
-    attempts: dict[str, int]
-    passed: frozenset[str]
+    attempt_counts: dict[str, int]
+    passed_exercises: frozenset[str]
     """Exercises that earned everything once."""
-    hints: dict[str, int]
+    opened_hints: dict[str, int]
     """``exercise/criterion`` -> how many hint steps were opened."""
-    solutions: frozenset[str]
+    opened_solutions: frozenset[str]
     """Exercises whose reference solution was opened."""
-    last: str
+    last_activity: str
     """When something was last done here: ISO 8601; empty: never."""
 
     @property
-    def is_begun(self) -> bool:
-        return bool(self.last)
+    def has_started(self) -> bool:
+        return bool(self.last_activity)
 
     @property
-    def is_done(self) -> bool:
+    def is_completed(self) -> bool:
         """Every step gone through and every exercise passed."""
-        return all(self.is_step_done(step) for step in self.lesson.steps)
+        return all(self.is_step_completed(step) for step in self.lesson.steps)
 
     @property
-    def done(self) -> int:
+    def completed_count(self) -> int:
         """How many steps are done."""
-        return sum(self.is_step_done(step) for step in self.lesson.steps)
+        return sum(self.is_step_completed(step) for step in self.lesson.steps)
 
-    def is_step_done(self, step: Step) -> bool:
+    def is_step_completed(self, step: LessonStep) -> bool:
         if step.exercise is not None:
-            return step.exercise.name in self.passed
-        return step.number in self.gone_through
+            return step.exercise.name in self.passed_exercises
+        return step.number in self.completed_steps
 
     @property
-    def next_step(self) -> Step:
+    def next_step(self) -> LessonStep:
         """Where to go on: the first step that is not done; the last one where all are."""
         return next(
-            (step for step in self.lesson.steps if not self.is_step_done(step)), self.lesson.steps[-1]
+            (step for step in self.lesson.steps if not self.is_step_completed(step)), self.lesson.steps[-1]
         )
 
-    def hints_open(self, exercise: Exercise, criterion: str) -> int:
-        return self.hints.get(f"{exercise.name}/{criterion}", 0)
+    def opened_hint_count(self, exercise: Exercise, criterion: str) -> int:
+        return self.opened_hints.get(f"{exercise.name}/{criterion}", 0)
 
 
-def standing(lesson: Lesson, events: Sequence[Event]) -> Standing:
+def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent]) -> LessonProgress:
     """The standing in a lesson; ``events`` may be those of everything."""
     steps: set[int] = set()
     predictions: dict[int, int] = {}
@@ -80,25 +80,25 @@ def standing(lesson: Lesson, events: Sequence[Event]) -> Standing:
             continue
         content: Any = event.content
         match event.kind:
-            case Kind.STEP:
+            case EventKind.STEP:
                 steps.add(_number(rest))
-            case Kind.PREDICTION:
+            case EventKind.PREDICTION:
                 predictions.setdefault(_number(rest), _whole(event, "chosen", -1))
-            case Kind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
+            case EventKind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
                 attempts[rest] = attempts.get(rest, 0) + 1
                 most = event.number("max_points") or 0.0
                 share = (event.number("points") or 0.0) / most if most > 0 else 0.0
                 best[rest] = max(best.get(rest, 0.0), min(share, 1.0))
                 if content["verdict"] == "pass":
                     passed.add(rest)
-            case Kind.HINT:
+            case EventKind.HINT:
                 hints[rest] = max(hints.get(rest, 0), _whole(event, "step", 0))
-            case Kind.SOLUTION:
+            case EventKind.SOLUTION:
                 solutions.add(rest)
             case _:
                 continue
-        last = max(last, event.at)
-    return Standing(
+        last = max(last, event.timestamp)
+    return LessonProgress(
         lesson,
         frozenset(steps),
         predictions,
@@ -115,6 +115,6 @@ def _number(text: str) -> int:
     return int(text) if text.isdecimal() and len(text) <= LONGEST_NUMBER else 0
 
 
-def _whole(event: Event, key: str, otherwise: int) -> int:
+def _whole(event: ProgressEvent, key: str, otherwise: int) -> int:
     value = event.number(key)
     return otherwise if value is None else int(value)

@@ -7,10 +7,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from kit.school.lessons import exercise_files
-from kit.school.lessons.checking import Check, CheckReport
-from kit.school.lessons.lesson_progress import Standing, standing
-from kit.school.lessons.records import Exercise, Lesson, Option, Step
-from kit.school.progress import Kind, Progress
+from kit.school.lessons.checking import CheckReport, ExerciseCheck
+from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
+from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
+from kit.school.progress import EventKind, ProgressJournal
 from kit.school.result import CriterionResult
 from kit.workspace import Workspace
 
@@ -25,123 +25,131 @@ class Hint:
     criterion: CriterionResult
     number: int
     text: str
-    more: int
+    remaining: int
     """How many steps follow."""
 
 
-class Visit:
+class LessonSession:
     """Everything but the drawing. Methods that note something raise ProgressError where the disk refuses, and
-    WorkError where the student's files cannot be laid out."""
+    ExerciseFilesError where the student's files cannot be laid out."""
 
-    def __init__(self, lesson: Lesson, progress: Progress, workspace: Workspace) -> None:
+    def __init__(self, lesson: Lesson, journal: ProgressJournal, workspace: Workspace) -> None:
         self.lesson = lesson
-        self.progress = progress
+        self.journal = journal
         self._workspace = workspace
-        self._standing = self._fold()
+        self._lesson_progress = self._read_progress()
         self._reports: dict[str, CheckReport] = {}
 
     @property
-    def standing(self) -> Standing:
-        return self._standing
+    def lesson_progress(self) -> LessonProgress:
+        return self._lesson_progress
 
     @property
-    def first_step(self) -> Step:
+    def first_step(self) -> LessonStep:
         """Where to begin or to go on."""
-        return self._standing.next_step
+        return self._lesson_progress.next_step
 
-    def step(self, number: int) -> Step:
+    def step(self, number: int) -> LessonStep:
         """A step by its number; the nearest one for a number there is none of."""
         return self.lesson.steps[min(max(number, 1), len(self.lesson.steps)) - 1]
 
-    def go_through(self, step: Step) -> None:
+    def complete_step(self, step: LessonStep) -> None:
         """The student has done with a step. Those with an exercise are done by passing it."""
-        if step.number not in self._standing.gone_through:
-            self._note(Kind.STEP, self.lesson.subject(step))
+        if step.number not in self._lesson_progress.completed_steps:
+            self._record_event(EventKind.STEP, self.lesson.step_subject(step))
 
-    def foreseen(self, step: Step) -> Option | None:
+    def prediction(self, step: LessonStep) -> PredictionOption | None:
         """What was foreseen first; None if nothing yet."""
-        chosen = self._standing.predictions.get(step.number)
+        chosen = self._lesson_progress.predictions.get(step.number)
         return step.options[chosen] if chosen is not None and 0 <= chosen < len(step.options) else None
 
-    def foresee(self, step: Step, chosen: int) -> Option:
+    def predict(self, step: LessonStep, chosen: int) -> PredictionOption:
         """Keeps a prediction, once: later ones change nothing. IndexError if there is no such option."""
         option = step.options[chosen]
-        if self.foreseen(step) is None:
-            self._note(Kind.PREDICTION, self.lesson.subject(step), {"chosen": chosen, "right": option.right})
+        if self.prediction(step) is None:
+            self._record_event(
+                EventKind.PREDICTION,
+                self.lesson.step_subject(step),
+                {"chosen": chosen, "right": option.is_right},
+            )
         return option
 
-    def file(self, exercise: Exercise) -> Path:
+    def exercise_file(self, exercise: Exercise) -> Path:
         """What the student edits."""
-        return exercise_files.file_of(self._workspace, self.lesson, exercise)
+        return exercise_files.exercise_file(self._workspace, self.lesson, exercise)
 
-    def lay_out(self, exercise: Exercise) -> Path:
+    def install(self, exercise: Exercise) -> Path:
         """Makes what is missing of the student's files."""
-        return exercise_files.lay_out(self._workspace, self.lesson, exercise)
+        return exercise_files.install_exercise(self._workspace, self.lesson, exercise)
 
-    def begin_again(self, exercise: Exercise) -> Path | None:
+    def reset(self, exercise: Exercise) -> Path | None:
         """The exercise as at first; where the former files were kept."""
         self._reports.pop(exercise.name, None)
-        return exercise_files.begin_again(self._workspace, self.lesson, exercise, now=datetime.now(UTC))
+        return exercise_files.reset_exercise(self._workspace, self.lesson, exercise, now=datetime.now(UTC))
 
-    def check(self, exercise: Exercise) -> Check:
+    def start_check(self, exercise: Exercise) -> ExerciseCheck:
         """Starts a check. Its report is to be handed to ``take``."""
-        file = self.file(exercise)
+        file = self.exercise_file(exercise)
         recording = file.parent / REPLAY if file.parent.is_dir() else None
-        return Check(exercise, file, recording=recording)
+        return ExerciseCheck(exercise, file, recording=recording)
 
-    def take(self, exercise: Exercise, report: CheckReport) -> None:
+    def record(self, exercise: Exercise, report: CheckReport) -> None:
         """Notes what came of a check; one that broke counts for nothing."""
         self._reports[exercise.name] = report
         if not report.is_broken and report.criteria:
-            self._note(Kind.ATTEMPT, self.lesson.subject_of(exercise), dict(report.as_event()))
+            self._record_event(
+                EventKind.ATTEMPT, self.lesson.exercise_subject(exercise), dict(report.as_event())
+            )
 
-    def report(self, exercise: Exercise) -> CheckReport | None:
+    def latest_report(self, exercise: Exercise) -> CheckReport | None:
         """The newest check's, of this visit."""
         return self._reports.get(exercise.name)
 
-    def hints(self, exercise: Exercise) -> tuple[Hint, ...]:
+    def opened_hints(self, exercise: Exercise) -> tuple[Hint, ...]:
         """The hints opened so far for the first criterion that was lost."""
-        lost = self._first_lost(exercise)
+        lost = self._first_lost_criterion(exercise)
         if lost is None:
             return ()
-        opened = min(self._standing.hints_open(exercise, lost.id), len(lost.hints))
+        opened = min(self._lesson_progress.opened_hint_count(exercise, lost.id), len(lost.hints))
         return tuple(_hint(lost, number) for number in range(1, opened + 1))
 
     def next_hint(self, exercise: Exercise) -> Hint | None:
         """Opens one more hint for the first criterion that was lost; None where there is none left, or none was
         lost."""
-        lost = self._first_lost(exercise)
+        lost = self._first_lost_criterion(exercise)
         if lost is None:
             return None
-        number = self._standing.hints_open(exercise, lost.id) + 1
+        number = self._lesson_progress.opened_hint_count(exercise, lost.id) + 1
         if number > len(lost.hints):
             return None
-        self._note(Kind.HINT, f"{self.lesson.subject_of(exercise)}/{lost.id}", {"step": number})
+        self._record_event(
+            EventKind.HINT, f"{self.lesson.exercise_subject(exercise)}/{lost.id}", {"step": number}
+        )
         return _hint(lost, number)
 
-    def may_see_solution(self, exercise: Exercise) -> bool:
+    def can_see_solution(self, exercise: Exercise) -> bool:
         """After success, and not before."""
-        return exercise.name in self._standing.passed
+        return exercise.name in self._lesson_progress.passed_exercises
 
     def solution(self, exercise: Exercise) -> dict[str, str]:
         """The reference solution's files by name; empty before success, or where none was installed."""
-        if not self.may_see_solution(exercise):
+        if not self.can_see_solution(exercise):
             return {}
-        files = exercise_files.solution(self.lesson, exercise)
-        if files and exercise.name not in self._standing.solutions:
-            self._note(Kind.SOLUTION, self.lesson.subject_of(exercise))
+        files = exercise_files.read_solution(self.lesson, exercise)
+        if files and exercise.name not in self._lesson_progress.opened_solutions:
+            self._record_event(EventKind.SOLUTION, self.lesson.exercise_subject(exercise))
         return files
 
-    def _first_lost(self, exercise: Exercise) -> CriterionResult | None:
+    def _first_lost_criterion(self, exercise: Exercise) -> CriterionResult | None:
         report = self._reports.get(exercise.name)
         return next(iter(report.lost_criteria), None) if report is not None else None
 
-    def _note(self, kind: Kind, subject: str, content: dict[str, object] | None = None) -> None:
-        self.progress.add(kind, subject, content)
-        self._standing = self._fold()
+    def _record_event(self, kind: EventKind, subject: str, content: dict[str, object] | None = None) -> None:
+        self.journal.add(kind, subject, content)
+        self._lesson_progress = self._read_progress()
 
-    def _fold(self) -> Standing:
-        return standing(self.lesson, self.progress.events())
+    def _read_progress(self) -> LessonProgress:
+        return lesson_progress_from_events(self.lesson, self.journal.events())
 
 
 def _hint(lost: CriterionResult, number: int) -> Hint:

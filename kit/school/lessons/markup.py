@@ -22,7 +22,7 @@ class MarkupError(ValueError):
     """A text is marked up wrongly; the message says where."""
 
 
-class Style(Enum):
+class TextStyle(Enum):
     """How a piece of text is set."""
 
     PLAIN = "plain"
@@ -31,15 +31,15 @@ class Style(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class StyledText:
     """Some characters in one style."""
 
     text: str
-    style: Style
+    style: TextStyle
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class MarkupBlock:
     """A paragraph, a list's entry, or a block of code whose lines stay as they are."""
 
     kind: str
@@ -47,38 +47,38 @@ class Block:
     lines: tuple[str, ...]
 
 
-Row = tuple[Piece, ...]
+StyledRow = tuple[StyledText, ...]
 
 
-def parsed(text: str) -> tuple[Block, ...]:
+def parse_markup(text: str) -> tuple[MarkupBlock, ...]:
     """The blocks of a text. Raises MarkupError."""
     if text.count("`") % 2 or re.sub(r"`[^`]+`", "", text).count("**") % 2:
         raise MarkupError("a ` or ** is opened and not closed")
-    blocks: list[Block] = []
+    blocks: list[MarkupBlock] = []
     for part in re.split(r"\n\s*\n", text.strip("\n")):
         blocks.extend(_blocks(part.splitlines()))
     return tuple(blocks)
 
 
-def _blocks(lines: Sequence[str]) -> list[Block]:
+def _blocks(lines: Sequence[str]) -> list[MarkupBlock]:
     if lines and all(line.startswith(BLOCK_INDENT) for line in lines):
-        return [Block("code", tuple(line.removeprefix(BLOCK_INDENT) for line in lines))]
-    blocks: list[Block] = []
+        return [MarkupBlock("code", tuple(line.removeprefix(BLOCK_INDENT) for line in lines))]
+    blocks: list[MarkupBlock] = []
     for line in lines:
         if line.startswith(BULLET):
-            blocks.append(Block("bullet", (line.removeprefix(BULLET),)))
+            blocks.append(MarkupBlock("bullet", (line.removeprefix(BULLET),)))
         elif blocks:
             last = blocks.pop()
-            blocks.append(Block(last.kind, (*last.lines, line.strip())))
+            blocks.append(MarkupBlock(last.kind, (*last.lines, line.strip())))
         else:
-            blocks.append(Block("paragraph", (line.strip(),)))
+            blocks.append(MarkupBlock("paragraph", (line.strip(),)))
     return blocks
 
 
-def rows(blocks: Sequence[Block], width: int) -> list[Row]:
+def wrap_blocks(blocks: Sequence[MarkupBlock], width: int) -> list[StyledRow]:
     """The blocks as rows of at most ``width`` characters; an empty row between blocks, none between list entries."""
-    made: list[Row] = []
-    before: Block | None = None
+    made: list[StyledRow] = []
+    before: MarkupBlock | None = None
     for block in blocks:
         if before is not None and not (before.kind == block.kind == "bullet"):
             made.append(())
@@ -87,39 +87,41 @@ def rows(blocks: Sequence[Block], width: int) -> list[Row]:
     return made
 
 
-def plain(row: Row) -> str:
+def plain_text(row: StyledRow) -> str:
     """A row's characters alone."""
     return "".join(piece.text for piece in row)
 
 
-def _rows(block: Block, width: int) -> list[Row]:
+def _rows(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
-        return [(Piece(BLOCK_INDENT + line, Style.CODE),) for line in block.lines]
+        return [(StyledText(BLOCK_INDENT + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
     return _wrapped(_pieces(" ".join(block.lines)), width, first, rest)
 
 
-def _pieces(text: str) -> list[Piece]:
-    pieces: list[Piece] = []
+def _pieces(text: str) -> list[StyledText]:
+    pieces: list[StyledText] = []
     at = 0
     for found in _INLINE.finditer(text):
-        pieces.append(Piece(text[at : found.start()], Style.PLAIN))
-        pieces.append(Piece(found[1], Style.CODE) if found[1] else Piece(found[2], Style.BOLD))
+        pieces.append(StyledText(text[at : found.start()], TextStyle.PLAIN))
+        pieces.append(
+            StyledText(found[1], TextStyle.CODE) if found[1] else StyledText(found[2], TextStyle.BOLD)
+        )
         at = found.end()
-    pieces.append(Piece(text[at:], Style.PLAIN))
+    pieces.append(StyledText(text[at:], TextStyle.PLAIN))
     return [piece for piece in pieces if piece.text]
 
 
-def _wrapped(pieces: Sequence[Piece], width: int, first: str, rest: str) -> list[Row]:
+def _wrapped(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
     """Wraps the characters, then gives each its style back. Code is wrapped like words: a long one moves down whole."""
-    styles: list[Style] = []
+    styles: list[TextStyle] = []
     words = ""
     for piece in pieces:
         words += piece.text
         styles += [piece.style] * len(piece.text)
     # A blank inside code must not be a place to break, nor be dropped at a line's end.
     held = "".join(
-        "\0" if style is Style.CODE and sign == " " else sign
+        "\0" if style is TextStyle.CODE and sign == " " else sign
         for sign, style in zip(words, styles, strict=True)
     )
     lines = textwrap.wrap(
@@ -130,25 +132,25 @@ def _wrapped(pieces: Sequence[Piece], width: int, first: str, rest: str) -> list
         break_on_hyphens=False,
         break_long_words=True,
     )
-    made: list[Row] = []
+    made: list[StyledRow] = []
     at = 0
     for index, line in enumerate(lines):
         lead = first if index == 0 else rest
-        row = [Piece(lead, Style.PLAIN)] if lead else []
+        row = [StyledText(lead, TextStyle.PLAIN)] if lead else []
         for sign in line.removeprefix(lead):
             while held[at] != sign:
                 at += 1  # a blank that the break swallowed
-            row.append(Piece(words[at], styles[at]))
+            row.append(StyledText(words[at], styles[at]))
             at += 1
         made.append(_joined(row))
     return made
 
 
-def _joined(pieces: Sequence[Piece]) -> Row:
-    made: list[Piece] = []
+def _joined(pieces: Sequence[StyledText]) -> StyledRow:
+    made: list[StyledText] = []
     for piece in pieces:
         if made and made[-1].style is piece.style:
-            made[-1] = Piece(made[-1].text + piece.text, piece.style)
+            made[-1] = StyledText(made[-1].text + piece.text, piece.style)
         else:
             made.append(piece)
     return tuple(made)

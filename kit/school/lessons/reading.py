@@ -7,17 +7,26 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.markup import MarkupError, parsed, rows
-from kit.school.lessons.records import Command, Exercise, How, Lesson, Option, Scene, Step, StepKind
+from kit.school.lessons.markup import MarkupError, parse_markup, wrap_blocks
+from kit.school.lessons.records import (
+    CommandKind,
+    Exercise,
+    Lesson,
+    LessonCommand,
+    LessonScene,
+    LessonStep,
+    PredictionOption,
+    StepKind,
+)
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-SHEET: Final = "lesson.yaml"
-OUTCOMES: Final = "outcomes.yaml"
-ASSIGNMENT: Final = "assignment.yaml"
+LESSON_FILE: Final = "lesson.yaml"
+OUTCOMES_FILE: Final = "outcomes.yaml"
+ASSIGNMENT_FILE: Final = "assignment.yaml"
 
 WIDTH: Final = 76
 """Characters of a line of text: what fits on 80 columns."""
@@ -33,18 +42,18 @@ class UnknownLesson(LookupError):
 
 def lessons_folder() -> Path:
     """Where the lessons lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
-    return _data("lessons", "lessons")
+    return _data_folder("lessons", "lessons")
 
 
 def solutions_folder() -> Path:
     """Where the reference solutions lie. FileNotFoundError if they were left out."""
-    return _data("solutions", "tests/solutions")
+    return _data_folder("solutions", "tests/solutions")
 
 
 def lesson_names(folder: Path | None = None) -> tuple[str, ...]:
     """Every lesson there is, in their order."""
     folder = lessons_folder() if folder is None else folder
-    return tuple(sorted(each.parent.name for each in folder.glob(f"*/{SHEET}")))
+    return tuple(sorted(each.parent.name for each in folder.glob(f"*/{LESSON_FILE}")))
 
 
 def find_lesson(name: str, folder: Path | None = None) -> Lesson:
@@ -55,16 +64,16 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
     for known in names:
         number, _, rest = known.partition("-")
         if name in (known, rest, number, number.lstrip("0")):
-            return read(folder / known)
+            return read_lesson(folder / known)
     raise UnknownLesson(
         f"There is no lesson {quoted(name)}: {suggestion(name, names)}. `kit lesson` lists them."
     )
 
 
-def read(folder: Path) -> Lesson:
+def read_lesson(folder: Path) -> Lesson:
     """The lesson in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
-    section = _opened(folder / SHEET, problems)
+    section = _open_section(folder / LESSON_FILE, problems)
     lesson = Lesson(
         name=folder.name,
         folder=folder,
@@ -72,11 +81,11 @@ def read(folder: Path) -> Lesson:
         summary=section.name("summary"),
         minutes=section.integer("minutes", minimum=1, maximum=120),
         outcomes=section.texts("outcomes", at_least=1),
-        carries=section.texts("carries", ()),
+        outcome_ids=section.texts("carries", ()),
         steps=tuple(_steps(section, folder)),
     )
-    known = outcomes(folder.parent)
-    for each in lesson.carries:
+    known = read_outcomes(folder.parent)
+    for each in lesson.outcome_ids:
         if each not in known:
             section.error(f"no outcome {quoted(each)}: {suggestion(each, known)}", "carries")
     section.finish()
@@ -84,18 +93,18 @@ def read(folder: Path) -> Lesson:
     return lesson
 
 
-def outcomes(folder: Path | None = None) -> Mapping[str, str]:
+def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
     """The outcomes and practical concepts that lessons carry, by id. Raises WorldError."""
-    file = (lessons_folder() if folder is None else folder) / OUTCOMES
+    file = (lessons_folder() if folder is None else folder) / OUTCOMES_FILE
     problems = ProblemCollector()
-    section = _opened(file, problems)
+    section = _open_section(file, problems)
     found = {key: section.text(key) for key in tuple(section.keys())}
     section.finish()
     problems.raise_if_any()
     return found
 
 
-def _data(installed: str, checkout: str) -> Path:
+def _data_folder(installed: str, checkout: str) -> Path:
     package = Path(__file__).resolve().parents[2]
     for folder in (package / "data" / installed, package.parent / checkout):
         if folder.is_dir():
@@ -103,7 +112,7 @@ def _data(installed: str, checkout: str) -> Path:
     raise FileNotFoundError(f"{installed} are missing: neither in {package / 'data'} nor beside {package}")
 
 
-def _opened(file: Path, problems: ProblemCollector) -> Section:
+def _open_section(file: Path, problems: ProblemCollector) -> Section:
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
         file, SourceLocation(file)
     )
@@ -112,13 +121,13 @@ def _opened(file: Path, problems: ProblemCollector) -> Section:
     return section
 
 
-def _steps(section: Section, folder: Path) -> Iterator[Step]:
+def _steps(section: Section, folder: Path) -> Iterator[LessonStep]:
     seen: set[str] = set()
     for number, each in enumerate(section.sections("steps", at_least=1), 1):
         kind = each.choice("kind", {one.value: one for one in StepKind})
         scene = _scene(each, folder)
         picture = each.text("picture", "").rstrip("\n")
-        step = Step(
+        step = LessonStep(
             number=number,
             kind=StepKind.EXPLAIN if kind is None else kind,
             title=each.name("title"),
@@ -136,12 +145,12 @@ def _steps(section: Section, folder: Path) -> Iterator[Step]:
         yield step
 
 
-def _check(section: Section, step: Step) -> None:
+def _check(section: Section, step: LessonStep) -> None:
     """What a step of this kind must have, and what fits on a screen."""
     predicts = step.kind is StepKind.PREDICT
     if predicts != bool(step.options) or predicts != bool(step.question):
         section.error("a step to predict, and no other, has a question and options")
-    elif predicts and sum(option.right for option in step.options) != 1:
+    elif predicts and sum(option.is_right for option in step.options) != 1:
         section.error("exactly one option must be right", "options")
     works = step.kind in (StepKind.MODIFY, StepKind.MAKE)
     if works != (step.exercise is not None):
@@ -153,7 +162,7 @@ def _check(section: Section, step: Step) -> None:
         section.error(f"a picture has at most {PICTURE_ROWS} rows of {WIDTH} characters", "picture")
     most = ROWS_BESIDE_A_PICTURE if step.scene is not None or step.picture else ROWS_ALONE
     try:
-        count = len(rows(parsed(step.text), WIDTH))
+        count = len(wrap_blocks(parse_markup(step.text), WIDTH))
     except MarkupError as error:
         section.error(str(error), "text")
         return
@@ -163,11 +172,11 @@ def _check(section: Section, step: Step) -> None:
         )
 
 
-def _scene(section: Section, folder: Path) -> Scene | None:
+def _scene(section: Section, folder: Path) -> LessonScene | None:
     given = section.section("scene", None)
     if given is None:
         return None
-    made = Scene(
+    made = LessonScene(
         _own_file(given.name("place"), folder),
         given.name("case") if given.has("case") else None,
         _own_file(given.text("controller", ""), folder),
@@ -186,19 +195,19 @@ def _own_file(name: str, folder: Path) -> str:
     return str(folder / name) if file.exists() and file.is_relative_to(folder.resolve()) else name
 
 
-def _commands(section: Section) -> Iterator[Command]:
+def _commands(section: Section) -> Iterator[LessonCommand]:
     for each in section.sections("commands", ()):
-        how = each.choice("how", {one.value: one for one in How}, How.ALONE.value)
-        yield Command(each.name("line"), how, each.text("place", "maze"))
+        how = each.choice("how", {one.value: one for one in CommandKind}, CommandKind.ALONE.value)
+        yield LessonCommand(each.name("line"), how, each.text("place", "maze"))
         each.finish()
 
 
-def _options(section: Section) -> Iterator[Option]:
+def _options(section: Section) -> Iterator[PredictionOption]:
     given = section.sections("options", ())
     if given and not OPTIONS[0] <= len(given) <= OPTIONS[1]:
         section.error(f"there must be {OPTIONS[0]} to {OPTIONS[1]} options", "options")
     for each in given:
-        yield Option(each.text("text"), each.flag("right", False), each.text("feedback"))
+        yield PredictionOption(each.text("text"), each.flag("right", False), each.text("feedback"))
         each.finish()
 
 
@@ -211,7 +220,7 @@ def _exercise(section: Section, folder: Path, seen: set[str]) -> Exercise | None
     )
     if name in seen:
         section.error(f"the exercise {quoted(name)} has a step already", "exercise")
-    elif "/" in name or name.startswith(".") or not (made.folder / ASSIGNMENT).is_file():
-        section.error(f"there is no {name}/{ASSIGNMENT} beside this file", "exercise")
+    elif "/" in name or name.startswith(".") or not (made.folder / ASSIGNMENT_FILE).is_file():
+        section.error(f"there is no {name}/{ASSIGNMENT_FILE} beside this file", "exercise")
     seen.add(name)
     return made

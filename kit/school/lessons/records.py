@@ -17,7 +17,7 @@ class StepKind(StrEnum):
     MAKE = "make"
 
 
-class How(StrEnum):
+class CommandKind(StrEnum):
     """What a printed command needs, so that a test can run it."""
 
     ALONE = "alone"
@@ -29,10 +29,10 @@ class How(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class LessonScene:
     """A world to look at: where, who drives, and for how long."""
 
-    place: str
+    map_name: str
     """A map of the kit, or a world file in the lesson's folder."""
     case: str | None
     controller: str
@@ -43,21 +43,21 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class LessonCommand:
     """A command that a step shows."""
 
     line: str
-    how: How
-    place: str
+    kind: CommandKind
+    map_name: str
     """The map of the world beside which it runs, for ``BESIDE``."""
 
 
 @dataclass(frozen=True, slots=True)
-class Option:
+class PredictionOption:
     """One thing that may be foreseen."""
 
     text: str
-    right: bool
+    is_right: bool
     feedback: str
 
 
@@ -75,7 +75,7 @@ class Exercise:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class LessonStep:
     """One screen of a lesson."""
 
     number: int
@@ -85,13 +85,13 @@ class Step:
     goal: str
     """The subgoal's label, in a few words."""
     text: str
-    scene: Scene | None
+    scene: LessonScene | None
     picture: str
     """Fixed characters instead of a scene; may be empty."""
-    commands: tuple[Command, ...]
+    commands: tuple[LessonCommand, ...]
     question: str
     """Of a prediction; else empty."""
-    options: tuple[Option, ...]
+    options: tuple[PredictionOption, ...]
     exercise: Exercise | None
 
 
@@ -107,18 +107,18 @@ class Lesson:
     minutes: int
     """Promised, all in all."""
     outcomes: tuple[str, ...]
-    carries: tuple[str, ...]
+    outcome_ids: tuple[str, ...]
     """Which outcomes and practical concepts of ``outcomes.yaml``."""
-    steps: tuple[Step, ...]
+    steps: tuple[LessonStep, ...]
 
     @property
     def exercises(self) -> tuple[Exercise, ...]:
         return tuple(step.exercise for step in self.steps if step.exercise is not None)
 
-    def subject(self, step: Step) -> str:
+    def step_subject(self, step: LessonStep) -> str:
         """What the journal calls a step."""
         return f"{self.name}/{step.number}"
 
-    def subject_of(self, exercise: Exercise) -> str:
+    def exercise_subject(self, exercise: Exercise) -> str:
         """What the journal calls an exercise."""
         return f"{self.name}/{exercise.name}"

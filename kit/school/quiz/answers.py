@@ -8,7 +8,7 @@ from datetime import datetime
 from enum import Enum, StrEnum
 from typing import Any, Final
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import OPTIONS, Item
 
 
@@ -72,9 +72,9 @@ def content_of(item: Item, choice: Choice, confidence: int | None, occasion: Occ
     }
 
 
-def answer_of(event: Event) -> Answer | None:
+def answer_of(event: ProgressEvent) -> Answer | None:
     """The answer that an event tells of; None if it is another kind of event, or cannot be understood."""
-    if event.kind is not Kind.ANSWER:
+    if event.kind is not EventKind.ANSWER:
         return None
     content = event.content
     chosen, confidence = content.get("chosen"), content.get("confidence")
@@ -97,6 +97,6 @@ def answer_of(event: Event) -> Answer | None:
     )
 
 
-def answers_of(events: Iterable[Event]) -> list[Answer]:
+def answers_of(events: Iterable[ProgressEvent]) -> list[Answer]:
     """All that can be understood, in the order of their time."""
     return [answer for event in events if (answer := answer_of(event)) is not None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final, Protocol
 
-from kit.school.progress import Event, Kind, Progress
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.answers import Answer, Choice, Occasion, Outcome, answers_of, content_of
 from kit.school.quiz.items import Bank, Item, lesson_title
 from kit.school.quiz.rounds import Rounds, rounds_of
@@ -32,7 +32,7 @@ class Plan(Protocol):
     def occasion(self) -> Occasion: ...
 
     def ahead(
-        self, events: Sequence[Event], now: datetime, seed: int, *, anew: bool
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
     ) -> tuple[int, list[Item]]:
         """How many are done, and what is still to be asked. ``anew``: a finished round begins again."""
 
@@ -47,7 +47,7 @@ class InRounds:
     items: tuple[Item, ...]
 
     def ahead(
-        self, events: Sequence[Event], now: datetime, seed: int, *, anew: bool
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
     ) -> tuple[int, list[Item]]:
         rounds = self.rounds(answers_of(events))
         if rounds.finished and not rounds.under_way and not anew:
@@ -68,7 +68,7 @@ class Today:
     occasion: Occasion = Occasion.SPACED
 
     def ahead(
-        self, events: Sequence[Event], now: datetime, seed: int, *, anew: bool
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
     ) -> tuple[int, list[Item]]:
         schedule = schedule_of(self.bank, events, now, seed)
         return schedule.done, list(schedule.queue)
@@ -93,14 +93,14 @@ def local_now() -> datetime:
     return datetime.now().astimezone()
 
 
-def student_seed(progress: Progress) -> int:
+def student_seed(journal: ProgressJournal) -> int:
     """The student's own seed, drawn once and kept in the journal. Raises ProgressError."""
-    for event in progress.events(Kind.ABOUT, SEED):
+    for event in journal.events(EventKind.ABOUT, SEED):
         value = event.content.get("value")
         if isinstance(value, int):
             return value
     seed = secrets.randbelow(2**31)
-    progress.add(Kind.ABOUT, SEED, {"value": seed})
+    journal.add(EventKind.ABOUT, SEED, {"value": seed})
     return seed
 
 
@@ -109,7 +109,7 @@ class Sitting:
 
     def __init__(
         self,
-        progress: Progress,
+        journal: ProgressJournal,
         bank: Bank,
         plan: Plan,
         *,
@@ -119,11 +119,11 @@ class Sitting:
     ) -> None:
         self.bank = bank
         self.plan = plan
-        self._progress = progress
+        self._progress = journal
         self._seed = seed
         self._anew = anew
         self._clock = clock
-        self._events = progress.events()
+        self._events = journal.events()
         self.given: list[Answer] = []
         """The answers of this sitting."""
         self._look_ahead()
@@ -147,7 +147,7 @@ class Sitting:
         item = self.item
         assert item is not None
         content = content_of(item, choice, confidence, self.plan.occasion)
-        event = self._progress.add(Kind.ANSWER, item.id, content, now=self._clock())
+        event = self._progress.add(EventKind.ANSWER, item.id, content, now=self._clock())
         self._events.append(event)
         self.given += answers_of([event])
         self._anew = False

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta
 from typing import Final
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import Answer, Occasion, Outcome, answer_of
 from kit.school.quiz.items import Bank, Item, Topic
 
@@ -87,8 +87,8 @@ class _Fold:
         self.days: set[date] = set()
         self.done = 0
 
-    def take(self, event: Event) -> None:
-        if event.kind in (Kind.STEP, Kind.ATTEMPT):
+    def take(self, event: ProgressEvent) -> None:
+        if event.kind in (EventKind.STEP, EventKind.ATTEMPT):
             self._lessons.add(event.subject.partition("/")[0])
         answer = answer_of(event)
         item = None if answer is None else self._items.get(answer.item)
@@ -124,7 +124,7 @@ class _Fold:
         return min(PRACTICE, len(self.met(topic)))
 
 
-def schedule_of(bank: Bank, events: Iterable[Event], now: datetime, seed: int = 0) -> Schedule:
+def schedule_of(bank: Bank, events: Iterable[ProgressEvent], now: datetime, seed: int = 0) -> Schedule:
     """The schedule that the journal makes, as of ``now`` (with its time zone). ``seed``: the student's."""
     fold = _Fold(bank, now)
     for event in events:

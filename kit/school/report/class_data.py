@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.school.progress import Event
+from kit.school.progress import ProgressEvent
 from kit.school.quiz.answers import Occasion, answer_of
 from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
 from kit.school.report.students import Roll, Student
@@ -110,7 +110,7 @@ def _counted(form: Form, answers: Sequence[Answers]) -> list[tuple[Question, Pha
 class _Sheet:
     """One student's answers, sorted: in the quiz, first of all, and the newest of those given after the quiz."""
 
-    def __init__(self, events: Sequence[Event]) -> None:
+    def __init__(self, events: Sequence[ProgressEvent]) -> None:
         self.quiz: dict[str, Reply] = {}
         self.first: dict[str, Reply] = {}
         self.again: dict[str, Reply] = {}

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import is_printable
-from kit.school.progress import Event, Kind, ProgressError, read_export
+from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 
 LARGEST: Final = 100_000_000
 """Bytes of one file: a year of a student's work is a hundredth of it."""
@@ -23,7 +23,7 @@ class Student:
     label: str
     """What the report calls them: a number, or their name if that was asked for."""
     files: tuple[Path, ...]
-    events: tuple[Event, ...]
+    events: tuple[ProgressEvent, ...]
     """In the order of their time."""
 
 
@@ -42,7 +42,7 @@ class _Found:
     """A student while files are being put together."""
 
     files: list[Path]
-    events: dict[str, Event]
+    events: dict[str, ProgressEvent]
     name: str
 
 
@@ -124,9 +124,9 @@ def _take(file: Path, found: list[_Found], cautions: list[str]) -> None:
     found.append(_Found([file], events, name))
 
 
-def _name(events: Iterable[Event]) -> str:
+def _name(events: Iterable[ProgressEvent]) -> str:
     """The last name that the student gave; empty if none."""
-    given = [each for each in events if each.kind is Kind.ABOUT and each.subject == "name"]
+    given = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
     last = max(given, key=lambda each: each.time, default=None)
     value = last.content.get("value") if last is not None else None
     if not isinstance(value, str):

@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 from datetime import timedelta
 from typing import Any, Final
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 
 PAUSE: Final = timedelta(minutes=10)
 """Whoever does nothing for longer is taken to be away; that time is not counted."""
 
-_OF_LESSONS: Final = frozenset({Kind.STEP, Kind.PREDICTION, Kind.ATTEMPT, Kind.HINT, Kind.SOLUTION})
+_OF_LESSONS: Final = frozenset(
+    {EventKind.STEP, EventKind.PREDICTION, EventKind.ATTEMPT, EventKind.HINT, EventKind.SOLUTION}
+)
 
 
 @dataclass(slots=True)
@@ -70,10 +72,10 @@ Work = Mapping[str, LessonWork]
 """By lesson."""
 
 
-def work_of(events: Sequence[Event]) -> Work:
+def work_of(events: Sequence[ProgressEvent]) -> Work:
     """One student's work; ``events`` in the order of their time."""
     lessons: dict[str, LessonWork] = {}
-    before: tuple[str, Event] | None = None
+    before: tuple[str, ProgressEvent] | None = None
     for event in events:
         if event.kind not in _OF_LESSONS:
             continue
@@ -86,17 +88,17 @@ def work_of(events: Sequence[Event]) -> Work:
     return lessons
 
 
-def _note(lesson: LessonWork, kind: Kind, rest: str, content: Mapping[str, Any]) -> None:
-    if kind is Kind.STEP:
+def _note(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[str, Any]) -> None:
+    if kind is EventKind.STEP:
         lesson.steps.add(rest)
-    elif kind is Kind.PREDICTION:
+    elif kind is EventKind.PREDICTION:
         lesson.predictions += 1
         lesson.predicted_right += content.get("right") is True
     else:
         exercise = lesson.exercises.setdefault(rest.partition("/")[0], ExerciseWork())
-        if kind is Kind.ATTEMPT:
+        if kind is EventKind.ATTEMPT:
             _attempt(exercise, content)
-        elif kind is Kind.HINT:
+        elif kind is EventKind.HINT:
             exercise.hints += 1
         else:
             exercise.solution = True

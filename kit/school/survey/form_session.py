@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from kit.plain_text import is_printable
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.survey.questions import HIGHEST, LOWEST, Form, Phase, Question, Shape, Value
 
 LONGEST_TEXT: Final = 4000
@@ -30,12 +30,12 @@ class Answers:
     """Questions whose stored answer cannot be one, which are left out."""
 
     @classmethod
-    def of(cls, form: Form, events: Iterable[Event]) -> Answers:
+    def of(cls, form: Form, events: Iterable[ProgressEvent]) -> Answers:
         """Folds a student's events; those about questions that the form does not have are passed over."""
         given: dict[tuple[Phase, str], Value] = {}
         odd: dict[str, None] = {}
         for event in events:
-            question = form.find(event.subject) if event.kind is Kind.FORM else None
+            question = form.find(event.subject) if event.kind is EventKind.FORM else None
             if question is None:
                 continue
             phase, value = event.content.get("phase"), event.content.get("value")

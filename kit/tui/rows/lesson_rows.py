@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from typing import Final
 
 from kit.school.lessons.checking import CheckReport
-from kit.school.lessons.lesson_progress import Standing
+from kit.school.lessons.lesson_progress import LessonProgress
 from kit.school.lessons.lesson_session import Hint
-from kit.school.lessons.markup import Style, parsed, rows
-from kit.school.lessons.records import Command, How, Option, Step, StepKind
+from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
+from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption, StepKind
 from kit.school.result_text import Role, criterion_lines, points_text
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
@@ -20,7 +20,7 @@ MARGIN: Final = 2
 LONGEST_BAR: Final = 12
 LEAST_TITLE: Final = 8
 
-_STYLES: Final = {Style.PLAIN: "", Style.CODE: "code", Style.BOLD: "bold"}
+_STYLES: Final = {TextStyle.PLAIN: "", TextStyle.CODE: "code", TextStyle.BOLD: "bold"}
 _ROLE_STYLES: Final = {
     Role.PASSED: "good",
     Role.LOST: "bad",
@@ -38,37 +38,37 @@ _KINDS: Final = {
     StepKind.MAKE: "Make",
 }
 _WHERE: Final = {
-    How.ALONE: "In a second terminal, or here with o:",
-    How.SCREEN: "Opens a screen, here with o:",
-    How.BESIDE: "In a second terminal, while a world runs:",
+    CommandKind.ALONE: "In a second terminal, or here with o:",
+    CommandKind.SCREEN: "Opens a screen, here with o:",
+    CommandKind.BESIDE: "In a second terminal, while a world runs:",
 }
 
 
-def heading(standing: Standing, step: Step, width: int) -> Row:
+def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
     """Lesson, goal, which step of how many, and a bar of what is done. A long lesson's title gives way to the goal."""
-    count = len(standing.lesson.steps)
-    bar = progress_bar(standing, step) if count <= LONGEST_BAR else ""
+    count = len(progress.lesson.steps)
+    bar = progress_bar(progress, step) if count <= LONGEST_BAR else ""
     where = f"step {step.number} of {count} "
-    title, room = standing.lesson.title, width - len(where) - len(bar) - len(step.goal) - 3
+    title, room = progress.lesson.title, width - len(where) - len(bar) - len(step.goal) - 3
     if len(title) > room:
         title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""
     left = row((title, "bold"), "  ", (step.goal, "dim")) if title else row((step.goal, "dim"))
     return spread(left, row(where, (bar, "bold")), width)
 
 
-def progress_bar(standing: Standing, here: Step | None = None) -> str:
+def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> str:
     """One character a step: full where it is done, half where one stands."""
     return "".join(
         "█"
-        if standing.is_step_done(step)
+        if progress.is_step_completed(step)
         else "▒"
         if here is not None and step.number == here.number
         else "░"
-        for step in standing.lesson.steps
+        for step in progress.lesson.steps
     )
 
 
-def title(step: Step, caption: str, width: int) -> Row:
+def title(step: LessonStep, caption: str, width: int) -> Row:
     """What kind of step, its title, and on the right what the scene does."""
     return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), row((caption, "dim")), width)
 
@@ -77,7 +77,7 @@ def words(text: str, width: int) -> list[Row]:
     """A lesson's text."""
     room = min(width - 2 * MARGIN, WIDTH)
     made: list[Row] = []
-    for each in rows(parsed(text), room):
+    for each in wrap_blocks(parse_markup(text), room):
         if len(each) == 1 and len(each[0].text) > room:
             made += [row(" " * MARGIN, (part, _STYLES[each[0].style])) for part in broken(each[0].text, room)]
         else:
@@ -101,11 +101,11 @@ def broken(line: str, room: int) -> list[str]:
     return [*parts, line]
 
 
-def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:
+def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Row]:
     """The commands of a step, those of a kind under one line that says where to type them."""
     made: list[Row] = []
     for how, where in _WHERE.items():
-        lines = [line for command, line in filled if command.how is how]
+        lines = [line for command, line in filled if command.kind is how]
         if lines:
             made += [row(), row(" " * MARGIN, (where, "dim"))]
             parts = (part for line in lines for part in broken(" " * MARGIN + line, _room(width)))
@@ -113,13 +113,13 @@ def commands(filled: Sequence[tuple[Command, str]], width: int) -> list[Row]:
     return made
 
 
-def question(step: Step, chosen: Option | None, told: bool, width: int) -> list[Row]:
+def question(step: LessonStep, chosen: PredictionOption | None, told: bool, width: int) -> list[Row]:
     """The question and its options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x``
     before a wrong choice."""
     made = [row(" " * MARGIN, (line, "bold")) for line in _wrapped(step.question, width)]
     for number, option in enumerate(step.options, 1):
         mark, style = (">", "bold") if option is chosen else (" ", "")
-        if told and option.right:
+        if told and option.is_right:
             mark, style = "+", "good"
         elif told:
             mark, style = ("x", "bad") if option is chosen else (" ", "dim")
@@ -127,10 +127,10 @@ def question(step: Step, chosen: Option | None, told: bool, width: int) -> list[
     return made
 
 
-def feedback(step: Step, chosen: Option, width: int) -> list[Row]:
+def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row]:
     """What is said to a prediction, and to the right one where it was another."""
-    right = next(option for option in step.options if option.right)
-    if chosen.right:
+    right = next(option for option in step.options if option.is_right)
+    if chosen.is_right:
         return [row(), *_told("Foreseen rightly.", "good", chosen.feedback, width)]
     numbers = {id(option): number for number, option in enumerate(step.options, 1)}
     return [
@@ -154,7 +154,7 @@ def verdict(report: CheckReport, hints: Sequence[Hint], width: int) -> list[Row]
     return made
 
 
-def status(report: CheckReport | None, standing: Standing, step: Step, by_hand: bool) -> Row:
+def status(report: CheckReport | None, progress: LessonProgress, step: LessonStep, by_hand: bool) -> Row:
     """One line of where one is with an exercise."""
     assert step.exercise is not None
     begin = (
@@ -162,9 +162,9 @@ def status(report: CheckReport | None, standing: Standing, step: Step, by_hand: 
         if by_hand
         else "Save the file and it is checked; r checks too"
     )
-    passed = step.exercise.name in standing.passed
+    passed = step.exercise.name in progress.passed_exercises
     if report is None:
-        best = standing.best.get(step.exercise.name)
+        best = progress.best_shares.get(step.exercise.name)
         if passed:
             return row((" Passed before.", "good"), f" {begin}.")
         return row((f" {begin}.", ""), (f" Best so far: {best:.0%} of the points." if best else "", "dim"))
@@ -201,23 +201,23 @@ def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     return made
 
 
-def ending(standing: Standing, width: int) -> list[Row]:
+def ending(progress: LessonProgress, width: int) -> list[Row]:
     """The page after the last step."""
-    lesson = standing.lesson
+    lesson = progress.lesson
     made = [row()]
-    if standing.is_done:
+    if progress.is_completed:
         made.append(row(" " * MARGIN, (f"{lesson.title} is done.", "good")))
         made += [row(), row(" " * MARGIN, "You can now:")]
         made += [line for outcome in lesson.outcomes for line in _entry(" ", "-", outcome, "", width)]
     else:
-        open_steps = [step for step in lesson.steps if not standing.is_step_done(step)]
+        open_steps = [step for step in lesson.steps if not progress.is_step_completed(step)]
         made.append(row(" " * MARGIN, ("That was the last step. Still open:", "bold")))
         made += [line for step in open_steps for line in _entry(" ", str(step.number), step.title, "", width)]
         made += [
             row(),
             *(row(" " * MARGIN, line) for line in _wrapped("b goes back, l lists all steps.", width)),
         ]
-    best = [f"{each.name} {standing.best.get(each.name, 0.0):.0%}" for each in lesson.exercises]
+    best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
     if best:
         made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
     return made

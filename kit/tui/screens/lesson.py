@@ -9,9 +9,9 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.inspection.world_sockets import sockets_folder
-from kit.school.lessons.exercise_files import WorkError
-from kit.school.lessons.lesson_session import Visit
-from kit.school.lessons.records import Option, Step
+from kit.school.lessons.exercise_files import ExerciseFilesError
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.records import LessonStep, PredictionOption
 from kit.school.progress import ProgressError
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
@@ -61,12 +61,12 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
-    def __init__(self, theme: Theme, visit: Visit, workspace: Workspace) -> None:
+    def __init__(self, theme: Theme, session: LessonSession, workspace: Workspace) -> None:
         super().__init__(theme.terminal)
         self.theme = theme
-        self.visit = visit
+        self.visit = session
         self.workspace = workspace
-        self.step: Step = visit.first_step
+        self.step: LessonStep = session.first_step
         self.model: ExerciseModel | None = None
         self._scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
         self._is_answer_shown = True
@@ -109,9 +109,9 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     # Steps
 
     @property
-    def chosen(self) -> Option | None:
+    def chosen(self) -> PredictionOption | None:
         """What was foreseen in this step."""
-        return self.visit.foreseen(self.step)
+        return self.visit.prediction(self.step)
 
     @property
     def _is_waiting(self) -> bool:
@@ -128,7 +128,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         """Whether the arrow keys drive in the scene."""
         return self._scene.by_hand and not self._is_still
 
-    def enter(self, step: Step) -> None:
+    def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
         self._close_model()
         self.step, self.is_over = step, False
@@ -137,7 +137,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         if step.exercise is not None:
             try:
                 self.model = ExerciseModel(self.visit, step.exercise)
-            except WorkError as error:
+            except ExerciseFilesError as error:
                 self.show_error("The exercise cannot be laid out", str(error))
         if step.scene is not None:
             self._scene.open(step.scene, still=self._is_still)
@@ -165,7 +165,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         model = self.model
         file = lesson_rows.file_rows(str(model.file), model.by_hand, model.has_others, width) if model else []
         said = [self.exercise_status()] if model is not None else []
-        self._rows("heading").show([lesson_rows.heading(self.visit.standing, step, width)])
+        self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
         self._show_title()
         self._rows("file").show_all(file)
         self._rows("said").show_all(said)
@@ -191,7 +191,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
     def _text_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
         if self.is_over:
-            return lesson_rows.ending(self.visit.standing, self._width)
+            return lesson_rows.ending(self.visit.lesson_progress, self._width)
         text = self.with_paths(self.step.text)
         filled = [
             (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
@@ -203,7 +203,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             made += lesson_rows.feedback(self.step, self.chosen, self._width)
         report = self.model.report if self.model is not None else None
         if report is not None and self.model is not None:
-            made += lesson_rows.verdict(report, self.visit.hints(self.model.exercise), self._width)
+            made += lesson_rows.verdict(report, self.visit.opened_hints(self.model.exercise), self._width)
         return made
 
     def _longest_answer(self) -> int:
@@ -301,7 +301,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
         if not self._is_waiting or number > len(self.step.options):
             return
         try:
-            self.visit.foresee(self.step, number - 1)
+            self.visit.predict(self.step, number - 1)
         except ProgressError as error:
             self.show_error("Your choice could not be kept", str(error))
             return
@@ -327,7 +327,7 @@ class LessonScreen(ActivePaintScreen[None], ExerciseActions, NavigationActions, 
             return
         if self.step.exercise is None:
             try:
-                self.visit.go_through(self.step)
+                self.visit.complete_step(self.step)
             except ProgressError as error:
                 self.show_error("This step could not be noted", str(error))
                 return

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from kit.run.scenario import Place
     from kit.run.session import Session
-    from kit.school.lessons.records import Scene
+    from kit.school.lessons.records import LessonScene
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
 
@@ -61,11 +61,11 @@ class RecordedDriveScreen(WatchScreen):
         Binding("x", "next_drive_mode", show=False),
     ]
 
-    def __init__(self, theme: Theme, scene: Scene, file: Path, workspace: Workspace) -> None:
+    def __init__(self, theme: Theme, scene: LessonScene, file: Path, workspace: Workspace) -> None:
         """``file``: where the drive is kept."""
         super().__init__(
             theme,
-            scene.case or scene.place,
+            scene.case or scene.map_name,
             seed=scene.seed,
             socket_dir=sockets_folder(workspace.folder),
             records=True,
@@ -90,7 +90,7 @@ class RecordedDriveScreen(WatchScreen):
         """In the helper thread."""
         from kit.run.scenario import find_place
 
-        return find_place(self._scene.place, self._scene.case)
+        return find_place(self._scene.map_name, self._scene.case)
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)

@@ -10,7 +10,7 @@ from textual import work
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from kit.school.lessons.exercise_files import WorkError
+from kit.school.lessons.exercise_files import ExerciseFilesError
 from kit.school.progress import ProgressError
 from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson_keys import ASK_BEGIN_AGAIN, CHECKING_KEYS
@@ -20,8 +20,8 @@ from kit.tui.widgets.text_rows import Row, row
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Place
-    from kit.school.lessons.lesson_session import Visit
-    from kit.school.lessons.records import Step
+    from kit.school.lessons.lesson_session import LessonSession
+    from kit.school.lessons.records import LessonStep
     from kit.tui.exercise_model import ExerciseModel
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
@@ -31,9 +31,9 @@ class ExerciseActions(Screen[None]):
     """What a lesson's screen does with the exercise of its step; ``model`` is None where it has none."""
 
     theme: Theme
-    visit: Visit
+    visit: LessonSession
     workspace: Workspace
-    step: Step
+    step: LessonStep
     model: ExerciseModel | None
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -74,7 +74,9 @@ class ExerciseActions(Screen[None]):
             return row((" Begin this exercise anew? What you have is kept beside it.", "warn"))
         if model.seconds is not None:
             return lesson_rows.checking(model.seconds)
-        return self._notice or lesson_rows.status(model.report, self.visit.standing, self.step, model.by_hand)
+        return self._notice or lesson_rows.status(
+            model.report, self.visit.lesson_progress, self.step, model.by_hand
+        )
 
     def asked_keys(self) -> Row | None:
         """The row of keys while the exercise has them all for itself; else None."""
@@ -94,7 +96,7 @@ class ExerciseActions(Screen[None]):
             "hint": report is not None and any(each.hints for each in report.lost_criteria),
             "worst": report is not None and (report.recording is not None or bool(_picture_lines(model))),
             "printed": bool(_log_lines(model)),
-            "solution": self.visit.may_see_solution(model.exercise),
+            "solution": self.visit.can_see_solution(model.exercise),
             "begin_again": True,
         }
 
@@ -142,7 +144,7 @@ class ExerciseActions(Screen[None]):
             self.show_error("This hint could not be noted", str(error))
             return
         if hint is None:
-            self._notify(_no_hint_text(model, bool(self.visit.hints(model.exercise))))
+            self._notify(_no_hint_text(model, bool(self.visit.opened_hints(model.exercise))))
         self.show_answer()
 
     def action_printed(self) -> None:
@@ -167,7 +169,7 @@ class ExerciseActions(Screen[None]):
             self.show_error("This could not be noted", str(error))
             return
         if not files:
-            passed = self.visit.may_see_solution(model.exercise)
+            passed = self.visit.can_see_solution(model.exercise)
             self._notify(
                 " No solution came with this kit." if passed else " The solution is shown once yours passes."
             )
@@ -192,7 +194,7 @@ class ExerciseActions(Screen[None]):
         self._confirming = False
         try:
             kept = self.model.start_over()
-        except WorkError as error:
+        except ExerciseFilesError as error:
             self.show_error("The exercise stays as it was", str(error))
         else:
             self._notify(

@@ -8,15 +8,15 @@ from textual import work
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from kit.school.lessons.records import Command, How
+from kit.school.lessons.records import CommandKind, LessonCommand
 from kit.tui.screens.lesson_keys import LESSON_HELP
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.suspend import run_aside
 
 if TYPE_CHECKING:
-    from kit.school.lessons.lesson_session import Visit
-    from kit.school.lessons.records import Step
+    from kit.school.lessons.lesson_session import LessonSession
+    from kit.school.lessons.records import LessonStep
     from kit.tui.exercise_model import ExerciseModel
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
@@ -26,9 +26,9 @@ class NavigationActions(Screen[None]):
     """What a lesson's screen opens and where it goes."""
 
     theme: Theme
-    visit: Visit
+    visit: LessonSession
     workspace: Workspace
-    step: Step
+    step: LessonStep
     model: ExerciseModel | None
     is_over: bool
     """Whether the last step lies behind."""
@@ -41,7 +41,7 @@ class NavigationActions(Screen[None]):
         Binding("escape,q", "leave", show=False),
     ]
 
-    def enter(self, step: Step) -> None:
+    def enter(self, step: LessonStep) -> None:
         """Shows a step from its beginning."""
         raise NotImplementedError
 
@@ -59,11 +59,11 @@ class NavigationActions(Screen[None]):
 
     @work
     async def action_steps(self) -> None:
-        standing = self.visit.standing
+        progress = self.visit.lesson_progress
         choices = [
             PickerItem(
                 str(step.number),
-                f"{'[x]' if standing.is_step_done(step) else '[ ]'} {step.number}",
+                f"{'[x]' if progress.is_step_completed(step) else '[ ]'} {step.number}",
                 step.title,
             )
             for step in self.visit.lesson.steps
@@ -83,11 +83,13 @@ class NavigationActions(Screen[None]):
         else:
             self.app.exit()
 
-    def openable(self) -> list[Command]:
+    def openable(self) -> list[LessonCommand]:
         """The commands that can be run here; for those that look into a world, what opens that world."""
-        made = [each for each in self.step.commands if each.how is not How.BESIDE]
-        places = dict.fromkeys(each.place for each in self.step.commands if each.how is How.BESIDE)
-        return made + [Command(f"kit play {place}", How.SCREEN, place) for place in places]
+        made = [each for each in self.step.commands if each.kind is not CommandKind.BESIDE]
+        places = dict.fromkeys(
+            each.map_name for each in self.step.commands if each.kind is CommandKind.BESIDE
+        )
+        return made + [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]
 
     @work
     async def action_open(self) -> None:
@@ -108,7 +110,7 @@ class NavigationActions(Screen[None]):
             self.theme.terminal,
             workspace=self.workspace.folder,
             folder=self.model.file.parent if self.model is not None else None,
-            waits=command.how is How.ALONE,
+            waits=command.kind is CommandKind.ALONE,
         )
         self.hold_scene(False)
         if not done:
@@ -121,4 +123,4 @@ class NavigationActions(Screen[None]):
         if self.is_over:
             from kit.tui.screens.questions import ask_of_lesson  # of no use before the end
 
-            await ask_of_lesson(self, self.visit.progress, self.visit.lesson.name)
+            await ask_of_lesson(self, self.visit.journal, self.visit.lesson.name)

@@ -19,7 +19,7 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
-    from kit.school.lessons.catalogue import Entry
+    from kit.school.lessons.catalogue import LessonEntry
 
 SUMMARY_ROWS: Final = 6
 KEYS: Final = key_line(("up down", "choose"), ("Enter", "open"), ("Esc", "back"))
@@ -64,7 +64,7 @@ class LessonsScreen(ActivePaintScreen[None]):
         self.call_after_refresh(self._show)
 
     @property
-    def chosen(self) -> Entry | None:
+    def chosen(self) -> LessonEntry | None:
         """The lesson that Enter opens."""
         shelf = self._overview.shelf
         return shelf[self._at] if shelf else None
@@ -105,11 +105,11 @@ class LessonsScreen(ActivePaintScreen[None]):
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame
 
         try:
-            visit = self._store.visit(entry.lesson)
+            session = self._store.visit(entry.lesson)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(LessonScreen(self._theme, visit, self._store.workspace))
+        await self.app.push_screen_wait(LessonScreen(self._theme, session, self._store.workspace))
         self._overview = await to_thread(self._store.read_overview)
         self._at = min(self._at, max(0, len(self._overview.shelf) - 1))
         self._show()

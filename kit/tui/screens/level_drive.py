@@ -21,7 +21,7 @@ from kit.school.game.drive_records import Noted, note
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import Level
 from kit.school.game.race import LONGEST, SEED, Driver, Finish, Judge
-from kit.school.progress import Progress, ProgressError
+from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, drive_key, named
 from kit.tui.rows import level_rows
@@ -95,7 +95,12 @@ class LevelDrive(WatchScreen):
     ]
 
     def __init__(
-        self, theme: Theme, level: Level, ghosts: Sequence[Ghost], progress: Progress, workspace: Workspace
+        self,
+        theme: Theme,
+        level: Level,
+        ghosts: Sequence[Ghost],
+        journal: ProgressJournal,
+        workspace: Workspace,
     ) -> None:
         super().__init__(
             theme, level.title, seed=SEED, socket_dir=sockets_folder(workspace.folder), records=True
@@ -104,7 +109,7 @@ class LevelDrive(WatchScreen):
         self._ghosts = tuple(ghosts)
         self._ways = tuple(way for ghost in self._ghosts for way in _ways(ghost))
         self._with_ghosts = True
-        self._progress = progress
+        self._progress = journal
         self._workspace = workspace
         self._judge: Judge | None = None
         self._is_over = False

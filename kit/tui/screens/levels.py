@@ -17,7 +17,7 @@ from kit.school.game.ghosts import Ghost, folder, ghosts, reference_ghost
 from kit.school.game.levels import Level, all_levels
 from kit.school.game.player_progress import LevelStanding, standings
 from kit.school.game.race import Driver, Finish, race, race_agent
-from kit.school.progress import Kind, Progress, ProgressError
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import key_line
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
@@ -75,12 +75,12 @@ class LevelsScreen(ActivePaintScreen[None]):
     """
 
     def __init__(
-        self, theme: Theme, progress: Progress, workspace: Workspace, level: Level | None = None
+        self, theme: Theme, journal: ProgressJournal, workspace: Workspace, level: Level | None = None
     ) -> None:
         """``level``: opened at once."""
         super().__init__()
         self._theme = theme
-        self._progress = progress
+        self._progress = journal
         self._workspace = workspace
         self._levels = all_levels()
         self._first = level
@@ -113,7 +113,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         return self._found[self._at]
 
     def _read(self) -> None:
-        self._found = standings(self._levels, self._progress.events(Kind.FINISH))
+        self._found = standings(self._levels, self._progress.events(EventKind.FINISH))
 
     def _show(self) -> None:
         if not self.size.width or not self._found:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from asyncio import to_thread
 from typing import TYPE_CHECKING, Any
 
-from kit.school.progress import Progress, ProgressError
+from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.screens.message_dialog import MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.world.problems import WorldError
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
 
 
-async def ask_of_lesson(screen: Screen[Any], progress: Progress, lesson: str) -> None:
+async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: str) -> None:
     """Asks a lesson's questions, and comes back. To be called in a worker."""
     from kit.school.quiz.quiz_session import of_lesson
 
     bank = await _bank(screen)
     if bank is not None:
-        await _ask(screen, progress, bank, of_lesson(bank, lesson))
+        await _ask(screen, journal, bank, of_lesson(bank, lesson))
 
 
-async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
+async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
     from kit.school.quiz.answers import answers_of
     from kit.school.quiz.quiz_session import Today, local_now, of_lesson, the_twelve
@@ -39,7 +39,7 @@ async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
     if bank is None:
         return
     try:
-        events = progress.events()
+        events = journal.events()
     except ProgressError as error:
         screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
         return
@@ -61,7 +61,7 @@ async def choose_questions(screen: Screen[Any], progress: Progress) -> None:
         lines = scores_lines(bank, answers_of(events), schedule)
         await screen.app.push_screen_wait(TextScreen("Scores", [row(" " + line) for line in lines]))
     elif chosen is not None:
-        await _ask(screen, progress, bank, plans[chosen])
+        await _ask(screen, journal, bank, plans[chosen])
 
 
 async def _bank(screen: Screen[Any]) -> Bank | None:
@@ -75,14 +75,14 @@ async def _bank(screen: Screen[Any]) -> Bank | None:
         return None
 
 
-async def _ask(screen: Screen[Any], progress: Progress, bank: Bank, plan: Plan) -> None:
+async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: Bank, plan: Plan) -> None:
     from kit.school.quiz.quiz_session import Sitting, student_seed
     from kit.tui.screens.quiz import QuizScreen
 
     try:
-        sitting = Sitting(progress, bank, plan, seed=student_seed(progress))
+        sitting = Sitting(journal, bank, plan, seed=student_seed(journal))
         if sitting.item is None:  # all were asked: once more, for practice
-            sitting = Sitting(progress, bank, plan, seed=student_seed(progress), anew=True)
+            sitting = Sitting(journal, bank, plan, seed=student_seed(journal), anew=True)
     except ProgressError as error:
         screen.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
         return

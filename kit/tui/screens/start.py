@@ -164,11 +164,11 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame, like all below
 
         try:
-            visit = self._store.visit(entry.lesson)
+            session = self._store.visit(entry.lesson)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be kept", wrapped(str(error))))
             return
-        await self._visit(LessonScreen(self._theme, visit, self._store.workspace))
+        await self._visit(LessonScreen(self._theme, session, self._store.workspace))
 
     async def _open_lessons(self) -> None:
         from kit.tui.screens.lessons import LessonsScreen
@@ -197,8 +197,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.levels import LevelsScreen
 
         try:
-            progress = await to_thread(self._store.progress)
-            screen = LevelsScreen(self._theme, progress, self._store.workspace)
+            journal = await to_thread(self._store.progress)
+            screen = LevelsScreen(self._theme, journal, self._store.workspace)
         except (ProgressError, FileNotFoundError) as error:
             self.app.push_screen(MessageDialog("The levels cannot be opened", wrapped(str(error))))
             return
@@ -224,12 +224,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.questions import choose_questions
 
         try:
-            progress = await to_thread(self._store.progress)
+            journal = await to_thread(self._store.progress)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
             return
         self._go_away()
-        await choose_questions(self, progress)
+        await choose_questions(self, journal)
         await self._come_back()
 
     async def _open_progress(self) -> None:

@@ -93,10 +93,10 @@ def _where(overview: StudentOverview | None) -> str:
     entry = overview.going_on
     if overview.problem:
         return "Progress cannot be read."
-    if entry is None or entry.standing is None:
+    if entry is None or entry.progress is None:
         return "Every lesson is done." if overview.shelf else "No lessons were installed."
-    step = entry.standing.next_step
-    where = f", step {step.number} of {len(entry.standing.lesson.steps)}" if entry.is_begun else ""
+    step = entry.progress.next_step
+    where = f", step {step.number} of {len(entry.progress.lesson.steps)}" if entry.has_started else ""
     return f"Lesson {entry.number}, {entry.title}{where}"
 
 

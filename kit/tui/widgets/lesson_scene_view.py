@@ -10,7 +10,7 @@ from kit.controllers import find_controller
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
-from kit.school.lessons.records import Scene
+from kit.school.lessons.records import LessonScene
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
@@ -37,7 +37,7 @@ class LessonSceneView(WorldView):
         super().__init__(theme.encoder, theme.palette, id="scene")
         self.view: View | None = None
         """The newest; None before the first of a scene."""
-        self.scene: Scene | None = None
+        self.scene: LessonScene | None = None
         self._folder = folder
         self._picture: Picture | None = None
         self._announced = self._opening = False
@@ -61,9 +61,9 @@ class LessonSceneView(WorldView):
             and self.view.time_s >= self.scene.seconds - 1e-6
         )
 
-    def open(self, scene: Scene, *, still: bool) -> None:
+    def open(self, scene: LessonScene, *, still: bool) -> None:
         """Another scene, from its first instant on. ``still``: it stands there until ``go``."""
-        if self.scene is None or (scene.place, scene.case) != (self.scene.place, self.scene.case):
+        if self.scene is None or (scene.map_name, scene.case) != (self.scene.map_name, self.scene.case):
             self.clear()  # not the place of the step before
         self.scene, self.view, self._opening = scene, None, True
         folder, by_hand = self._folder, self.by_hand
@@ -73,7 +73,7 @@ class LessonSceneView(WorldView):
             from kit.run.scenario import find_place
             from kit.run.session import Session
 
-            session = Session(find_place(scene.place, scene.case), seed=scene.seed, watched=True)
+            session = Session(find_place(scene.map_name, scene.case), seed=scene.seed, watched=True)
             try:
                 if scene.controller:
                     session.drive_with(find_controller(scene.controller, folder))

@@ -19,7 +19,7 @@ from kit.school.game.ghosts import ghosts, reference_ghost
 from kit.school.game.levels import Level, UnknownLevel, all_levels, find_level
 from kit.school.game.player_progress import standings
 from kit.school.game.race import Driver, Finish, judged, race, reference
-from kit.school.progress import Event, Kind, Progress
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
 
@@ -142,10 +142,10 @@ def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
     assert not finish.reached
 
 
-def drive(level: str, driver: str, seconds: float, *, reached: bool = True, bumps: int = 0) -> Event:
+def drive(level: str, driver: str, seconds: float, *, reached: bool = True, bumps: int = 0) -> ProgressEvent:
     content = {"driver": driver, "reached": reached, "seconds": seconds, "bumps": bumps, "recording": None}
-    return Event(
-        f"{level}{driver}{seconds}{bumps}", datetime.now(UTC).isoformat(), Kind.FINISH, level, content
+    return ProgressEvent(
+        f"{level}{driver}{seconds}{bumps}", datetime.now(UTC).isoformat(), EventKind.FINISH, level, content
     )
 
 
@@ -154,7 +154,7 @@ def test_stars_add_up_over_drives_and_open_levels() -> None:
         drive(FIRST.id, "keys", FIRST.par + 3.0),
         drive(FIRST.id, "agent", FIRST.par - 1.0, bumps=2),
         drive("the-door", "keys", 3.0, reached=False),
-        Event("x", datetime.now(UTC).isoformat(), Kind.FINISH, FIRST.id, {"driver": "horse"}),
+        ProgressEvent("x", datetime.now(UTC).isoformat(), EventKind.FINISH, FIRST.id, {"driver": "horse"}),
     ]
     found = {each.level.id: each for each in standings(LEVELS, events)}
     assert found[FIRST.id].stars == (True, True, True)
@@ -168,7 +168,7 @@ def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = reference(FIRST)
-    with Progress(workspace.folder) as progress:
+    with ProgressJournal(workspace.folder) as progress:
         first = note(progress, workspace, FIRST, Driver.KEYS, finish, recording)
         slower = note(progress, workspace, FIRST, Driver.KEYS, replace(finish, seconds=99.0), recording)
     assert (first.is_best, slower.is_best) == (True, False)

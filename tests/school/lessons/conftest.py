@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.lesson_session import Visit
-from kit.school.lessons.reading import read
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.reading import read_lesson
 from kit.school.lessons.records import Lesson
-from kit.school.progress import Progress
+from kit.school.progress import ProgressJournal
 from kit.workspace import Workspace, open_workspace
 
 LESSON = """
@@ -72,7 +72,7 @@ def write_lesson(lessons: Path, sheet: str = LESSON) -> Path:
 
 @pytest.fixture
 def lesson(tmp_path: Path) -> Lesson:
-    return read(write_lesson(tmp_path / "lessons"))
+    return read_lesson(write_lesson(tmp_path / "lessons"))
 
 
 @pytest.fixture
@@ -81,11 +81,11 @@ def workspace(tmp_path: Path) -> Workspace:
 
 
 @pytest.fixture
-def progress(workspace: Workspace) -> Iterator[Progress]:
-    with Progress(workspace.folder) as opened:
+def progress(workspace: Workspace) -> Iterator[ProgressJournal]:
+    with ProgressJournal(workspace.folder) as opened:
         yield opened
 
 
 @pytest.fixture
-def visit(lesson: Lesson, progress: Progress, workspace: Workspace) -> Visit:
-    return Visit(lesson, progress, workspace)
+def visit(lesson: Lesson, progress: ProgressJournal, workspace: Workspace) -> LessonSession:
+    return LessonSession(lesson, progress, workspace)

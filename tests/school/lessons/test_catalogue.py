@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.catalogue import Entry, entries, going_on
-from kit.school.progress import Event, Kind
+from kit.school.lessons.catalogue import LessonEntry, list_lessons, next_lesson
+from kit.school.progress import EventKind, ProgressEvent
 from tests.school.lessons.conftest import write_lesson
 
 START = datetime(2030, 1, 1, tzinfo=UTC)
@@ -25,44 +25,46 @@ def lessons(tmp_path: Path) -> Path:
     return folder
 
 
-def events(*told: tuple[Kind, str]) -> list[Event]:
+def events(*told: tuple[EventKind, str]) -> list[ProgressEvent]:
     """One after the other, a minute apart. Attempts pass."""
     return [
-        Event(
+        ProgressEvent(
             f"{number}",
             (START + timedelta(minutes=number)).isoformat(),
             kind,
             subject,
-            {"points": 2.0, "max_points": 2.0, "verdict": "pass"} if kind is Kind.ATTEMPT else {},
+            {"points": 2.0, "max_points": 2.0, "verdict": "pass"} if kind is EventKind.ATTEMPT else {},
         )
         for number, (kind, subject) in enumerate(told)
     ]
 
 
-def whole(name: str) -> tuple[tuple[Kind, str], ...]:
+def whole(name: str) -> tuple[tuple[EventKind, str], ...]:
     """All that is to be done in a lesson."""
-    return (Kind.STEP, f"{name}/1"), (Kind.STEP, f"{name}/2"), (Kind.ATTEMPT, f"{name}/colour")
+    return (EventKind.STEP, f"{name}/1"), (EventKind.STEP, f"{name}/2"), (EventKind.ATTEMPT, f"{name}/colour")
 
 
-def name_of(entry: Entry | None) -> str:
+def name_of(entry: LessonEntry | None) -> str:
     return "" if entry is None else entry.name
 
 
 def test_a_new_student_begins_with_the_first(lessons: Path) -> None:
-    shelf = entries([], lessons)
+    shelf = list_lessons([], lessons)
     assert [each.number for each in shelf] == ["1", "2", "3"]
-    assert not any(each.is_begun or each.is_done for each in shelf)
-    assert name_of(going_on(shelf)) == "01-colours"
+    assert not any(each.has_started or each.is_completed for each in shelf)
+    assert name_of(next_lesson(shelf)) == "01-colours"
 
 
 @pytest.mark.parametrize(
     ("told", "where"),
     [
-        pytest.param([(Kind.STEP, "02-shapes/1")], "02-shapes", id="where-one-was-last"),
+        pytest.param([(EventKind.STEP, "02-shapes/1")], "02-shapes", id="where-one-was-last"),
         pytest.param([*whole("02-shapes")], "03-sounds", id="after-the-last-one-that-is-done"),
         pytest.param([*whole("03-sounds")], "01-colours", id="what-was-left-out"),
         pytest.param(
-            [(Kind.STEP, "03-sounds/1"), (Kind.STEP, "01-colours/1")], "01-colours", id="the-newest-of-two"
+            [(EventKind.STEP, "03-sounds/1"), (EventKind.STEP, "01-colours/1")],
+            "01-colours",
+            id="the-newest-of-two",
         ),
         pytest.param(
             [*whole("01-colours"), *whole("02-shapes"), *whole("03-sounds")],
@@ -71,14 +73,14 @@ def test_a_new_student_begins_with_the_first(lessons: Path) -> None:
         ),
     ],
 )
-def test_where_to_go_on(lessons: Path, told: list[tuple[Kind, str]], where: str) -> None:
-    assert name_of(going_on(entries(events(*told), lessons))) == where
+def test_where_to_go_on(lessons: Path, told: list[tuple[EventKind, str]], where: str) -> None:
+    assert name_of(next_lesson(list_lessons(events(*told), lessons))) == where
 
 
 def test_a_lesson_that_cannot_be_read_does_not_hide_the_others(lessons: Path) -> None:
     (lessons / "01-colours" / "lesson.yaml").write_text("title: Colours\nsteps: none\n")
-    shelf = entries([], lessons)
+    shelf = list_lessons([], lessons)
     assert shelf[0].lesson is None
     assert "lesson.yaml:2" in shelf[0].problem
     assert shelf[1].lesson is not None
-    assert name_of(going_on(shelf)) == "02-shapes"
+    assert name_of(next_lesson(shelf)) == "02-shapes"

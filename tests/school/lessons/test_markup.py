@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.school.lessons.markup import MarkupError, Style, parsed, plain, rows
+from kit.school.lessons.markup import MarkupError, TextStyle, parse_markup, plain_text, wrap_blocks
 
 
 def shown(text: str, width: int = 40) -> list[str]:
-    return [plain(row) for row in rows(parsed(text), width)]
+    return [plain_text(row) for row in wrap_blocks(parse_markup(text), width)]
 
 
 def test_paragraphs_lists_and_code() -> None:
@@ -29,20 +29,20 @@ def test_paragraphs_lists_and_code() -> None:
 
 
 def test_styles_survive_wrapping() -> None:
-    (first, second) = rows(parsed("aaa `bb cc` **dd ee** ff"), 12)
+    (first, second) = wrap_blocks(parse_markup("aaa `bb cc` **dd ee** ff"), 12)
     assert [(piece.text, piece.style) for piece in first] == [
-        ("aaa ", Style.PLAIN),
-        ("bb cc", Style.CODE),
-        (" ", Style.PLAIN),
-        ("dd", Style.BOLD),
-    ] or plain(first) == "aaa bb cc"
-    assert plain(second).endswith("ff")
+        ("aaa ", TextStyle.PLAIN),
+        ("bb cc", TextStyle.CODE),
+        (" ", TextStyle.PLAIN),
+        ("dd", TextStyle.BOLD),
+    ] or plain_text(first) == "aaa bb cc"
+    assert plain_text(second).endswith("ff")
 
 
 @pytest.mark.parametrize("text", ["a ` b", "a ** b"])
 def test_what_is_not_closed_is_refused(text: str) -> None:
     with pytest.raises(MarkupError):
-        parsed(text)
+        parse_markup(text)
 
 
 @given(
@@ -53,6 +53,6 @@ def test_no_row_is_wider_than_asked_and_no_word_is_lost(words: list[str], width:
     text = " ".join(
         f"`{word.strip()}`" if index % 2 else word.strip() for index, word in enumerate(words)
     ).lstrip("- ")
-    made = rows(parsed(text), width)
-    assert all(len(plain(row)) <= width for row in made)
-    assert "".join("".join(map(plain, made)).split()) == "".join(text.replace("`", "").split())
+    made = wrap_blocks(parse_markup(text), width)
+    assert all(len(plain_text(row)) <= width for row in made)
+    assert "".join("".join(map(plain_text, made)).split()) == "".join(text.replace("`", "").split())

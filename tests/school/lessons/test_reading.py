@@ -6,18 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.reading import UnknownLesson, find_lesson, lesson_names, read
-from kit.school.lessons.records import How, Lesson, StepKind
+from kit.school.lessons.reading import UnknownLesson, find_lesson, lesson_names, read_lesson
+from kit.school.lessons.records import CommandKind, Lesson, StepKind
 from kit.world.problems import WorldError
 from tests.school.lessons.conftest import LESSON, write_lesson
 
 
 def test_what_is_read(lesson: Lesson) -> None:
     assert [step.kind for step in lesson.steps] == [StepKind.PREDICT, StepKind.EXPLAIN, StepKind.MAKE]
-    assert lesson.steps[0].options[0].right
-    assert lesson.steps[1].commands[0].how is How.ALONE
+    assert lesson.steps[0].options[0].is_right
+    assert lesson.steps[1].commands[0].kind is CommandKind.ALONE
     (exercise,) = lesson.exercises
-    assert (lesson.subject_of(exercise), lesson.subject(lesson.steps[2])) == (
+    assert (lesson.exercise_subject(exercise), lesson.step_subject(lesson.steps[2])) == (
         "01-colours/colour",
         "01-colours/3",
     )
@@ -57,6 +57,6 @@ def test_a_mistake_names_its_place_and_the_way_out(tmp_path: Path, mistake: str)
     old, new, said = MISTAKES[mistake]
     assert old in LESSON
     with pytest.raises(WorldError) as raised:
-        read(write_lesson(tmp_path, LESSON.replace(old, new)))
+        read_lesson(write_lesson(tmp_path, LESSON.replace(old, new)))
     assert said in str(raised.value)
     assert "lesson.yaml:" in str(raised.value)

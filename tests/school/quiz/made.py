@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import Choice, Occasion, content_of
 from kit.school.quiz.items import Bank, Item, Option, Topic, bank_of
 from kit.world.records import SourceLocation
@@ -37,10 +37,14 @@ def answered(
     *,
     confidence: int | None = 3,
     occasion: Occasion = Occasion.LESSON,
-) -> Event:
+) -> ProgressEvent:
     """An answer so many days after Monday; the right one where none is given."""
     at = MONDAY + timedelta(days=days)
     content = content_of(what, choice or Choice(what.right), confidence, occasion)
-    return Event(
-        f"{what.id}-{days}-{occasion}", at.isoformat(timespec="microseconds"), Kind.ANSWER, what.id, content
+    return ProgressEvent(
+        f"{what.id}-{days}-{occasion}",
+        at.isoformat(timespec="microseconds"),
+        EventKind.ANSWER,
+        what.id,
+        content,
     )

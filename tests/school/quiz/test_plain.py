@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.school.progress import Event, Kind, Progress
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.items import Item
 from kit.school.quiz.reading import read_bank
 
@@ -28,9 +28,9 @@ def quiz(folder: Path, *words: str, said: str = "") -> Result:
     return CliRunner().invoke(main, ["quiz", *words], input=said, env={"KIT_WORKSPACE": str(folder)})
 
 
-def answers(folder: Path) -> list[Event]:
-    with Progress(folder) as progress:
-        return progress.events(Kind.ANSWER)
+def answers(folder: Path) -> list[ProgressEvent]:
+    with ProgressJournal(folder) as progress:
+        return progress.events(EventKind.ANSWER)
 
 
 def asked(output: str) -> list[Item]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.progress import Kind, Progress, ProgressError
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.school.quiz.answers import NOT_SURE, Choice, Outcome
 from kit.school.quiz.items import Topic, bank_of
 from kit.school.quiz.quiz_session import SEED, Sitting, Today, of_lesson, student_seed, the_twelve
@@ -33,15 +33,15 @@ def clock() -> Clock:
 
 
 def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, clock: Clock) -> None:
-    with Progress(tmp_path) as progress, Progress(tmp_path) as another:
+    with ProgressJournal(tmp_path) as progress, ProgressJournal(tmp_path) as another:
         sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
         for count in range(1, 4):
             asked = sitting.item
             assert asked is not None
             assert sitting.number == count
             assert sitting.answer(Choice(asked.right), 4) is Outcome.RIGHT
-            (*_, event) = another.events(Kind.ANSWER)
-            assert len(another.events(Kind.ANSWER)) == count
+            (*_, event) = another.events(EventKind.ANSWER)
+            assert len(another.events(EventKind.ANSWER)) == count
             assert event.subject == asked.id
             assert event.content == {
                 "chosen": asked.right, "not_sure": False, "right": True, "confidence": 4,
@@ -54,7 +54,7 @@ def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock:
     plan = of_lesson(BANK, "01-ros2")
     order: list[str] = []
     for sitting_number in range(5):
-        with Progress(tmp_path) as progress:
+        with ProgressJournal(tmp_path) as progress:
             sitting = Sitting(progress, BANK, plan, seed=student_seed(progress), clock=clock)
             assert (sitting.number, sitting.total) == (sitting_number + 1, 5)
             assert sitting.item is not None
@@ -65,7 +65,7 @@ def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock:
 
 def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clock) -> None:
     plan = the_twelve(BANK)
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         first = Sitting(progress, BANK, plan, seed=1, clock=clock)
         while first.item is not None:
             first.answer(Choice(0), 1)
@@ -82,7 +82,7 @@ def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clo
 
 
 def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -> None:
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         lesson = Sitting(progress, BANK, of_lesson(BANK, "01-ros2"), seed=1, clock=clock)
         lesson.answer(Choice(0), 2)
         assert Sitting(progress, BANK, Today(BANK), seed=1, clock=clock).item is None
@@ -99,7 +99,7 @@ def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -
 
 
 def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:
-    progress = Progress(tmp_path)
+    progress = ProgressJournal(tmp_path)
     sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
     asked = sitting.item
     progress.close()
@@ -110,7 +110,7 @@ def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock
 
 
 def test_the_seed_is_drawn_once(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         seed = student_seed(progress)
         assert student_seed(progress) == seed
-        assert len(progress.events(Kind.ABOUT, SEED)) == 1
+        assert len(progress.events(EventKind.ABOUT, SEED)) == 1

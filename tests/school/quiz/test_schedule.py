@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion
 from kit.school.quiz.items import Bank, Item, Topic
 from kit.school.quiz.quiz_text import schedule_lines, today_line
@@ -20,11 +20,11 @@ SPACED = Occasion.SPACED
 WRONG = Choice(2)
 
 
-def at(day: float, events: list[Event], of: Bank = BANK, seed: int = 0) -> Schedule:
+def at(day: float, events: list[ProgressEvent], of: Bank = BANK, seed: int = 0) -> Schedule:
     return schedule_of(of, events, MONDAY + timedelta(days=day), seed)
 
 
-def practise(events: list[Event], day: float, right: int = PRACTICE, limit: int = 99) -> list[Item]:
+def practise(events: list[ProgressEvent], day: float, right: int = PRACTICE, limit: int = 99) -> list[Item]:
     """Answers what is due on that day, so many right and the others wrong."""
     asked: list[Item] = []
     while (queue := at(day, events).queue) and len(asked) < limit:
@@ -109,7 +109,7 @@ def test_due_topics_take_turns() -> None:
 def test_only_what_was_met_is_asked() -> None:
     by_quiz = [answered(FIRST["ros2-0"], occasion=Occasion.QUIZ)]
     assert {item.id for item in at(1, by_quiz).queue} == {"ros2-0"}
-    lesson = Event("s", MONDAY.isoformat(), Kind.STEP, "01-ros2/1", {})
+    lesson = ProgressEvent("s", MONDAY.isoformat(), EventKind.STEP, "01-ros2/1", {})
     assert len(at(1, [lesson, *by_quiz]).queue) == PRACTICE
     assert (
         len(at(1, [answered(FIRST["ros2-0"])]).queue) == PRACTICE

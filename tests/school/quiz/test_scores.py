@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, Outcome, answer_of, answers_of
 from kit.school.quiz.items import Topic
 from kit.school.quiz.quiz_text import calibration_lines, tally_line
@@ -48,7 +48,7 @@ def test_the_latest_answer_counts() -> None:
     ids=str,
 )
 def test_what_cannot_be_understood_is_passed_over(content: dict[str, object]) -> None:
-    assert answer_of(Event("u", MONDAY.isoformat(), Kind.ANSWER, "x", content)) is None
+    assert answer_of(ProgressEvent("u", MONDAY.isoformat(), EventKind.ANSWER, "x", content)) is None
 
 
 def test_who_chose_nothing_is_sure_of_nothing() -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from kit.school.progress import FORMAT, VERSION, Event, Kind
+from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, content_of
 from kit.school.quiz.items import Item
 from kit.school.quiz.reading import read_bank
@@ -33,21 +33,21 @@ class Diary:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.events: list[Event] = []
+        self.events: list[ProgressEvent] = []
         self._time = START
 
     def note(
-        self, kind: Kind, subject: str, content: dict[str, Any] | None = None, minutes: float = 1
+        self, kind: EventKind, subject: str, content: dict[str, Any] | None = None, minutes: float = 1
     ) -> None:
         self._time += timedelta(minutes=minutes)
         uid = hashlib.sha256(f"{self.name}/{len(self.events)}".encode()).hexdigest()[:32]
-        self.events.append(Event(uid, self._time.isoformat(), kind, subject, content or {}))
+        self.events.append(ProgressEvent(uid, self._time.isoformat(), kind, subject, content or {}))
 
     def answer(self, item: Item, choice: Choice, occasion: Occasion = Occasion.QUIZ) -> None:
-        self.note(Kind.ANSWER, item.id, content_of(item, choice, None, occasion))
+        self.note(EventKind.ANSWER, item.id, content_of(item, choice, None, occasion))
 
     def rate(self, question: str, value: Value, phase: Phase = Phase.AFTER) -> None:
-        self.note(Kind.FORM, question, {"phase": phase.value, "value": value})
+        self.note(EventKind.FORM, question, {"phase": phase.value, "value": value})
 
     def attempt(self, exercise: str, points: float, verdict: str, lost: Sequence[str] = ()) -> None:
         content = {
@@ -57,7 +57,7 @@ class Diary:
             "lost": list(lost),
             "seconds": 1.0,
         }
-        self.note(Kind.ATTEMPT, exercise, content)
+        self.note(EventKind.ATTEMPT, exercise, content)
 
     def export(self, folder: Path, file: str | None = None) -> Path:
         path = folder / (file or f"{self.name.lower()}.json")
@@ -65,9 +65,15 @@ class Diary:
         return path
 
 
-def export_of(events: Sequence[Event]) -> str:
+def export_of(events: Sequence[ProgressEvent]) -> str:
     entries = [
-        {"uid": e.uid, "at": e.at, "kind": e.kind.value, "subject": e.subject, "content": dict(e.content)}
+        {
+            "uid": e.uid,
+            "at": e.timestamp,
+            "kind": e.kind.value,
+            "subject": e.subject,
+            "content": dict(e.content),
+        }
         for e in events
     ]
     return json.dumps({"format": FORMAT, "version": VERSION, "events": entries})
@@ -77,14 +83,14 @@ def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
     """``skill``: 0 to 1. Fills in everything, more or less well."""
     form = the_form()
     diary = Diary(name)
-    diary.note(Kind.ABOUT, "name", {"value": name})
+    diary.note(EventKind.ABOUT, "name", {"value": name})
     _fill_in(diary, form, Phase.BEFORE, skill, rng)
     for lesson, exercise in LESSONS:
-        diary.note(Kind.STEP, f"{lesson}/1")
-        diary.note(Kind.PREDICTION, f"{lesson}/2", {"chosen": 1, "right": bool(rng.random() < skill)})
+        diary.note(EventKind.STEP, f"{lesson}/1")
+        diary.note(EventKind.PREDICTION, f"{lesson}/2", {"chosen": 1, "right": bool(rng.random() < skill)})
         while rng.random() > 0.3 + 0.6 * skill:
             diary.attempt(f"{lesson}/{exercise}", 2.0, "fail", ["reached"])
-            diary.note(Kind.HINT, f"{lesson}/{exercise}/reached", {"step": 1})
+            diary.note(EventKind.HINT, f"{lesson}/{exercise}/reached", {"step": 1})
         diary.attempt(f"{lesson}/{exercise}", 5.0, "pass")
     bank = the_bank()
     for item in bank.twelve:

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from kit.school.progress import Kind
+from kit.school.progress import EventKind
 from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion
 from kit.school.report.as_data import as_csv, as_json
 from kit.school.report.as_html import as_html
@@ -85,10 +85,10 @@ def test_the_same_class_makes_the_same_report(report: Report, tmp_path: Path) ->
     assert as_json(report_of(tmp_path, list(diaries(12)))) == as_json(report)
 
 
-def nothing_but(*kinds: Kind, count: int = 3) -> list[Diary]:
+def nothing_but(*kinds: EventKind, count: int = 3) -> list[Diary]:
     made = list(diaries(count))
     for diary in made:
-        diary.events = [event for event in diary.events if event.kind in (*kinds, Kind.ABOUT)]
+        diary.events = [event for event in diary.events if event.kind in (*kinds, EventKind.ABOUT)]
     return made
 
 
@@ -102,15 +102,15 @@ def test_small_classes_are_reported(tmp_path: Path, count: int) -> None:
 @pytest.mark.parametrize(
     ("kinds", "there", "missing"),
     [
-        ((Kind.FORM,), "outcomes", "quiz"),
-        ((Kind.ANSWER,), "quiz", "outcomes"),
-        ((Kind.STEP, Kind.ATTEMPT), "lessons", "quiz"),
+        ((EventKind.FORM,), "outcomes", "quiz"),
+        ((EventKind.ANSWER,), "quiz", "outcomes"),
+        ((EventKind.STEP, EventKind.ATTEMPT), "lessons", "quiz"),
         ((), "class", "lessons"),
     ],
     ids=["form-only", "quiz-only", "lessons-only", "names-only"],
 )
 def test_a_class_that_did_only_a_part(
-    tmp_path: Path, kinds: tuple[Kind, ...], there: str, missing: str
+    tmp_path: Path, kinds: tuple[EventKind, ...], there: str, missing: str
 ) -> None:
     report = report_of(tmp_path, nothing_but(*kinds))
     chapters = {each.id for each in report.chapters}
@@ -188,7 +188,7 @@ def test_only_the_first_answer_counts_and_later_ones_are_the_gain(tmp_path: Path
 def test_questions_of_another_kit_are_left_out_and_said(tmp_path: Path) -> None:
     made = list(diaries(2))
     made[0].note(
-        Kind.ANSWER, "of-another-kit", {"chosen": 1, "occasion": "quiz", "right": True, "topic": "x"}
+        EventKind.ANSWER, "of-another-kit", {"chosen": 1, "occasion": "quiz", "right": True, "topic": "x"}
     )
     data = data_of(tmp_path, made)
     assert "of-another-kit" not in data.quiz.replies
@@ -200,14 +200,14 @@ WICKED = "<script>alert(1)</script>&\"'\x1b[31m\x07=1+1"
 
 def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
     diary = Diary("x")
-    diary.note(Kind.ABOUT, "name", {"value": "=cmd|' /C calc'!A0" + WICKED})
+    diary.note(EventKind.ABOUT, "name", {"value": "=cmd|' /C calc'!A0" + WICKED})
     diary.rate("other_words", WICKED)
-    diary.note(Kind.ATTEMPT, WICKED, {"verdict": "fail", "points": 1, "max_points": 2, "lost": [WICKED]})
+    diary.note(EventKind.ATTEMPT, WICKED, {"verdict": "fail", "points": 1, "max_points": 2, "lost": [WICKED]})
     for content in (
         {"chosen": [1], "confidence": [2], "occasion": ["quiz"]},
         {"chosen": 1, "confidence": {}, "occasion": "quiz"},
     ):
-        diary.note(Kind.ANSWER, the_bank().twelve[0].id, content)
+        diary.note(EventKind.ANSWER, the_bank().twelve[0].id, content)
     report = report_of(tmp_path, [diary])
     text = "\n".join(rows_of(report))
     page = as_html(report)

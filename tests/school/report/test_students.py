@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.school.progress import FORMAT, VERSION, Kind, Progress
+from kit.school.progress import FORMAT, VERSION, EventKind, ProgressJournal
 from kit.school.report.students import read_roll
 from tests.school.report.classroom import NAMES, START, Diary, classroom, student
 
 
 def diary(name: str) -> Diary:
     made = Diary(name)
-    made.note(Kind.ABOUT, "name", {"value": name})
+    made.note(EventKind.ABOUT, "name", {"value": name})
     return made
 
 
@@ -44,7 +44,7 @@ def test_the_numbers_do_not_follow_names_or_files(tmp_path: Path) -> None:
 
 def test_the_file_names_who_gave_no_name(tmp_path: Path) -> None:
     nameless = Diary("x")
-    nameless.note(Kind.STEP, "01-drive/1")
+    nameless.note(EventKind.STEP, "01-drive/1")
     nameless.export(tmp_path, "a17.json")
     assert [each.label for each in read_roll([tmp_path], names=True).students] == ["a17"]
 
@@ -52,7 +52,7 @@ def test_the_file_names_who_gave_no_name(tmp_path: Path) -> None:
 def test_two_exports_of_one_student_are_one(tmp_path: Path) -> None:
     ada = diary("Ada")
     early = ada.export(tmp_path, "early.json")
-    ada.note(Kind.STEP, "01-drive/1")
+    ada.note(EventKind.STEP, "01-drive/1")
     late = ada.export(tmp_path, "late.json")
     roll = read_roll([early, late])
     assert len(roll.students) == 1
@@ -71,7 +71,7 @@ def test_a_file_named_twice_is_read_once(tmp_path: Path) -> None:
 def test_somebody_elses_progress_taken_over_stays_two(tmp_path: Path) -> None:
     ada, ben = diary("Ada"), Diary("Ben")
     ben.events += ada.events
-    ben.note(Kind.ABOUT, "name", {"value": "Ben"}, minutes=99)
+    ben.note(EventKind.ABOUT, "name", {"value": "Ben"}, minutes=99)
     roll = read_roll([ada.export(tmp_path), ben.export(tmp_path)])
     assert len(roll.students) == 2
     assert "different students" in roll.cautions[0]
@@ -80,7 +80,7 @@ def test_somebody_elses_progress_taken_over_stays_two(tmp_path: Path) -> None:
 def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
     first = diary("Ada")
     second = Diary("another")
-    second.note(Kind.ABOUT, "name", {"value": "ada "})
+    second.note(EventKind.ABOUT, "name", {"value": "ada "})
     roll = read_roll([first.export(tmp_path), second.export(tmp_path)], names=True)
     assert len(roll.students) == 2
     assert "same name" in roll.cautions[0]
@@ -148,9 +148,9 @@ def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
 
 
 def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
-    with Progress(tmp_path) as progress:
-        progress.add(Kind.ABOUT, "name", {"value": "Ada"}, now=START)
-        progress.add(Kind.STEP, "01-drive/1", now=START + timedelta(minutes=1))
+    with ProgressJournal(tmp_path) as progress:
+        progress.add(EventKind.ABOUT, "name", {"value": "Ada"}, now=START)
+        progress.add(EventKind.STEP, "01-drive/1", now=START + timedelta(minutes=1))
         progress.export(tmp_path / "ada.json")
     roll = read_roll([tmp_path / "ada.json"], names=True)
     assert [(each.label, len(each.events)) for each in roll.students] == [("Ada", 2)]
@@ -158,7 +158,7 @@ def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
 
 def test_a_name_cannot_command_the_terminal(tmp_path: Path) -> None:
     wicked = Diary("x")
-    wicked.note(Kind.ABOUT, "name", {"value": "\x1b[2J" + "A" * 500})
+    wicked.note(EventKind.ABOUT, "name", {"value": "\x1b[2J" + "A" * 500})
     label = read_roll([wicked.export(tmp_path)], names=True).students[0].label
     assert "\x1b" not in label
     assert len(label) <= 40

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from kit.school.progress import Kind
+from kit.school.progress import EventKind
 from kit.school.report.work import lessons_of, work_of
 from tests.school.report.classroom import Diary
 
@@ -27,11 +27,11 @@ def test_attempts_points_and_what_was_lost() -> None:
 def test_steps_hints_predictions_and_solutions() -> None:
     diary = Diary("Ada")
     for step in ("1", "2", "1"):
-        diary.note(Kind.STEP, f"01-drive/{step}")
-    diary.note(Kind.PREDICTION, "01-drive/3", {"chosen": 0, "right": True})
-    diary.note(Kind.PREDICTION, "01-drive/4", {"chosen": 0, "right": False})
-    diary.note(Kind.HINT, "01-drive/flag/reached", {"step": 1})
-    diary.note(Kind.SOLUTION, "01-drive/flag")
+        diary.note(EventKind.STEP, f"01-drive/{step}")
+    diary.note(EventKind.PREDICTION, "01-drive/3", {"chosen": 0, "right": True})
+    diary.note(EventKind.PREDICTION, "01-drive/4", {"chosen": 0, "right": False})
+    diary.note(EventKind.HINT, "01-drive/flag/reached", {"step": 1})
+    diary.note(EventKind.SOLUTION, "01-drive/flag")
     lesson = work_of(diary.events)["01-drive"]
     assert len(lesson.steps) == 2
     assert (lesson.predictions, lesson.predicted_right, lesson.hints) == (2, 1, 1)
@@ -42,7 +42,7 @@ def test_steps_hints_predictions_and_solutions() -> None:
 def test_time_stops_in_pauses_and_between_lessons() -> None:
     diary = Diary("Ada")
     for lesson, minutes in (("a", 1), ("a", 3), ("b", 4), ("b", 9), ("b", 60), ("b", 2), ("a", 5)):
-        diary.note(Kind.STEP, f"{lesson}/1", minutes=minutes)
+        diary.note(EventKind.STEP, f"{lesson}/1", minutes=minutes)
     work = work_of(diary.events)
     assert (work["a"].minutes, work["b"].minutes) == (3, 11)
     assert lessons_of([work, {}]) == ("a", "b")
@@ -50,8 +50,8 @@ def test_time_stops_in_pauses_and_between_lessons() -> None:
 
 def test_what_is_not_of_lessons_is_passed_over() -> None:
     diary = Diary("Ada")
-    diary.note(Kind.ABOUT, "name", {"value": "Ada"})
-    diary.note(Kind.FINISH, "level-1", {"reached": True})
+    diary.note(EventKind.ABOUT, "name", {"value": "Ada"})
+    diary.note(EventKind.FINISH, "level-1", {"reached": True})
     assert work_of(diary.events) == {}
 
 
@@ -68,6 +68,6 @@ def test_what_is_not_of_lessons_is_passed_over() -> None:
 )
 def test_damaged_entries_count_as_little_as_they_say(content: dict[str, Any]) -> None:
     diary = Diary("Ada")
-    diary.note(Kind.ATTEMPT, "01-drive/flag", content)
+    diary.note(EventKind.ATTEMPT, "01-drive/flag", content)
     lesson = work_of(diary.events)["01-drive"]
     assert 0 <= lesson.points <= lesson.max_points <= 5

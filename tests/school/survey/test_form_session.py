@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from kit.school.progress import Event, Kind
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.survey.form_session import Answers, NotAnAnswer, applies, asked, parse, still_open
 from kit.school.survey.questions import Form, Phase, Purpose, Question, Rule, Shape
 from kit.school.survey.reading import read_form
@@ -21,12 +21,14 @@ CHOSEN = Question("chosen", "Which?", Purpose.BACKGROUND, Shape.CHOICE, options=
 FORM = Form("A form", (RATED, DONE, WHY, MORE, CHOSEN))
 
 
-def said(question: str, value: Any, phase: str = "after", number: int = 0) -> Event:
+def said(question: str, value: Any, phase: str = "after", number: int = 0) -> ProgressEvent:
     at = f"2026-01-01T00:00:{number:02}+00:00"
-    return Event(f"{question}{phase}{number}", at, Kind.FORM, question, {"phase": phase, "value": value})
+    return ProgressEvent(
+        f"{question}{phase}{number}", at, EventKind.FORM, question, {"phase": phase, "value": value}
+    )
 
 
-def open_after(*events: Event) -> list[str]:
+def open_after(*events: ProgressEvent) -> list[str]:
     return [each.id for each in still_open(FORM, Answers.of(FORM, events), Phase.AFTER)]
 
 
@@ -72,12 +74,14 @@ def test_each_shape_has_answers_of_its_own(question: str, value: Any) -> None:
 
 @pytest.mark.parametrize("phase", ["before", "later", None, ["after"], {}])
 def test_a_phase_in_which_it_is_not_asked_does_not_count(phase: Any) -> None:
-    event = Event("u", "2026-01-01T00:00:00+00:00", Kind.FORM, "done", {"phase": phase, "value": True})
+    event = ProgressEvent(
+        "u", "2026-01-01T00:00:00+00:00", EventKind.FORM, "done", {"phase": phase, "value": True}
+    )
     assert not Answers.of(FORM, [event]).given
 
 
 def test_unknown_questions_and_other_events_are_passed_over() -> None:
-    other = Event("u", "2026-01-01T00:00:00+00:00", Kind.STEP, "rated", {})
+    other = ProgressEvent("u", "2026-01-01T00:00:00+00:00", EventKind.STEP, "rated", {})
     answers = Answers.of(FORM, [said("of a newer kit", 3), other])
     assert answers == Answers()
 

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 from kit.school.survey.form_session import Answers
 from kit.school.survey.questions import Phase, Purpose, Shape
 from kit.school.survey.reading import read_form
@@ -27,8 +27,8 @@ def answer(workspace: Path, *arguments: str, lines: str = "") -> str:
 
 
 def kept(workspace: Path) -> Answers:
-    with Progress(workspace) as progress:
-        return Answers.of(read_form(), progress.events(Kind.FORM))
+    with ProgressJournal(workspace) as progress:
+        return Answers.of(read_form(), progress.events(EventKind.FORM))
 
 
 def test_it_goes_on_where_it_stopped(tmp_path: Path) -> None:
@@ -68,13 +68,13 @@ def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> N
     form = read_form()
     twice = {each.id for each in form.in_phase(Phase.QUIZZED)}
     assert twice == {each.id for each in (*form.of(Purpose.GAINED), *form.of(Purpose.OUTCOME))}
-    with Progress(tmp_path) as progress:
+    with ProgressJournal(tmp_path) as progress:
         for each in form.in_phase(Phase.AFTER):
             value = {Shape.SCALE: 5, Shape.YES_NO: True}.get(each.shape)
-            progress.add(Kind.FORM, each.id, {"phase": "after", "value": value})
+            progress.add(EventKind.FORM, each.id, {"phase": "after", "value": value})
     assert "is answered" in answer(tmp_path), "before the quiz nothing more is asked"
-    with Progress(tmp_path) as progress:
-        progress.add(Kind.ANSWER, "item", {"chosen": 1, "right": False, "occasion": "quiz"})
+    with ProgressJournal(tmp_path) as progress:
+        progress.add(EventKind.ANSWER, "item", {"chosen": 1, "right": False, "occasion": "quiz"})
     assert "Thank you" in answer(tmp_path, lines="3\n" * len(twice))
     answers = kept(tmp_path)
     assert {answers.value(each, Phase.AFTER) for each in twice} == {5}

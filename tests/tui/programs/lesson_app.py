@@ -10,9 +10,9 @@ terminal = options.terminal(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
 os.environ.update(terminal.environment())
 
 from kit.school.lessons import exercise_files  # noqa: E402 - as the kit itself does it
-from kit.school.lessons.lesson_session import Visit  # noqa: E402
-from kit.school.lessons.reading import read  # noqa: E402
-from kit.school.progress import Progress  # noqa: E402
+from kit.school.lessons.lesson_session import LessonSession  # noqa: E402
+from kit.school.lessons.reading import read_lesson  # noqa: E402
+from kit.school.progress import ProgressJournal  # noqa: E402
 from kit.tui.app import KitApp  # noqa: E402
 from kit.tui.screens.lesson import LessonScreen  # noqa: E402
 from kit.workspace import open_workspace  # noqa: E402
@@ -20,10 +20,12 @@ from kit.workspace import open_workspace  # noqa: E402
 lessons, solutions, folder = map(Path, sys.argv[1:4])
 exercise_files.solutions_folder = lambda: solutions  # type: ignore[assignment]
 workspace = open_workspace(folder)
-with Progress(workspace.folder) as progress:
+with ProgressJournal(workspace.folder) as progress:
     app = KitApp(terminal)
     app.begin(
-        LessonScreen(app.kit_theme, Visit(read(lessons / "01-colours"), progress, workspace), workspace)
+        LessonScreen(
+            app.kit_theme, LessonSession(read_lesson(lessons / "01-colours"), progress, workspace), workspace
+        )
     )
     app.run()
 sys.exit(app.return_code or 0)

@@ -9,9 +9,9 @@ import pytest
 from rich.cells import cell_len
 
 from kit.school.lessons.checking import CheckReport
-from kit.school.lessons.lesson_progress import Standing, standing
+from kit.school.lessons.lesson_progress import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.lesson_session import Hint
-from kit.school.lessons.reading import find_lesson, lesson_names, read
+from kit.school.lessons.reading import find_lesson, lesson_names, read_lesson
 from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
@@ -38,12 +38,12 @@ REPORT = CheckReport(GradingVerdict.FAIL, RESULT, 1.25)
 
 @pytest.fixture
 def lesson(tmp_path: Path) -> Lesson:
-    return read(write_lessons(tmp_path) / "01-colours")
+    return read_lesson(write_lessons(tmp_path) / "01-colours")
 
 
 @pytest.fixture
-def stand(lesson: Lesson) -> Standing:
-    return standing(lesson, [])
+def stand(lesson: Lesson) -> LessonProgress:
+    return lesson_progress_from_events(lesson, [])
 
 
 def written(row: Row) -> str:
@@ -55,7 +55,7 @@ def widest(rows: list[Row]) -> int:
 
 
 @pytest.mark.parametrize("width", [60, 80, 200])
-def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: Standing, width: int) -> None:
+def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress, width: int) -> None:
     predict, *_, make = lesson.steps
     hints = (Hint(LOST, 1, LOST.hints[0], 2), Hint(LOST, 2, LOST.hints[1], 1))
     assert (
@@ -87,7 +87,7 @@ def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
 
 
 def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
-    stand = standing(replace(lesson, title="Services, parameters and looking inside"), [])
+    stand = lesson_progress_from_events(replace(lesson, title="Services, parameters and looking inside"), [])
     step = replace(lesson.steps[0], goal="Foresee what the robot is told")
     shown = written(lesson_rows.heading(stand, step, 80))
     assert "Foresee what the robot is told" in shown
@@ -105,7 +105,7 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
     assert told.index("actual:") < told.index("Hint 1 of 3: Go.")
 
 
-def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: Standing) -> None:
+def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
     assert "The check broke: no disk" in "\n".join(map(written, lesson_rows.verdict(broken, (), 80)))
     assert "No verdict" in written(lesson_rows.status(broken, stand, lesson.steps[-1], False))

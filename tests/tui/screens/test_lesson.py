@@ -12,9 +12,9 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.school.lessons import exercise_files
-from kit.school.lessons.lesson_session import Visit
-from kit.school.lessons.reading import read
-from kit.school.progress import Kind, Progress
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.reading import read_lesson
+from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace, open_workspace
@@ -30,7 +30,7 @@ class Student:
 
     def __init__(self, folder: Path) -> None:
         self.workspace: Workspace = open_workspace(folder / "home")
-        self.progress = Progress(self.workspace.folder)
+        self.progress = ProgressJournal(self.workspace.folder)
         self.lesson = write_lessons(folder / "lessons") / "01-colours"
 
     @property
@@ -38,20 +38,22 @@ class Student:
         return self.workspace.lessons / "01-colours" / "colour" / "answers.yaml"
 
     def screen(self, theme: Theme) -> Screen[None]:
-        return LessonScreen(theme, Visit(read(self.lesson), self.progress, self.workspace), self.workspace)
+        return LessonScreen(
+            theme, LessonSession(read_lesson(self.lesson), self.progress, self.workspace), self.workspace
+        )
 
     def goes_to(self, step: int) -> None:
         """Has gone through all steps before, but for their exercises."""
         for number in range(1, step):
-            self.progress.add(Kind.STEP, f"01-colours/{number}")
+            self.progress.add(EventKind.STEP, f"01-colours/{number}")
             if number == COLOUR:
                 self.passes()
 
     def passes(self) -> None:
         points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
-        self.progress.add(Kind.ATTEMPT, "01-colours/colour", points)
+        self.progress.add(EventKind.ATTEMPT, "01-colours/colour", points)
 
-    def kinds(self) -> list[Kind]:
+    def kinds(self) -> list[EventKind]:
         return [event.kind for event in self.progress.events()]
 
 
@@ -98,9 +100,9 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
         assert "x 2  It turns on the spot." in text(pilot)
 
     play(scene)
-    [noted] = student.progress.events(Kind.PREDICTION)
+    [noted] = student.progress.events(EventKind.PREDICTION)
     assert noted.content == {"chosen": 1, "right": False}
-    assert [event.subject for event in student.progress.events(Kind.STEP)] == ["01-colours/1"]
+    assert [event.subject for event in student.progress.events(EventKind.STEP)] == ["01-colours/1"]
 
 
 def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play) -> None:
@@ -166,7 +168,12 @@ def test_a_save_is_checked_and_a_pass_goes_nowhere_by_itself(student: Student, p
     told = [
         (each.kind, dict(each.content)) for each in student.progress.events() if "/colour" in each.subject
     ]
-    assert [kind for kind, _ in told] == [Kind.ATTEMPT, *[Kind.HINT] * 3, Kind.ATTEMPT, Kind.SOLUTION]
+    assert [kind for kind, _ in told] == [
+        EventKind.ATTEMPT,
+        *[EventKind.HINT] * 3,
+        EventKind.ATTEMPT,
+        EventKind.SOLUTION,
+    ]
     assert told[0][1]["lost"] == ["colour"]
     assert told[4][1]["verdict"] == "pass"
 
@@ -245,7 +252,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_step_stays(
     student: Student, play: Play, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     student.goes_to(3)
-    monkeypatch.setattr("kit.school.progress.WAIT_S", 0.0)
+    monkeypatch.setattr("kit.school.progress.LOCK_TIMEOUT_S", 0.0)
 
     async def scene(pilot: Pilot[None]) -> None:
         with closing(sqlite3.connect(student.workspace.folder / "progress.db")) as other:

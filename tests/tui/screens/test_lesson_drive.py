@@ -11,9 +11,9 @@ from textual.screen import Screen
 
 from kit.run.recording import load
 from kit.run.session import Session
-from kit.school.lessons.lesson_session import Visit
-from kit.school.lessons.reading import read
-from kit.school.progress import Kind, Progress
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.reading import read_lesson
+from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lesson_drive import RecordedDriveScreen
 from kit.tui.theme import Theme
@@ -23,8 +23,8 @@ from tests.tui.lesson_stage import rows, seen, stage, text, until
 
 
 @pytest.fixture
-def progress(tmp_path: Path) -> Iterator[Progress]:
-    with Progress(open_workspace(tmp_path / "home").folder) as opened:
+def progress(tmp_path: Path) -> Iterator[ProgressJournal]:
+    with ProgressJournal(open_workspace(tmp_path / "home").folder) as opened:
         yield opened
 
 
@@ -33,9 +33,11 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "home" / "lessons" / "01-by-hand" / "drive" / "drive.npz"
 
 
-def opened(tmp_path: Path, progress: Progress, theme: Theme) -> Screen[None]:
+def opened(tmp_path: Path, progress: ProgressJournal, theme: Theme) -> Screen[None]:
     workspace = open_workspace(tmp_path / "home")
-    return LessonScreen(theme, Visit(read(write_drive(tmp_path / "lessons")), progress, workspace), workspace)
+    return LessonScreen(
+        theme, LessonSession(read_lesson(write_drive(tmp_path / "lessons")), progress, workspace), workspace
+    )
 
 
 async def drive(pilot: Pilot[None]) -> RecordedDriveScreen:
@@ -49,7 +51,7 @@ async def drive(pilot: Pilot[None]) -> RecordedDriveScreen:
 
 
 def test_a_drive_is_kept_when_it_is_left_and_then_checked(
-    tmp_path: Path, progress: Progress, file: Path
+    tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = await drive(pilot)
@@ -67,12 +69,12 @@ def test_a_drive_is_kept_when_it_is_left_and_then_checked(
     recording = load(file)
     assert (recording.place, recording.case) == ("turn", "turn_a_to_b")
     assert recording.ticks > 50
-    [attempt] = progress.events(Kind.ATTEMPT)
+    [attempt] = progress.events(EventKind.ATTEMPT)
     assert attempt.content["lost"] == ["reached"]
 
 
 def test_a_drive_that_never_began_is_not_kept_and_not_checked(
-    tmp_path: Path, progress: Progress, file: Path
+    tmp_path: Path, progress: ProgressJournal, file: Path
 ) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await drive(pilot)
@@ -84,7 +86,7 @@ def test_a_drive_that_never_began_is_not_kept_and_not_checked(
     assert not file.exists()
 
 
-def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: Progress, file: Path) -> None:
+def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: ProgressJournal, file: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = await drive(pilot)
         await pilot.press("left")
@@ -99,7 +101,9 @@ def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: Progress, f
     assert not file.exists()
 
 
-def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progress, file: Path) -> None:
+def test_the_target_ends_the_drive_and_keeps_it(
+    tmp_path: Path, progress: ProgressJournal, file: Path
+) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = await drive(pilot)
         await pilot.press("up")
@@ -118,7 +122,9 @@ def test_the_target_ends_the_drive_and_keeps_it(tmp_path: Path, progress: Progre
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
 
 
-def test_who_leaves_the_kit_keeps_the_drive_too(tmp_path: Path, progress: Progress, file: Path) -> None:
+def test_who_leaves_the_kit_keeps_the_drive_too(
+    tmp_path: Path, progress: ProgressJournal, file: Path
+) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         screen = await drive(pilot)
         await pilot.press("up")

@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
 from kit.school.game.levels import all_levels
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.rows import level_rows
 from kit.tui.screens.level_drive import DriveResultDialog, LevelDrive
@@ -26,13 +26,13 @@ LEVELS = all_levels()
 
 
 @pytest.fixture
-def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Progress]:
+def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ProgressJournal]:
     monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
-    with Progress(tmp_path) as opened:
+    with ProgressJournal(tmp_path) as opened:
         yield opened
 
 
-def play(scene: Scene, progress: Progress, folder: Path) -> None:
+def play(scene: Scene, progress: ProgressJournal, folder: Path) -> None:
     async def run() -> None:
         terminal = decide(
             {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
@@ -62,7 +62,7 @@ async def until(pilot: Pilot[None], ready: Callable[[], bool], seconds: float = 
 
 
 def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
-    progress: Progress, tmp_path: Path
+    progress: ProgressJournal, tmp_path: Path
 ) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         grid = level_rows.grid(screen._found)
@@ -79,7 +79,7 @@ def test_every_level_is_on_the_map_and_the_shut_ones_say_what_opens_them(
     play(scene, progress, tmp_path / "desk")
 
 
-def test_a_drive_earns_stars_and_leaves_a_ghost(progress: Progress, tmp_path: Path) -> None:
+def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_path: Path) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         assert screen.chosen.level.id == "first-drive"
         await pilot.press("enter")
@@ -98,7 +98,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: Progress, tmp_path: Pa
             return isinstance(pilot.app.screen, DriveResultDialog)
 
         await until(pilot, drives)
-        (event,) = progress.events(Kind.FINISH)
+        (event,) = progress.events(EventKind.FINISH)
         assert event.content["reached"]
         assert event.content["bumps"] == 0
         await pilot.press("up")
@@ -113,7 +113,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: Progress, tmp_path: Pa
     play(scene, progress, tmp_path / "desk")
 
 
-def test_a_program_races(progress: Progress, tmp_path: Path) -> None:
+def test_a_program_races(progress: ProgressJournal, tmp_path: Path) -> None:
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
         await pilot.press("c")
         await pilot.pause()
@@ -121,6 +121,6 @@ def test_a_program_races(progress: Progress, tmp_path: Path) -> None:
             await pilot.press(key)
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
-        assert progress.events(Kind.FINISH)[0].content["driver"] == "controller"
+        assert progress.events(EventKind.FINISH)[0].content["driver"] == "controller"
 
     play(scene, progress, tmp_path / "desk")

@@ -10,7 +10,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.school.progress import Event, Kind, Progress
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.quiz_session import Sitting, of_lesson, the_twelve
 from kit.school.quiz.reading import read_bank
 from kit.tui.screens.message_dialog import MessageDialog
@@ -21,12 +21,14 @@ Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
 
 
 @pytest.fixture
-def progress(tmp_path: Path) -> Iterator[Progress]:
-    with Progress(tmp_path) as opened:
+def progress(tmp_path: Path) -> Iterator[ProgressJournal]:
+    with ProgressJournal(tmp_path) as opened:
         yield opened
 
 
-def play(scene: Scene, progress: Progress, *, lesson: str = "", size: tuple[int, int] = (80, 24)) -> None:
+def play(
+    scene: Scene, progress: ProgressJournal, *, lesson: str = "", size: tuple[int, int] = (80, 24)
+) -> None:
     plan = of_lesson(BANK, lesson) if lesson else the_twelve(BANK)
 
     async def run() -> None:
@@ -51,11 +53,11 @@ def flat(screen: QuizScreen) -> str:
     return " ".join(" ".join(rows(screen)).split())
 
 
-def kept(progress: Progress) -> list[Event]:
-    return progress.events(Kind.ANSWER)
+def kept(progress: ProgressJournal) -> list[ProgressEvent]:
+    return progress.events(EventKind.ANSWER)
 
 
-def test_choose_say_how_sure_be_told_go_on(progress: Progress) -> None:
+def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         item = screen._item
         assert item is not None
@@ -80,7 +82,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: Progress) -> None:
     play(scene, progress)
 
 
-def test_another_answer_before_one_says_how_sure(progress: Progress) -> None:
+def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("1", "left", "3", "2")
         (event,) = kept(progress)
@@ -89,7 +91,7 @@ def test_another_answer_before_one_says_how_sure(progress: Progress) -> None:
     play(scene, progress)
 
 
-def test_not_sure_and_blank_are_told_too(progress: Progress) -> None:
+def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("0")
         assert "not counted as wrong" in flat(screen)
@@ -103,7 +105,7 @@ def test_not_sure_and_blank_are_told_too(progress: Progress) -> None:
     play(scene, progress)
 
 
-def test_a_key_too_many_changes_nothing(progress: Progress) -> None:
+def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("n", "4", "left")
         assert screen.stage is QuizStage.ASKED
@@ -116,7 +118,7 @@ def test_a_key_too_many_changes_nothing(progress: Progress) -> None:
     play(scene, progress)
 
 
-def test_to_the_end_and_what_came_of_it(progress: Progress) -> None:
+def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
     count = len(BANK.of_lesson("08-fewest-layers"))
 
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
@@ -133,7 +135,7 @@ def test_to_the_end_and_what_came_of_it(progress: Progress) -> None:
     play(scene, progress, lesson="08-fewest-layers")
 
 
-def test_the_keys_that_work_are_in_sight_all_the_time(progress: Progress) -> None:
+def test_the_keys_that_work_are_in_sight_all_the_time(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         seen = []
         for key in ("1", "3", "n"):
@@ -147,7 +149,7 @@ def test_the_keys_that_work_are_in_sight_all_the_time(progress: Progress) -> Non
     play(scene, progress)
 
 
-def test_an_answer_that_cannot_be_kept_is_said(progress: Progress) -> None:
+def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         progress.close()
         await pilot.press("1", "1")
@@ -157,7 +159,7 @@ def test_an_answer_that_cannot_be_kept_is_said(progress: Progress) -> None:
     play(scene, progress)
 
 
-def test_a_small_window_scrolls(progress: Progress) -> None:
+def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         assert "more lines below" in flat(screen)
         before = rows(screen)
@@ -169,7 +171,7 @@ def test_a_small_window_scrolls(progress: Progress) -> None:
     play(scene, progress, size=(40, 12))
 
 
-def test_help(progress: Progress) -> None:
+def test_help(progress: ProgressJournal) -> None:
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         assert isinstance(screen.app.screen, MessageDialog)

@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.controllers import prepare_workspace
-from kit.school.progress import FILE, Kind, Progress
+from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.start_keys import MENU
 from kit.tui.student_store import StudentStore
@@ -27,8 +27,8 @@ class House:
         self.lessons = write_lessons(folder / "lessons", more=2)
         self.workspace = prepare_workspace(folder / "home")
 
-    def note(self, *events: tuple[Kind, str]) -> None:
-        with Progress(self.workspace.folder) as progress:
+    def note(self, *events: tuple[EventKind, str]) -> None:
+        with ProgressJournal(self.workspace.folder) as progress:
             for kind, subject in events:
                 progress.add(kind, subject)
 
@@ -70,7 +70,7 @@ def test_an_arrow_key_drives_and_the_menu_stays(house: House) -> None:
 
 
 def test_it_goes_on_where_the_student_left_off(house: House) -> None:
-    house.note((Kind.STEP, "02-colours2/1"), (Kind.STEP, "02-colours2/2"))
+    house.note((EventKind.STEP, "02-colours2/1"), (EventKind.STEP, "02-colours2/2"))
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Lesson 2, Colours, step")
@@ -86,7 +86,7 @@ def test_it_goes_on_where_the_student_left_off(house: House) -> None:
 
 
 def test_the_list_of_lessons_says_what_each_is_about_and_opens_it(house: House) -> None:
-    house.note((Kind.STEP, "02-colours2/1"))
+    house.note((EventKind.STEP, "02-colours2/1"))
     (house.lessons / "03-colours3" / "lesson.yaml").write_text("title: broken\n")
 
     async def scene(pilot: Pilot[None]) -> None:
@@ -139,10 +139,10 @@ def test_lines_are_chosen_with_tab_too(house: House) -> None:
 
 
 def test_progress_says_what_was_passed(house: House) -> None:
-    with Progress(house.workspace.folder) as progress:
+    with ProgressJournal(house.workspace.folder) as progress:
         points = {"points": 2.0, "max_points": 2.0, "verdict": "pass"}
-        progress.add(Kind.ATTEMPT, "01-colours/colour", points)
-        progress.add(Kind.ATTEMPT, "01-colours/corner", {**points, "points": 1.0, "verdict": "fail"})
+        progress.add(EventKind.ATTEMPT, "01-colours/colour", points)
+        progress.add(EventKind.ATTEMPT, "01-colours/corner", {**points, "points": 1.0, "verdict": "fail"})
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "Lesson 1")
