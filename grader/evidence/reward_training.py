@@ -36,10 +36,10 @@ class RewardTrainingParams:
 class SilentCallbacks:
     """Looks on and says nothing."""
 
-    def between(self) -> None:
+    def between_updates(self) -> None:
         """Nothing to do between two updates."""
 
-    def saw(self, episode: EpisodeStats) -> None:
+    def on_episode_end(self, episode: EpisodeStats) -> None:
         """Nor after an episode."""
 
 

@@ -249,12 +249,12 @@ class _TrainingMonitor:
     def cases(self) -> int:
         return len(self._examiner.cases)
 
-    def between(self) -> None:
+    def between_updates(self) -> None:
         if self.learner.steps >= self._next:
             self._next = self.learner.steps + self._every
             self._run_test()
 
-    def saw(self, episode: EpisodeStats) -> None:
+    def on_episode_end(self, episode: EpisodeStats) -> None:
         """What training does is not what counts."""
 
     def test_last_steps(self) -> None:
@@ -277,7 +277,7 @@ class _TrainingMonitor:
         return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
 
     def _run_test(self) -> None:
-        verdict = self._strategy.look(self.learner.steps, self._memory, self)
+        verdict = self._strategy.evaluate(self.learner.steps, self._memory, self)
         self._memory = verdict.memory
         self.tests.append(TrainingTest(self.learner.steps, verdict.counts, verdict.keep))
         self.last_accuracy = accuracy(verdict.counts)

@@ -116,7 +116,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
             section.error(f"no algorithm {quoted(each)}: {suggestion(each, ALGORITHMS)}", "algorithms")
     section.finish()
     try:
-        cases = tuple(case.name for _, case in choice.resolve().courses())
+        cases = tuple(case.name for _, case in choice.resolve().map_cases())
     except UnknownTask as error:
         section.error(str(error), "task")
         return KindSettings()

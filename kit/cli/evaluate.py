@@ -98,7 +98,7 @@ def _show_paths(
     columns, rows = shutil.get_terminal_size()
     if pictures is not None:
         pictures.mkdir(parents=True, exist_ok=True)
-    for card, case in task.courses():
+    for card, case in task.map_cases():
         scene = build_paths_scene(card, case, ways, task.target_radius)
         if pictures is not None:
             file = pictures / f"{case.name}.png"

@@ -266,7 +266,7 @@ def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
     verdict = "lead to the target" if course.flow.reaches(*start) else "do not lead to the target"
     yield f"from the start, the forces {verdict}"
     try:
-        yield f"the planner's ride takes {course.ride(place.starts).seconds:.1f} s"
+        yield f"the planner's ride takes {course.plan_trajectory(place.starts).seconds:.1f} s"
     except Unreachable as reason:
         yield str(reason)
 

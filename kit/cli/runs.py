@@ -48,9 +48,9 @@ def command(
 def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
     from kit.learning.training.runs import RunError
 
-    if not run.alive:
+    if not run.is_active:
         raise RunError(f"{run.name} is not being trained. `kit train --resume {run.name}` goes on with it.")
-    run.ask(order)
+    run.send_command(order)
     click.echo(f"{run.name}: {order}.")
 
 

@@ -170,7 +170,7 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
     run.config()
     summary = run.summary()
     if summary.state in ("running", "paused"):
-        run.ask("go")
+        run.send_command("go")
         click.echo(f"{run.name} is being trained; if it paused, it goes on.")
         if terminal is not None:
             _show(run, terminal)
@@ -197,17 +197,17 @@ def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
     try:
         _show(run, terminal, reader)
     finally:
-        if not run.alive:
+        if not run.is_active:
             process.wait()
 
 
 def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
-    from kit.cli.watch import follow, look
+    from kit.cli.watch import follow, open_training_screen
 
     if terminal.plain.value:
         follow(run, reader=reader)
     else:
-        look(run, terminal)
+        open_training_screen(run, terminal)
 
 
 def _list() -> list[str]:
@@ -221,7 +221,7 @@ def _list() -> list[str]:
         if "-" in task.name:  # the same cases as its namesake's
             continue
         groups: dict[str, list[str]] = {}
-        for _, case in task.courses():
+        for _, case in task.map_cases():
             groups.setdefault(case.group or "(no group)", []).append(case.name)
         lines += [f"  {task.name:12} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
     lines.append("\nAlgorithms:")

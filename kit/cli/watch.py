@@ -43,10 +43,10 @@ def command(
         if terminal.plain.value:
             follow(found, once=once)
         else:
-            look(found, terminal)
+            open_training_screen(found, terminal)
 
 
-def look(run: TrainingRun, terminal: TerminalDecision) -> None:
+def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
     """Opens the training screen; exit code 1 if the training has failed by the time it is left."""
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
@@ -56,8 +56,8 @@ def look(run: TrainingRun, terminal: TerminalDecision) -> None:
     screen = TrainingScreen(app.kit_theme, run)
     app.begin(screen)
     app.run()
-    if screen.state == "interrupted" and run.last_words:
-        click.echo(run.last_words)
+    if screen.state == "interrupted" and run.last_log_line:
+        click.echo(run.last_log_line)
     click.echo(screen.farewell)
     if app.return_code or screen.state == "failed":
         raise SystemExit(app.return_code or 1)
@@ -75,7 +75,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
     told_at, ended = -LINE_S, None
     try:
         while True:
-            alive = run.alive  # asked first: whatever is written before the end is read below
+            is_active = run.is_active  # asked first: whatever is written before the end is read below
             for event in reader.new():
                 if isinstance(event, TrainingProgress):
                     if event.seconds - told_at < LINE_S:
@@ -83,7 +83,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
                     told_at = event.seconds
                 ended = event if isinstance(event, TrainingEnded) else None
                 click.echo(format_event(event))
-            if once or not alive:
+            if once or not is_active:
                 break
             time.sleep(0.1)
     except KeyboardInterrupt:
@@ -92,9 +92,9 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
         )
         return
     if ended is None:
-        if not once or not run.alive:
-            if run.last_words:
-                click.echo(run.last_words)
+        if not once or not run.is_active:
+            if run.last_log_line:
+                click.echo(run.last_log_line)
             click.echo(
                 f"{run.name} was interrupted. `kit train --resume {run.name}` goes on from its last checkpoint."
             )

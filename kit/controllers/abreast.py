@@ -22,7 +22,7 @@ class Abreast(SetupNode):
     def step(self, course: ControllerSetup, poses: Sequence[Pose]) -> Sequence[VelocityCommand] | None:
         if self._follower is None:
             try:
-                ride = course.ride(poses)
+                ride = course.plan_trajectory(poses)
             except Unreachable as reason:
                 self.stop(f"Not driving. {reason}")
                 return None

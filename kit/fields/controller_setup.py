@@ -89,16 +89,16 @@ class ControllerSetup:
         width = PAIR_GAP / 2 + max(robot.half_width for robot in self.robots) + WALL_MARGIN
         return VehicleSize(max(width, reach), reach, "two robots side by side")
 
-    def ways(self, start: tuple[float, float]) -> CostToGo:
+    def cost_to_go(self, start: tuple[float, float]) -> CostToGo:
         """Ways to the target. Raises Unreachable if none leads there from ``start``."""
         ways = CostToGo.to(self.floor, self.target, self.size, start)
         ways.check(start)
         return ways
 
-    def ride(self, poses: Sequence[Pose], limits: ComfortLimits = ComfortLimits()) -> Trajectory:
+    def plan_trajectory(self, poses: Sequence[Pose], limits: ComfortLimits = ComfortLimits()) -> Trajectory:
         """From where the robots are. Raises Unreachable."""
         start = mean_position(poses)
-        way = self.ways(start).way(start, _common_heading(poses))
+        way = self.cost_to_go(start).way(start, _common_heading(poses))
         return plan_trajectory(way, poses, PAIR_GAP, limits)
 
     def hand_drawn_differences(self) -> tuple[str, ...]:

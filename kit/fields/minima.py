@@ -45,7 +45,7 @@ class ForceFlow:
         cls, layout: ChargeLayout, floor: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
         """``radius`` [m]: how near to the target counts as there."""
-        return cls.following(layout.forces(floor.middles, target), floor, target, radius)
+        return cls.following(layout.forces(floor.cell_centers, target), floor, target, radius)
 
     @classmethod
     def following(
@@ -62,7 +62,7 @@ class ForceFlow:
         row = np.clip(here // columns + step[..., 1], 0, rows - 1)
         column = np.clip(here % columns + step[..., 0], 0, columns - 1)
         after = row * columns + column
-        away = np.hypot(floor.middles[..., 0] - target[0], floor.middles[..., 1] - target[1])
+        away = np.hypot(floor.cell_centers[..., 0] - target[0], floor.cell_centers[..., 1] - target[1])
         stays = ~floor.inside | ~floor.inside[row, column] | (away <= radius)
         ends = np.where(stays, here, after).ravel()
         for _ in range(DOUBLINGS):

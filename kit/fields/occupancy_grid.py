@@ -74,7 +74,7 @@ class OccupancyGrid:
         return rows, columns
 
     @property
-    def middles(self) -> FloatArray:
+    def cell_centers(self) -> FloatArray:
         """(rows, columns, 2): the cells' places."""
         rows, columns = self.shape
         x, y = (self.corner[0] + self.cell * np.arange(columns), self.corner[1] + self.cell * np.arange(rows))

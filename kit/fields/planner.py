@@ -197,7 +197,7 @@ def _travel_price(floor: OccupancyGrid, size: VehicleSize, ends: Iterable[tuple[
     price: FloatArray = 1.0 + (MAX_PRICE - 1.0) * lack**2
     needed = np.full(floor.shape, size.radius)
     for end in ends:
-        needed[np.hypot(*np.moveaxis(floor.middles - end, -1, 0)) < END_RADIUS] = size.shortest
+        needed[np.hypot(*np.moveaxis(floor.cell_centers - end, -1, 0)) < END_RADIUS] = size.shortest
     price[(floor.clearance < np.maximum(needed, 0.75 * floor.cell)) | ~floor.inside] = math.inf
     return price
 

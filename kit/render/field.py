@@ -33,7 +33,7 @@ class FieldPicture:
 
     def __init__(self, course: ControllerSetup) -> None:
         self._course = course
-        places = course.floor.middles
+        places = course.floor.cell_centers
         self._walls = course.layout.field.forces(places)
         self._pull = PointCharge(*course.target).force(places)
         self._ways: FloatArray | None = None
@@ -58,7 +58,7 @@ class FieldPicture:
     def directions(self, start: tuple[float, float]) -> FloatArray:
         """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""
         if self._ways is None:
-            self._ways = self._course.ways(start).directions()
+            self._ways = self._course.cost_to_go(start).directions()
         return self._ways
 
     def arrows(self, vectors: FloatArray, camera: Camera) -> FloatArray:

@@ -52,7 +52,7 @@ class TrainingFollower:
 
     def send_order(self, order: RunCommand) -> None:
         """Tells the learner, which obeys between two updates."""
-        self._jobs.put(lambda: self._run.ask(order))
+        self._jobs.put(lambda: self._run.send_command(order))
 
     def resume(self) -> None:
         """Starts a learner that goes on where the last one left off."""
@@ -100,7 +100,7 @@ class TrainingFollower:
         while not self._closed.is_set():
             try:
                 # Asked first: whatever is written before the end is read below.
-                present = self._run.alive, self._run.asked()
+                present = self._run.is_active, self._run.read_command()
                 new: list[TrainingEvent] = list(reader.new())
             except OSError as error:  # a network drive that is away comes back
                 self._report_once(f"{self._run.folder}: {error.strerror}. Looking again.")
@@ -110,7 +110,7 @@ class TrainingFollower:
                 self._has_ended = not present[0]
                 if new or present != shown:
                     shown = present
-                    self._on_standing(tracker.standing(alive=present[0], order=present[1]))
+                    self._on_standing(tracker.status(alive=present[0], order=present[1]))
                 if self._driver is None:
                     self._start_driver(plan)
             self._run_jobs()

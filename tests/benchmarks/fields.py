@@ -63,7 +63,7 @@ def print_map(name: str) -> None:
     course = ControllerSetup.open(world, place.partners, target)
     opening = milliseconds(lambda: ControllerSetup.open(world, place.partners, target), 3)
     flowing = milliseconds(lambda: ForceFlow.of(course.layout, course.floor, target), 3)
-    riding = milliseconds(lambda: course.ride(place.starts), 3)
+    riding = milliseconds(lambda: course.plan_trajectory(place.starts), 3)
     print(f"{name}: floor and layout {opening:.0f} ms, traps {flowing:.0f} ms, a ride {riding:.0f} ms")
 
 

@@ -126,7 +126,7 @@ def left_out(folder: Path, seeds: int) -> None:
     on the seed whether the robot ever looks to the right."""
     unseen = ("right_door", "two_doors", "curve_left_180")
     every = TaskSpec("hallway")
-    seen = tuple(case.name for _, case in every.resolve().courses() if case.name not in unseen)
+    seen = tuple(case.name for _, case in every.resolve().map_cases() if case.name not in unseen)
     for mirrored in (True, False):
         for seed in range(FIRST_SEED, FIRST_SEED + (seeds or 1)):
             config = RunConfig(replace(every, on=seen), seed=seed, keep_training=True, mirrored=mirrored)
@@ -169,9 +169,9 @@ def forgetting(folder: Path, seeds: int) -> None:
 
 
 class _Onlooker:
-    def between(self) -> None: ...
+    def between_updates(self) -> None: ...
 
-    def saw(self, episode: EpisodeStats) -> None: ...
+    def on_episode_end(self, episode: EpisodeStats) -> None: ...
 
 
 def _rate(reward: StudentReward | None = None) -> tuple[float, float]:

@@ -62,7 +62,7 @@ def test_every_map_has_a_layout_that_pushes_off_its_walls(name: str) -> None:
     layout = derived_layout(ground)
     near = ground.inside & (ground.clearance < 0.06) & (ground.clearance > 0.03)
     rows, columns = np.gradient(ground.clearance)
-    forces = layout.wall_forces(ground.middles[near])
+    forces = layout.wall_forces(ground.cell_centers[near])
     outwards = forces[:, 0] * columns[near] + forces[:, 1] * rows[near]
     assert (outwards > -1e-6).mean() > 0.97
 

@@ -59,7 +59,7 @@ def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
     place = find_place("pair_turn_180")
     assert place.case is not None
     course = ControllerSetup.open(place.world.file, ["left"], place.case.target)
-    ways = course.ways((0.63, 0.5))
+    ways = course.cost_to_go((0.63, 0.5))
     flow = ForceFlow.following(ways.directions(), course.floor, place.case.target)
     reachable = np.argwhere(np.isfinite(ways.cost))
     ends = [flow.end(*course.floor.middle((int(row), int(column)))) for row, column in reachable[::37]]

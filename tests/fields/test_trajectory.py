@@ -55,7 +55,7 @@ def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str
     place = find_place(name, case)
     assert place.case is not None
     here = course(place)
-    ride = here.ride(place.starts)
+    ride = here.plan_trajectory(place.starts)
     for first, start in zip(ride.poses[0], place.starts, strict=True):
         assert math.dist(first[:2], start[:2]) < 0.06
         assert abs(wrap_angle(first[2] - start.theta)) < 0.06
@@ -70,7 +70,7 @@ def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str
 @pytest.mark.parametrize(("name", "case"), PAIRS)
 def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) -> None:
     place = find_place(name, case)
-    ride = course(place).ride(place.starts)
+    ride = course(place).plan_trajectory(place.starts)
     left, right = ride.tracks()
     assert np.hypot(*(left - right).T) == pytest.approx(np.full(len(left), 0.3), abs=0.02)
     commands = np.array(

@@ -34,9 +34,9 @@ def kit() -> Iterator[Open]:
     for terminal in made:
         terminal.close()
     for training in list_runs(Path(os.environ["KIT_WORKSPACE"]) / "runs"):
-        training.ask("stop")
+        training.send_command("stop")
         end = time.monotonic() + 30
-        while training.alive and time.monotonic() < end:
+        while training.is_active and time.monotonic() < end:
             time.sleep(0.05)
 
 
@@ -70,13 +70,13 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     assert terminal.wait() == 0
     terminal.assert_sane()
     assert b"mine trains on. `kit watch mine`" in terminal.output
-    assert the_run().alive
+    assert the_run().is_active
 
     again = kit("watch", "mine")
     again.until(lambda: steps(again) >= before and ROBOT.search(again.text), "all of it again")
     again.send(b"s")
     again.until(lambda: "stopped" in again.text.splitlines()[0], "the stop")
-    assert not the_run().alive
+    assert not the_run().is_active
     assert "p goes on" in again.text
     before = steps(again)
     again.send(b"p")
@@ -84,7 +84,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
     again.send(b"\x03")
     assert again.wait() == 0
     again.assert_sane()
-    assert the_run().alive
+    assert the_run().is_active
 
     lines = kit("watch", "mine", "--once")
     assert lines.wait() == 0
@@ -126,7 +126,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     terminal.send(b"\x03")
     assert terminal.wait() == 0
     terminal.assert_sane()
-    assert the_run().alive
+    assert the_run().is_active
 
 
 @pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")

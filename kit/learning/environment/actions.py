@@ -55,7 +55,7 @@ class Actions:
             return spaces.Discrete(count**robots)
         return spaces.MultiDiscrete([count] * robots)
 
-    def chosen(self, actions: NDArray[np.integer], robots: int) -> IntArray:
+    def decode(self, actions: NDArray[np.integer], robots: int) -> IntArray:
         """(n, robots): each robot's place in ``moves``, from actions (n,) or (n, robots) of ``space``.
 
         Raises ValueError where an action is not in the space: a compiled loop would read past its tables.

@@ -79,11 +79,11 @@ class BatchState:
     """(n,) steps of this episode so far."""
     pose: FloatArray
     """(n, r, 3)"""
-    free: FloatArray
+    clearance: FloatArray
     """(n, r): no wall is nearer [m], for sure; 0 where unknown."""
     to_go: FloatArray
     """(n, r)"""
-    turned: FloatArray
+    rotation: FloatArray
     """(n, r) rad, since the robot last turned to the other side."""
     forward_steps: FloatArray
     """(n, r)"""
@@ -112,7 +112,7 @@ class BatchEnv:
     to the bit alone or among many.
 
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
-    every case gets equally many episodes; or, if ``stay``, number ``first + i``, so that they get equally many steps.
+    every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``restart``: whether a world whose episode has ended begins its next one
     in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
     """
@@ -129,21 +129,21 @@ class BatchEnv:
         reward: RewardFunction | None = None,
         first: int = 0,
         restart: bool = True,
-        stay: bool = False,
+        fixed_cases: bool = False,
     ) -> None:
         self.task = task
         self.n = n
-        self.cases: tuple[MapCase, ...] = tuple(case for _, case in task.courses())
+        self.cases: tuple[MapCase, ...] = tuple(case for _, case in task.map_cases())
         self.observation_space = task.observation.space(task.robots)
         self.action_space = task.actions.space(task.robots)
-        self._reward: RewardFunction = task.reward if reward is None else reward
-        self._courses = CaseArrays(task)
-        self._single, self._sectors = task.observation.tables(task.robots)
+        self._reward_function: RewardFunction = task.reward if reward is None else reward
+        self._case_arrays = CaseArrays(task)
+        self._single_rays, self._sectors = task.observation.tables(task.robots)
         self._codes, self._twists = task.actions.codes, task.actions.twists
-        self._first = first
+        self._first_world = first
         self._restart = restart
-        self._own: IntArray | None = (first + np.arange(n)) % len(self.cases) if stay else None
-        self._keys = self._sown(seed)
+        self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
+        self._random_keys = self._seed(seed)
         self._state = BatchState.of(n, task.robots)
         self._state.episode -= 1  # the first reset leads to number 0
 
@@ -152,30 +152,30 @@ class BatchEnv:
         """Where every world is now; not to be written to."""
         return self._state
 
-    def place(self, case: int) -> tuple[MapCard, BatchMap]:
+    def map_of_case(self, case: int) -> tuple[MapCard, BatchMap]:
         """The map of a case, by its number."""
-        return self._courses.places[case]
+        return self._case_arrays.maps[case]
 
     @property
-    def stays(self) -> bool:
+    def has_fixed_cases(self) -> bool:
         """Whether worlds stay with their cases."""
-        return self._own is not None
+        return self._assigned is not None
 
-    def deal(self, shares: FloatArray) -> None:
+    def assign_cases(self, shares: FloatArray) -> None:
         """Shares out anew the worlds that stay with their cases: ``shares`` (cases,), which add up to 1. As few as possible
         change, each when its episode is over. ValueError where worlds do not stay."""
-        if self._own is None:
+        if self._assigned is None:
             raise ValueError("worlds that take the cases in turn cannot be dealt")
         exact = np.asarray(shares) * self.n
         wanted = np.floor(exact).astype(np.int64)
         wanted[np.argsort(wanted - exact, kind="stable")[: self.n - wanted.sum()]] += 1
-        own, free = self._own.copy(), []
-        for world, case in enumerate(own):
+        assigned, released = self._assigned.copy(), []
+        for world, case in enumerate(assigned):
             wanted[case] -= 1
             if wanted[case] < 0:
-                free.append(world)
-        own[free] = np.repeat(np.arange(len(wanted)), np.maximum(wanted, 0))
-        self._own = own
+                released.append(world)
+        assigned[released] = np.repeat(np.arange(len(wanted)), np.maximum(wanted, 0))
+        self._assigned = assigned
 
     # Beginning
 
@@ -187,35 +187,37 @@ class BatchEnv:
         """
         self._state = self._state.copy()
         if seed is not None:
-            self._keys = self._sown(seed)
+            self._random_keys = self._seed(seed)
             self._state.episode[:] = 0
         else:
             self._state.episode += 1
-        self._start(np.arange(self.n), cases)
-        return self._look(ALL_WORLDS)[1]
+        self._begin_episodes(np.arange(self.n), cases)
+        return self._observe(ALL_WORLDS)[1]
 
-    def _sown(self, seed: int) -> IntArray:
+    def _seed(self, seed: int) -> IntArray:
         """(n,) where each world's randomness comes from."""
-        keys = [int(kernels.random_bits(seed, self._first + i)) >> 1 for i in range(self.n)]
+        keys = [int(kernels.random_bits(seed, self._first_world + i)) >> 1 for i in range(self.n)]
         return np.array(keys, dtype=np.int64)
 
-    def _start(self, which: IntArray, cases: IntArray | None = None) -> None:
+    def _begin_episodes(self, which: IntArray, cases: IntArray | None = None) -> None:
         """Puts the worlds ``which`` at the start of their present episodes."""
-        state, courses = self._state, self._courses
-        turns = (self._first + which + state.episode[which]) % len(self.cases)
-        dealt = turns if self._own is None else self._own[which]
+        state, courses = self._state, self._case_arrays
+        turns = (self._first_world + which + state.episode[which]) % len(self.cases)
+        dealt = turns if self._assigned is None else self._assigned[which]
         case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
-        start = courses.start(case, self._keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS)
+        start = courses.draw_starts(
+            case, self._random_keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS
+        )
         state.case[which] = case
         state.target[which] = start.targets
         state.step[which] = 0
         state.pose[which] = start.poses
-        state.free[which] = 0.0
+        state.clearance[which] = 0.0
         state.to_go[which] = courses.to_go(case, start.poses)
-        state.turned[which] = 0.0
+        state.rotation[which] = 0.0
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
-        state.in_target[which] = self._arrived(start.poses, start.targets)
+        state.in_target[which] = self._is_in_target(start.poses, start.targets)
 
     # One step
 
@@ -226,23 +228,27 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds want {self.n} actions, not {len(actions)}")
-        transition, final = self._advance(self.task.actions.chosen(actions, self.task.robots))
-        rewards, terms = self._rewarded(transition)
+        transition, final = self._simulate(self.task.actions.decode(actions, self.task.robots))
+        rewards, terms = self._reward(transition)
         terminated, truncated = transition.collided | transition.reached, transition.timed_out
         if self.task.timeout_terminal:
             terminated, truncated = terminated | truncated, np.zeros_like(truncated)
         over = np.flatnonzero(transition.ended)
-        observations = self._restarted(over, final) if len(over) and self._restart else final
+        observations = self._reset_done(over, final) if len(over) and self._restart else final
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
-    def _advance(self, choices: IntArray) -> tuple[Transition, SingleArray]:
+    def _simulate(self, choices: IntArray) -> tuple[Transition, SingleArray]:
         """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
-        task, courses, old = self.task, self._courses, self._state
+        task, courses, old = self.task, self._case_arrays, self._state
         twists = self._twists[choices]
-        pose, free, hit = old.pose.copy(), old.free.copy(), np.zeros(old.free.shape, dtype=np.bool_)
+        pose, clearance, hit = (
+            old.pose.copy(),
+            old.clearance.copy(),
+            np.zeros(old.clearance.shape, dtype=np.bool_),
+        )
         maps, dt = courses.map_of[old.case], task.step_time / task.checks
         for _ in range(task.checks):
-            kernels.step_worlds(courses.fleet, maps, twists, dt, pose, free, hit)
+            kernels.step_worlds(courses.fleet, maps, twists, dt, pose, clearance, hit)
         turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
         self._state = new = BatchState(
             episode=old.episode,
@@ -250,14 +256,14 @@ class BatchEnv:
             target=old.target,
             step=old.step + 1,
             pose=pose,
-            free=free,
+            clearance=clearance,
             to_go=courses.to_go(old.case, pose),
-            turned=np.where(old.turned * turn < 0.0, turn, old.turned + turn),
+            rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
-            in_target=self._arrived(pose, old.target),
+            in_target=self._is_in_target(pose, old.target),
         )
-        ranges, seen = self._look(ALL_WORLDS)
+        ranges, seen = self._observe(ALL_WORLDS)
         transition = Transition(
             case=new.case,
             step=new.step,
@@ -272,42 +278,42 @@ class BatchEnv:
             target=new.target,
             to_go=new.to_go,
             previous_to_go=old.to_go,
-            full_turns=(np.abs(new.turned) / FULL_TURN).astype(np.int64),
+            full_turns=(np.abs(new.rotation) / FULL_TURN).astype(np.int64),
             forward_steps=new.forward_steps,
             ranges=ranges[:, :, :RAY_COUNT],
         )
         return transition, seen
 
-    def _restarted(self, over: IntArray, final: SingleArray) -> SingleArray:
+    def _reset_done(self, over: IntArray, final: SingleArray) -> SingleArray:
         """The observations, with those of the next episodes of the worlds ``over``."""
         self._state = self._state.copy()
         self._state.episode[over] += 1
-        self._start(over)
+        self._begin_episodes(over)
         observations = final.copy()
-        observations[over] = self._look(over)[1]
+        observations[over] = self._observe(over)[1]
         return observations
 
-    def _arrived(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
+    def _is_in_target(self, poses: FloatArray, targets: FloatArray) -> BoolArray:
         """(m, robots): who is in the target."""
         task, inside = self.task, np.empty(poses.shape[:2], dtype=np.bool_)
         kernels.find_arrivals(
-            self._courses.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
+            self._case_arrays.fleet, poses, targets, task.target_radius, task.measured_to == "hull", inside
         )
         return inside
 
     # What agents see and earn
 
-    def _look(self, which: IntArray | slice) -> tuple[SingleArray, SingleArray]:
+    def _observe(self, which: IntArray | slice) -> tuple[SingleArray, SingleArray]:
         """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
         see of it."""
-        seen, state, courses = self.task.observation, self._state, self._courses
+        seen, state, courses = self.task.observation, self._state, self._case_arrays
         maps, poses = courses.map_of[state.case[which]], state.pose[which]
         ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
         sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
         kernels.scan_worlds(
-            *(courses.fleet, maps, poses, self._keys[which], drawn),
-            *(seen.clip, self._single, self._sectors, ranges, sensed),
+            *(courses.fleet, maps, poses, self._random_keys[which], drawn),
+            *(seen.clip, self._single_rays, self._sectors, ranges, sensed),
         )
         sensed *= np.float32(seen.scale)
         if seen.target:
@@ -318,12 +324,12 @@ class BatchEnv:
             sensed[:, :, -1] = state.in_target[which]
         return ranges, sensed.reshape(len(sensed), -1)
 
-    def _rewarded(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
+    def _reward(self, transition: Transition) -> tuple[SingleArray, dict[str, Array]]:
         """(n,) rewards, and what each term adds."""
-        if isinstance(self._reward, Reward):
-            terms = self._reward.terms(transition)
+        if isinstance(self._reward_function, Reward):
+            terms = self._reward_function.terms(transition)
             return np.asarray(sum(terms.values()), dtype=np.float32), terms
-        rewards = np.asarray(self._reward(transition))
+        rewards = np.asarray(self._reward_function(transition))
         if rewards.shape != (self.n,) or rewards.dtype.kind not in "fiub":
             raise RewardError(
                 f"the reward must be {self.n} numbers, one for each world: this is an array of shape "

@@ -14,7 +14,7 @@ ROBOT_NAMES = ("left", "right")
 def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
     """What there is to see of one world now. ``trails``: (k, 2) per robot, where each has been."""
     state = batch.state
-    card, ground = batch.place(int(state.case[world]))
+    card, ground = batch.map_of_case(int(state.case[world]))
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]
     names = (card.robot,) if len(poses) == 1 else ROBOT_NAMES
     bodies = tuple(

@@ -32,11 +32,11 @@ class EpisodeStarts(NamedTuple):
 
 
 class CaseArrays:
-    """The cases of a task, numbered in the order of ``task.courses()``."""
+    """The cases of a task, numbered in the order of ``task.map_cases()``."""
 
     def __init__(self, task: LearningTask) -> None:
         """Raises Unsupported for a map that the batch engine cannot represent."""
-        courses = task.courses()
+        courses = task.map_cases()
         cards = list(dict.fromkeys(card for card, _ in courses))
         grounds = [load_batch_map(card) for card in cards]
         for each in grounds:
@@ -53,7 +53,7 @@ class CaseArrays:
         self.fleet = build_fleet(grounds, task.lidar_noise)
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
-        self.places = [(cards[number], grounds[number]) for number in self.map_of]
+        self.maps = [(cards[number], grounds[number]) for number in self.map_of]
         """(cases): each case's map."""
         cases = [case for _, case in courses]
         self._starts = np.array([_start_poses(case, task) for case in cases])
@@ -73,7 +73,7 @@ class CaseArrays:
             height, width = table.values.shape
             values[:height, :width] = table.values
 
-    def start(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
+    def draw_starts(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
         robots = self.task.robots
         drawn = np.empty((len(cases), SHARED_DRAWS + 3 * robots))

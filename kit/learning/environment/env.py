@@ -104,7 +104,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         return self._batch
 
     def _number(self, case: object) -> int | None:
-        names = [each.name for _, each in self.task.courses()] if case is not None else []
+        names = [each.name for _, each in self.task.map_cases()] if case is not None else []
         if case is not None and case not in names:
             raise UnknownTask(
                 f"task {self.task.name} has no case {quoted(str(case))}: {suggestion(str(case), names)}"

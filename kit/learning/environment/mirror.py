@@ -28,7 +28,7 @@ class TaskMirror:
     def actions(self, actions: NDArray[np.integer]) -> NDArray[np.integer]:
         """Of the same shape. The left one of two robots is the right one in a mirror."""
         task = self._task
-        choices = self._moves[task.actions.chosen(actions, task.robots)][:, ::-1]
+        choices = self._moves[task.actions.decode(actions, task.robots)][:, ::-1]
         if task.robots > 1 and task.actions.one_number:
             choices = choices[:, :1] * len(self._moves) + choices[:, 1:]
         return choices.reshape(actions.shape)

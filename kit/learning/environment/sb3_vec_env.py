@@ -122,7 +122,12 @@ class HalfMirroredVecEnv(VecEnvWrapper):
 
 
 def make_vec_env(
-    task: LearningTask, n: int, seed: int = 0, reward: RewardFunction | None = None, *, stay: bool = False
+    task: LearningTask,
+    n: int,
+    seed: int = 0,
+    reward: RewardFunction | None = None,
+    *,
+    fixed_cases: bool = False,
 ) -> BatchVecEnv:
     """``n`` worlds of the task for stable-baselines3; the rest as for ``BatchEnv``."""
-    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, stay=stay))
+    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, fixed_cases=fixed_cases))

@@ -80,7 +80,7 @@ class LearningTask:
     """Whether running out of time ends an episode as if that were the world's doing. It is wrong (the agent cannot
     see the clock), and what the seed does; kept so that its harm can be shown."""
 
-    def courses(self) -> tuple[tuple[MapCard, MapCase], ...]:
+    def map_cases(self) -> tuple[tuple[MapCard, MapCase], ...]:
         """Every case with its map, in order. UnknownTask if one of ``cases`` is none of them."""
         found = tuple(_map_cases(self.maps))
         if not self.cases:
@@ -96,7 +96,7 @@ class LearningTask:
 
         UnknownTask if nothing has such a name.
         """
-        courses = self.courses()
+        courses = self.map_cases()
         known = [name for _, case in courses for name in (case.name, case.group) if name]
         for name in names:
             if name not in known:

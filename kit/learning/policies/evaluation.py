@@ -144,8 +144,8 @@ class Evaluator:
 
     def __init__(self, task: LearningTask, reward: RewardFunction | None = None) -> None:
         self.task = task
-        self._reward = reward
-        self._cases = tuple(case for _, case in task.courses())
+        self._reward_function = reward
+        self._cases = tuple(case for _, case in task.map_cases())
         self._batches: dict[int, BatchEnv] = {}
 
     @property
@@ -184,7 +184,7 @@ class Evaluator:
 
     def _batch(self, n: int) -> BatchEnv:
         if n not in self._batches:
-            self._batches[n] = BatchEnv(self.task, n, reward=self._reward)
+            self._batches[n] = BatchEnv(self.task, n, reward=self._reward_function)
         return self._batches[n]
 
 

@@ -36,7 +36,7 @@ def record_paths(
     PolicyError if the policy does not fit.
     """
     policy.fits(task)
-    batch = BatchEnv(task, episodes * len(task.courses()), seed)
+    batch = BatchEnv(task, episodes * len(task.map_cases()), seed)
     player = policy.player(batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
     observations, fresh = batch.reset(seed=seed), np.ones(batch.n, dtype=np.bool_)
     starts, targets, tally = batch.state.pose.copy(), batch.state.target.copy(), EpisodeStatsRecorder(batch)
@@ -52,7 +52,7 @@ def record_paths(
                 world, (x, y) = episode.world, targets[episode.world].tolist()
                 ways[world] = EpisodePath(episode.case, episode.outcome, np.array(trails[world]), (x, y))
         observations, fresh = step.observations, step.ended
-    order = [case.name for _, case in task.courses()]
+    order = [case.name for _, case in task.map_cases()]
     return tuple(sorted((ways[world] for world in sorted(ways)), key=lambda way: order.index(way.case)))
 
 

@@ -45,7 +45,7 @@ class Brain:
     def moves(self, x: np.ndarray) -> list[int]:
         """Each robot's best move for what is seen."""
         if self.gates:
-            x = self.remember(x)
+            x = self.apply_lstm(x)
         for weights, bias in self.layers[:-1]:
             x = x @ weights + bias
             x = np.maximum(x, 0) if self.relu else np.tanh(x)
@@ -54,7 +54,7 @@ class Brain:
         best = [int(part.argmax()) for part in parts]
         return list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
 
-    def remember(self, x: np.ndarray) -> np.ndarray:
+    def apply_lstm(self, x: np.ndarray) -> np.ndarray:
         """A layer with memory."""
         weights_seen, bias_seen, weights_kept, bias_kept = self.gates
         gates = np.split(x @ weights_seen + bias_seen + self.hidden @ weights_kept + bias_kept, 4)

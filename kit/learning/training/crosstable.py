@@ -51,7 +51,7 @@ class GroupResult:
 
 def case_groups(config: RunConfig) -> tuple[str, ...]:
     """The task's groups of more than one case, and all cases together."""
-    groups = [case.group for _, case in config.choice.resolve().courses() if case.group]
+    groups = [case.group for _, case in config.choice.resolve().map_cases() if case.group]
     return (*(group for group in dict.fromkeys(groups) if groups.count(group) > 1), ALL_CASES)
 
 

@@ -54,7 +54,7 @@ class _EpisodeReporter(VecEnvWrapper):
         observations, rewards, dones, infos = self.venv.step_wait()
         if self.watcher is not None:
             for number in np.flatnonzero(dones):
-                self.watcher.saw(_episode_of(int(number), infos[number]))
+                self.watcher.on_episode_end(_episode_of(int(number), infos[number]))
         return observations, rewards, dones, infos
 
 
@@ -82,7 +82,7 @@ class _RolloutCallback(BaseCallback):
     def _on_rollout_start(self) -> None:
         if self._entropy is not None:
             self.model.ent_coef = self._entropy.at(self.model._current_progress_remaining)
-        self._watcher.between()
+        self._watcher.between_updates()
 
     def _on_step(self) -> bool:
         return True
@@ -146,10 +146,10 @@ class DeepLearner:
             **LEARN_OPTIONS.get(self._algorithm.name, {}),
         )
 
-    def deal(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: NDArray[np.float64]) -> None:
         batch = self._env.unwrapped.batch
-        if batch.stays:
-            batch.deal(shares)
+        if batch.has_fixed_cases:
+            batch.assign_cases(shares)
 
     def policy(self) -> Policy:
         return Policy(
@@ -160,10 +160,10 @@ class DeepLearner:
             self.steps,
         )
 
-    def remember(self) -> Any:
+    def snapshot(self) -> Any:
         return copy.deepcopy(self._model.get_parameters())
 
-    def recall(self, known: Any) -> None:
+    def restore(self, known: Any) -> None:
         self._put(copy.deepcopy(known))
         self._slower *= LEARNING_RATE_FACTOR
 

@@ -19,10 +19,10 @@ class StopLearning(Exception):
 class TrainingCallback(Protocol):
     """Who looks on while a learner learns."""
 
-    def between(self) -> None:
+    def between_updates(self) -> None:
         """Called where the policy stands still, very often. May raise Halt."""
 
-    def saw(self, episode: EpisodeStats) -> None:
+    def on_episode_end(self, episode: EpisodeStats) -> None:
         """An episode of training has ended."""
 
 
@@ -36,17 +36,17 @@ class Learner(Protocol):
     def learn(self, steps: int, watcher: TrainingCallback) -> None:
         """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
 
-    def deal(self, shares: NDArray[np.float64]) -> None:
+    def assign_cases(self, shares: NDArray[np.float64]) -> None:
         """Practises so large a part on each case, (cases,), from the next episodes on; as before where worlds take the
         cases in turn."""
 
     def policy(self) -> Policy:
         """What it would do now."""
 
-    def remember(self) -> Any:
-        """What it knows now, for ``recall``."""
+    def snapshot(self) -> Any:
+        """What it knows now, for ``restore``."""
 
-    def recall(self, known: Any) -> None:
+    def restore(self, known: Any) -> None:
         """Knows again what it knew then, and learns more slowly from now on."""
 
     def save(self) -> dict[str, bytes]:

@@ -92,11 +92,11 @@ class Preset:
     """Everything about a training but the task, the algorithm and the seed."""
 
     settings: AlgorithmSettings
-    strategy: StoppingRule
+    stopping_rule: StoppingRule
     steps: int
     """At most."""
     worlds: int = 1
-    stay: bool = False
+    fixed_cases: bool = False
     """Whether worlds stay with their cases, if there are enough: then a case that is over soon gets as many steps as
     the others."""
     hard: float = 0.0
@@ -153,7 +153,7 @@ SEED_DQN = Preset(
     activation="relu",
 )
 SEED_DEFAULT = replace(
-    SEED_PPO, strategy=TrainUntilGoal(every=10_000, episodes=100, goal=0.8), steps=1_000_000
+    SEED_PPO, stopping_rule=TrainUntilGoal(every=10_000, episodes=100, goal=0.8), steps=1_000_000
 )
 
 # The kit's.
@@ -187,7 +187,7 @@ KIT_PPO_HALLWAY = Preset(
     steps=3_600_000,  # with three a door is not always learned well; half of the runs are sure before two
     worlds=480,  # thirty-two of each case; with twice as many and rollouts half as long, one seed in seven never learned
     hard=0.5,  # what is left to learn in the end is one door or curve, a different one for every seed
-    stay=True,  # behind a door episodes are short: dealt by episodes, doors got half the steps of long curves
+    fixed_cases=True,  # behind a door episodes are short: dealt by episodes, doors got half the steps of long curves
     learning_rate=LinearSchedule(1e-3, 3e-5),  # the end of training is for precision
     activation="relu",  # no worse than tanh in the few seeds compared, and tanh takes a fifth of the time
 )
@@ -201,7 +201,7 @@ KIT_PPO_WHEELCHAIRS = Preset(
     TrainUntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.955),
     steps=12_000_000,  # being side by side goes on getting better long after every target is reached
     worlds=225,  # twenty-five of each case
-    stay=True,
+    fixed_cases=True,
     learning_rate=LinearSchedule(1e-3, 3e-5),
 )
 KIT_A2C = Preset(

@@ -89,11 +89,11 @@ class RunStatus:
     plan: RunPlan
     summary: RunSummary
     batches: TrainingCurve
-    looks: Evaluations
+    evaluations: Evaluations
     cases: tuple[CaseStatus, ...]
     rate: float
     """Steps a second in training, of late."""
-    left_s: float | None
+    remaining_s: float | None
     """To the last step, tests included; None where nothing is known. A goal may be reached earlier."""
     reward: float | None
     """Mean sum over an episode, of late; likewise below."""
@@ -110,12 +110,12 @@ class RunStatus:
 def plan_of_run(config: RunConfig) -> RunPlan:
     """UnknownTask or UnknownAlgorithm if the run is of a kit that knew others."""
     preset = resolve_preset(config)
-    strategy = preset.strategy
+    strategy = preset.stopping_rule
     goal: float | None = getattr(strategy, "goal", None)
     words = [config.choice.title, config.algorithm, f"preset {config.preset}", f"seed {config.seed}"]
     return RunPlan(
         ", ".join(words),
-        tuple(case.name for _, case in config.choice.resolve().courses()),
+        tuple(case.name for _, case in config.choice.resolve().map_cases()),
         preset.steps,
         None if config.keep_training else goal,
         strategy.greedy,
@@ -130,7 +130,7 @@ class RunTracker:
         self._last: dict[tuple[type[TrainingEvent], bool], TrainingEvent] = {}
         """The last of every kind, the newest last: what a summary needs."""
         self._batches: list[tuple[int, OutcomeCounts, float]] = []
-        self._looks: list[tuple[int, float, float]] = []
+        self._evaluations: list[tuple[int, float, float]] = []
         self._recent: deque[TrainingProgress] = deque(maxlen=RECENT_REPORTS)
         self._tested: dict[str, OutcomeCounts] = {}
         self._note = ""
@@ -142,7 +142,7 @@ class RunTracker:
         self._last[kind] = event
         match event:
             case TrainingStarted():
-                self._begin_again(event.steps)
+                self._truncate_after(event.steps)
             case TrainingProgress():
                 self._recent.append(event)
                 outcomes = _sum_counts(event.episodes.values())
@@ -150,21 +150,21 @@ class RunTracker:
                     self._batches.append((event.steps, outcomes, event.reward))
             case Evaluated():
                 shares = list(success_shares(event).values())
-                self._looks.append((event.steps, sum(shares) / len(shares), min(shares)))
+                self._evaluations.append((event.steps, sum(shares) / len(shares), min(shares)))
                 self._tested = {case: tuple(counts) for case, counts in event.cases.items()}
             case _:
                 pass
         if not isinstance(event, TrainingProgress):
             self._note = _event_note(event)
 
-    def standing(self, *, alive: bool, order: RunCommand) -> RunStatus:
+    def status(self, *, alive: bool, order: RunCommand) -> RunStatus:
         """Where the run stands, given whether somebody trains it and what that one was asked to do."""
         summary = summarise_events(tuple(self._last.values()), alive=alive, order=order)
         return RunStatus(
             plan=self._plan,
             summary=summary,
-            batches=self._as_batches(),
-            looks=Evaluations(*np.array(self._looks, dtype=np.float64).reshape(-1, 3).T),
+            batches=self._training_curve(),
+            evaluations=Evaluations(*np.array(self._evaluations, dtype=np.float64).reshape(-1, 3).T),
             cases=tuple(
                 CaseStatus(
                     name,
@@ -174,27 +174,27 @@ class RunTracker:
                 for name in self._plan.cases
             ),
             rate=_weighted_mean([(1, each.rate) for each in self._recent]) or 0.0,
-            left_s=self._left() if summary.state in ("running", "paused") else None,
-            reward=self._of_late("reward"),
-            length=self._of_late("length"),
-            adjacency=self._of_late("adjacency"),
+            remaining_s=self._remaining_seconds() if summary.state in ("running", "paused") else None,
+            reward=self._recent_mean("reward"),
+            length=self._recent_mean("length"),
+            adjacency=self._recent_mean("adjacency"),
             terms=self._terms(),
             note=self._note,
         )
 
-    def _begin_again(self, steps: int) -> None:
+    def _truncate_after(self, steps: int) -> None:
         """A killed run goes on from its last checkpoint: what came after that is not part of it any more."""
         self._batches = [each for each in self._batches if each[0] <= steps]
-        self._looks = [each for each in self._looks if each[0] <= steps]
+        self._evaluations = [each for each in self._evaluations if each[0] <= steps]
         self._recent.clear()
 
-    def _as_batches(self) -> TrainingCurve:
+    def _training_curve(self) -> TrainingCurve:
         steps = np.array([steps for steps, _, _ in self._batches], dtype=np.float64)
         outcomes = np.array([counts for _, counts, _ in self._batches], dtype=np.int64)
         reward = np.array([reward for _, _, reward in self._batches], dtype=np.float64)
         return TrainingCurve(steps, outcomes.reshape(-1, len(EpisodeOutcome)), reward)
 
-    def _left(self) -> float | None:
+    def _remaining_seconds(self) -> float | None:
         if len(self._recent) < 2:
             return None
         first, last = self._recent[0], self._recent[-1]
@@ -203,7 +203,7 @@ class RunTracker:
             return None
         return max(0, self._plan.steps - last.steps) * gone / (last.steps - first.steps)
 
-    def _of_late(self, name: str) -> float | None:
+    def _recent_mean(self, name: str) -> float | None:
         values = ((_episode_count(each), getattr(each, name)) for each in self._recent)
         return _weighted_mean([(count, value) for count, value in values if value is not None])
 

@@ -149,7 +149,7 @@ class TrainingRun:
         return self.folder / "log.txt"
 
     @property
-    def last_words(self) -> str:
+    def last_log_line(self) -> str:
         """The last line that the newest process printed: why it ended, where it could not write that among the events."""
         try:
             lines = self.log.read_text(errors="replace").split("\n")
@@ -180,11 +180,11 @@ class TrainingRun:
 
     # What the learner is asked to do
 
-    def ask(self, order: RunCommand) -> None:
+    def send_command(self, order: RunCommand) -> None:
         """Tells the learner, which obeys between two updates."""
         write_atomically(self.folder / "control", order.encode())
 
-    def asked(self) -> RunCommand:
+    def read_command(self) -> RunCommand:
         """The newest order."""
         with suppress(OSError, UnicodeDecodeError):
             text = (self.folder / "control").read_text().strip()
@@ -194,7 +194,7 @@ class TrainingRun:
     # Who is at it
 
     @contextmanager
-    def held(self) -> Iterator[None]:
+    def lock(self) -> Iterator[None]:
         """Keeps others from training this run; the system lets go when the process ends, however it does.
 
         RunError if somebody is at it.
@@ -205,7 +205,7 @@ class TrainingRun:
             yield
 
     @property
-    def alive(self) -> bool:
+    def is_active(self) -> bool:
         """Whether a learner is at it."""
         try:
             with (self.folder / "lock").open("rb") as lock:
@@ -223,8 +223,8 @@ class TrainingRun:
 
     def summary(self) -> RunSummary:
         """Where it stands."""
-        found = summarise_events(self.events(), alive=self.alive, order=self.asked())
-        return replace(found, reason=self.last_words) if found.state == "interrupted" else found
+        found = summarise_events(self.events(), alive=self.is_active, order=self.read_command())
+        return replace(found, reason=self.last_log_line) if found.state == "interrupted" else found
 
     # Checkpoints
 

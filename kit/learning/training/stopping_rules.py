@@ -93,7 +93,7 @@ class StoppingRule(Protocol):
     def greedy(self) -> bool:
         """Whether policies are tested by their best actions; else as they explore."""
 
-    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
+    def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         """After so many steps."""
 
 
@@ -138,7 +138,7 @@ class TrainThenTest:
     episodes: int = 100
     greedy: bool = True
 
-    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
+    def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
         return StoppingDecision(
             counts, replace(memory, best=_policy_rank(counts), best_steps=steps), keep=True
@@ -154,7 +154,7 @@ class TrainUntilGoal:
     goal: float = 0.8
     greedy: bool = True
 
-    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
+    def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
         memory, keep = _with_best(counts, steps, memory)
         share = accuracy(counts)
@@ -189,7 +189,7 @@ class TrainUntilSure:
     """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
     greedy: bool = True
 
-    def look(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
+    def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.screening * test.cases)
         if worst_share(counts) >= self.goal:
             counts = test(self.confirming * test.cases)

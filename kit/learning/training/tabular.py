@@ -50,9 +50,9 @@ class TableLearner(ABC):
         self._steps = 0
         self._slower = 1.0
 
-    def deal(self, shares: FloatArray) -> None:
-        if self._batch.stays:
-            self._batch.deal(shares)
+    def assign_cases(self, shares: FloatArray) -> None:
+        if self._batch.has_fixed_cases:
+            self._batch.assign_cases(shares)
 
     # The lesson
 
@@ -61,14 +61,14 @@ class TableLearner(ABC):
         state, tally = self._table.states(self._batch.reset()), EpisodeStatsRecorder(self._batch)
         action = self._choose(state, steps)
         while self._steps < steps:
-            watcher.between()
+            watcher.between_updates()
             step = self._batch.step(action)
             reached_state = self._table.states(step.final_observations)
             next_action = self._choose(reached_state, steps)
             self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
             self._steps += self._batch.n
             for episode in tally.add(step):
-                watcher.saw(episode)
+                watcher.on_episode_end(episode)
             state = self._table.states(step.observations)
             action = np.where(step.ended, self._choose(state, steps), next_action)
 
@@ -119,10 +119,10 @@ class TableLearner(ABC):
             self._steps,
         )
 
-    def remember(self) -> Any:
+    def snapshot(self) -> Any:
         return self._values.copy()
 
-    def recall(self, known: Any) -> None:
+    def restore(self, known: Any) -> None:
         self._values = known.copy()
         self._slower *= LEARNING_RATE_FACTOR
 

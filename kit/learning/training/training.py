@@ -62,7 +62,7 @@ CONTROL_S = 0.1
 def resolve_preset(config: RunConfig) -> Preset:
     """The configuration's preset, with what the configuration changes in it."""
     preset = find_preset(config.preset, find_algorithm(config.algorithm), config.choice.task)
-    strategy = preset.strategy
+    strategy = preset.stopping_rule
     if config.keep_training:
         strategy = TrainThenTest(strategy.every, greedy=strategy.greedy)
     elif config.goal is not None and isinstance(strategy, TrainUntilGoal | TrainUntilSure):
@@ -70,7 +70,7 @@ def resolve_preset(config: RunConfig) -> Preset:
     rate = config.learning_rate
     return replace(
         preset,
-        strategy=strategy,
+        stopping_rule=strategy,
         steps=preset.steps if config.steps is None else config.steps,
         worlds=preset.worlds if config.worlds is None else config.worlds,
         mirrored=preset.mirrored or config.mirrored,
@@ -93,7 +93,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
     config = run.config()
     if find_algorithm(config.algorithm).neural:
         require_learn_extra()
-    with run.held(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
+    with run.lock(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
         try:
             with _student_reward(run, config) as reward:
                 training = _TrainingLoop(run, config, events, reward, interrupted)
@@ -161,7 +161,7 @@ class _TrainingLoop:
         self._seconds = 0.0
         self._looks = 0
         self._resumed = 0
-        self._looked_at, self._next_look = 0, self._preset.strategy.every
+        self._looked_at, self._next_look = 0, self._preset.stopping_rule.every
         self._known: Any = None
         parts = self._restored()
         self._learner = make_learner(
@@ -183,7 +183,7 @@ class _TrainingLoop:
         try:
             self._learner.learn(self._preset.steps, self)
             if self._learner.steps > self._looked_at:
-                self._look(last=True)
+                self._evaluate(last=True)
         except StopLearning as halt:
             stopped, reason = isinstance(halt, _StopRequested), str(halt)
         self._tell_progress()
@@ -192,18 +192,18 @@ class _TrainingLoop:
             "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
         )
 
-    def between(self) -> None:
+    def between_updates(self) -> None:
         now = time.monotonic()
         if now - self._control_at >= CONTROL_S:
             self._obey()
         if self._learner.steps >= self._next_look:
-            self._look()
+            self._evaluate()
         if now - self._batch.since >= PROGRESS_S:
             self._tell_progress()
         if now - self._checkpoint_at >= CHECKPOINT_S:
             self._checkpoint()
 
-    def saw(self, episode: EpisodeStats) -> None:
+    def on_episode_end(self, episode: EpisodeStats) -> None:
         self._batch.add(episode)
 
     def _obey(self) -> None:
@@ -214,7 +214,7 @@ class _TrainingLoop:
             if self._interrupted():
                 self._checkpoint()
                 raise KeyboardInterrupt
-            order = self._run.asked()
+            order = self._run.read_command()
             if order != "pause":
                 break
             if not told:
@@ -230,25 +230,25 @@ class _TrainingLoop:
 
     # Looking
 
-    def _look(self, last: bool = False) -> None:
+    def _evaluate(self, last: bool = False) -> None:
         """Lets the strategy judge the present policy."""
         self._tell_progress()
         policy, steps = self._learner.policy(), self._learner.steps
         test = _SeededPolicyTest(
-            self._examiner, policy, self._config.seed, self._looks, self._preset.strategy.greedy
+            self._examiner, policy, self._config.seed, self._looks, self._preset.stopping_rule.greedy
         )
-        verdict = self._preset.strategy.look(steps, self._memory, test)
+        verdict = self._preset.stopping_rule.evaluate(steps, self._memory, test)
         self._looks, self._memory = test.looks, verdict.memory
-        self._looked_at, self._next_look = steps, steps + self._preset.strategy.every
+        self._looked_at, self._next_look = steps, steps + self._preset.stopping_rule.every
         save_policy(policy, self._run.newest_policy)
         if verdict.keep:
             save_policy(policy, self._run.best_policy)
-            self._known = self._learner.remember()
+            self._known = self._learner.snapshot()
         self._write(_evaluation_event(steps, self._elapsed(), verdict, test))
         if verdict.go_back and self._known is not None and not last:
-            self._learner.recall(self._known)
+            self._learner.restore(self._known)
         if self._preset.hard and not last:
-            self._learner.deal(practice_shares(verdict.counts, self._preset.hard))
+            self._learner.assign_cases(practice_shares(verdict.counts, self._preset.hard))
         self._batch = _ProgressBatch(steps)
         if verdict.stop and not last:
             raise StopLearning(verdict.reason)
@@ -307,17 +307,17 @@ def make_learner(
     tensorboard: Path | None = None,
 ) -> Learner:
     """One who learns ``task`` by the algorithm; ``choice`` is what the policy will say it was trained on."""
-    stay = preset.stay and preset.worlds >= len(task.courses())
+    fixed_cases = preset.fixed_cases and preset.worlds >= len(task.map_cases())
     if algorithm.family == "table":
         if preset.mirrored:
             raise UnsupportedWorld("a table is learned without a mirror")
-        batch = BatchEnv(task, preset.worlds, seed, reward=reward, stay=stay)
+        batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
     from kit.learning.training.deep import DeepLearner
 
-    venv = make_vec_env(task, preset.worlds, seed, reward, stay=stay)
+    venv = make_vec_env(task, preset.worlds, seed, reward, fixed_cases=fixed_cases)
     shown = HalfMirroredVecEnv(venv) if preset.mirrored else venv
     return DeepLearner(algorithm, preset, choice, shown, seed, tensorboard)
 

@@ -57,7 +57,7 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
 
     RunError, with what the process said, if it ends before it has begun. The caller need not wait for it.
     """
-    run.ask("go")
+    run.send_command("go")
     with run.log.open("wb") as log:
         process = subprocess.Popen(
             [sys.executable, "-m", "kit.learning.training.worker", str(run.folder)],
@@ -68,7 +68,7 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
             start_new_session=True,
         )
     until = time.monotonic() + patience
-    while process.poll() is None and not run.alive and time.monotonic() < until:
+    while process.poll() is None and not run.is_active and time.monotonic() < until:
         time.sleep(0.02)
     if process.poll() not in (None, 0):
         said = run.log.read_text(errors="replace").strip()

@@ -50,10 +50,10 @@ _STATES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 )
 
 
-def heading(name: str, standing: RunStatus, width: int) -> Row:
+def heading(name: str, status: RunStatus, width: int) -> Row:
     """What is learned on the left; on the right where it stands, and for how long it has been trained."""
-    left = row((name, "bold"), "  ", (standing.plan.title, "dim"))
-    right = row(_STATES[standing.summary.state], "  ", (clock(standing.summary.seconds), "bold"))
+    left = row((name, "bold"), "  ", (status.plan.title, "dim"))
+    right = row(_STATES[status.summary.state], "  ", (clock(status.summary.seconds), "bold"))
     return spread(left, right, width)
 
 
@@ -64,18 +64,18 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
 
 
-def figures(standing: RunStatus, width: int) -> Row:
+def figures(status: RunStatus, width: int) -> Row:
     """Steps, speed, time left, and as much more as there is room for."""
-    summary = standing.summary
-    parts = [row((f"{summary.steps:,}", "bold"), (f" of {standing.plan.steps:,} steps", "dim"))]
-    if summary.state == "running" and standing.rate:
-        parts.append(row((f"{standing.rate:,.0f}", "bold"), (" steps/s", "dim")))
-    if standing.left_s is not None:
-        parts.append(row(("at most ", "dim"), (clock(standing.left_s), "bold"), (" left", "dim")))
-    if standing.adjacency:
-        parts.append(row(("side by side ", "dim"), (f"{standing.adjacency:.0%}", "bold")))
-    if standing.reward is not None:
-        parts.append(row(("reward ", "dim"), (f"{standing.reward:.2f}", "bold")))
+    summary = status.summary
+    parts = [row((f"{summary.steps:,}", "bold"), (f" of {status.plan.steps:,} steps", "dim"))]
+    if summary.state == "running" and status.rate:
+        parts.append(row((f"{status.rate:,.0f}", "bold"), (" steps/s", "dim")))
+    if status.remaining_s is not None:
+        parts.append(row(("at most ", "dim"), (clock(status.remaining_s), "bold"), (" left", "dim")))
+    if status.adjacency:
+        parts.append(row(("side by side ", "dim"), (f"{status.adjacency:.0%}", "bold")))
+    if status.reward is not None:
+        parts.append(row(("reward ", "dim"), (f"{status.reward:.2f}", "bold")))
     shown: Row = parts[0]
     for part in parts[1:]:
         longer = (*shown, *row("   "), *part)
@@ -84,14 +84,14 @@ def figures(standing: RunStatus, width: int) -> Row:
     return shown
 
 
-def note(name: str, standing: RunStatus, width: int) -> Row:
+def note(name: str, status: RunStatus, width: int) -> Row:
     """What happened last, and what can be done where nobody trains."""
-    state = standing.summary.state
+    state = status.summary.state
     if state == "interrupted":
         return row((f"{name} was interrupted. p goes on from its last checkpoint."[:width], "warn"))
     style = "bad" if state == "failed" else ""
     hint = "  p goes on" if state == "stopped" else ""
-    return row((f"{standing.note}{hint}"[:width], style))
+    return row((f"{status.note}{hint}"[:width], style))
 
 
 def caption(moment: DemonstrationView, width: int) -> Row:
@@ -115,24 +115,24 @@ def _short(steps: int) -> str:
 # What the curve and the outcomes are drawn from
 
 
-def axes(standing: RunStatus, kind: str) -> Axes:
+def axes(status: RunStatus, kind: str) -> Axes:
     """Of the curve: ``success`` or ``reward``."""
     if kind == "reward":
         return Axes("steps", margin=MARGIN)
-    return Axes("steps", low=0.0, high=1.0, goal=standing.plan.goal, margin=MARGIN)
+    return Axes("steps", low=0.0, high=1.0, goal=status.plan.goal, margin=MARGIN)
 
 
-def curves(standing: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
+def curves(status: RunStatus, kind: str, columns: int) -> tuple[Curve, ...]:
     """Reward, or success: in training, and in tests on average and in the worst case, if there is room for both."""
-    batches, looks = standing.batches, standing.looks
+    batches, evaluations = status.batches, status.evaluations
     if kind == "reward":
         return (Curve("reward in training", batches.steps, batches.reward),)
     share = batches.outcomes[:, 0] / batches.outcomes.sum(axis=1) if len(batches.steps) else np.empty(0)
     trained = Curve("training", batches.steps, _two(share))
-    worst = Curve("worst", looks.steps, _two(looks.worst))
+    worst = Curve("worst", evaluations.steps, _two(evaluations.worst))
     if columns < THREE_CURVES_FROM:
         return trained, Curve("worst test", worst.x, worst.y)
-    return trained, Curve("test", looks.steps, _two(looks.mean)), worst
+    return trained, Curve("test", evaluations.steps, _two(evaluations.mean)), worst
 
 
 def _two(values: FloatArray) -> FloatArray:
@@ -140,18 +140,18 @@ def _two(values: FloatArray) -> FloatArray:
     return np.round(values, 2)
 
 
-def shares(standing: RunStatus) -> Shares:
+def shares(status: RunStatus) -> Shares:
     """How the episodes ended, batch by batch."""
-    return Shares(standing.batches.steps, standing.batches.outcomes)
+    return Shares(status.batches.steps, status.batches.outcomes)
 
 
 # What stands in the panel
 
 
-def pages(standing: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
+def pages(status: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
     """Cases, and terms of the reward, on as few pages as they fit on; at least one."""
     width = max(width, NAME + 4)
-    blocks = [_cases(standing, width, height), _terms(standing, width)]
+    blocks = [_cases(status, width, height), _terms(status, width)]
     made: list[tuple[Row, ...]] = []
     for title, rows in blocks:
         for start in range(0, len(rows), max(1, height - 1)):
@@ -163,20 +163,20 @@ def pages(standing: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...]
     return tuple(made) or ((),)
 
 
-def _cases(standing: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
+def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     """Every case: how its episodes ended in training and how many reached the target in the last test; where they
     are too many, only the latter, several in a row."""
-    names = short_names([case.name for case in standing.cases])
-    cases = list(zip(names, standing.cases, strict=True))
+    names = short_names([case.name for case in status.cases])
+    cases = list(zip(names, status.cases, strict=True))
     if len(cases) < height:
         wide = max(map(len, names), default=0)
         bar = max(0, width - wide - 13)
         title = row((f"{'case':{wide}} {'of late':{bar}} train  test"[:width], "dim"))
         return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
     per_row = max(1, (width + 1) // (NAME + 5))
-    tested = any(sum(case.tested) for case in standing.cases)
+    tested = any(sum(case.tested) for case in status.cases)
     title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
-    cells = [_cell(name, case.tested if tested else case.trained, standing.plan.goal) for name, case in cases]
+    cells = [_cell(name, case.tested if tested else case.trained, status.plan.goal) for name, case in cases]
     down = -(-len(cells) // per_row)
     return title, [tuple(part for cell in cells[line::down] for part in cell) for line in range(down)]
 
@@ -214,15 +214,15 @@ def short_names(names: Sequence[str]) -> list[str]:
     return ["_".join(each) for each in words]
 
 
-def _terms(standing: RunStatus, width: int) -> tuple[Row, list[Row]]:
+def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward of an episode by named term."""
-    total = "" if standing.reward is None else f" {standing.reward:.2f}"
+    total = "" if status.reward is None else f" {status.reward:.2f}"
     title = row((f"reward of an episode{total}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [
         row(f"{name:{cell - 10}.{cell - 10}}", (f"{value:>9.2f} ", "bold"))
-        for name, value in standing.terms.items()
+        for name, value in status.terms.items()
     ]
     down = -(-len(cells) // per_row)
     return title, [tuple(part for each in cells[line::down] for part in each) for line in range(down)]

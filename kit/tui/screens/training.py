@@ -89,7 +89,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     def __init__(self, theme: Theme, run: TrainingRun) -> None:
         super().__init__()
         self.run_name = run.name
-        self.standing: RunStatus | None = None
+        self.status: RunStatus | None = None
         self.moment: DemonstrationView | None = None
         ascii_only = theme.terminal.glyphs.value == "ascii"
         self._curve = LearningCurveView(encoder=theme.encoder, palette=theme.palette)
@@ -113,7 +113,7 @@ class TrainingScreen(ActivePaintScreen[None]):
     @property
     def state(self) -> str:
         """As ``kit.learning.training.runs.RunState``; new until the files have been read."""
-        return "new" if self.standing is None else self.standing.summary.state
+        return "new" if self.status is None else self.status.summary.state
 
     @property
     def farewell(self) -> str:
@@ -145,8 +145,8 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     # What arrives from the threads behind: the newest wins, one announcement at a time is enough
 
-    def _status_arrived(self, standing: RunStatus) -> None:
-        self.standing = standing
+    def _status_arrived(self, status: RunStatus) -> None:
+        self.status = status
         self._announce(StatusChanged())
 
     def _moment_arrived(self, moment: DemonstrationView) -> None:
@@ -185,22 +185,22 @@ class TrainingScreen(ActivePaintScreen[None]):
         self._show_moment()
 
     def _show_status(self) -> None:
-        standing, width = self.standing, self.size.width
-        if standing is None or not self.is_active:
+        status, width = self.status, self.size.width
+        if status is None or not self.is_active:
             return
         kind = KINDS[self._kind]
-        self._rows("heading").show([training_rows.heading(self.run_name, standing, width)])
-        self._rows("figures").show([training_rows.figures(standing, width)])
-        self._rows("note").show([training_rows.note(self.run_name, standing, width)])
+        self._rows("heading").show([training_rows.heading(self.run_name, status, width)])
+        self._rows("figures").show([training_rows.figures(status, width)])
+        self._rows("note").show([training_rows.note(self.run_name, status, width)])
         self._rows("keys").show([keys(self.state)])
         self._curve.show(
-            training_rows.curves(standing, kind, self._curve.size.width), training_rows.axes(standing, kind)
+            training_rows.curves(status, kind, self._curve.size.width), training_rows.axes(status, kind)
         )
-        self._shares.show(training_rows.shares(standing))
-        pages = training_rows.pages(standing, self._rows("panel").size.width, PANEL_ROWS)
+        self._shares.show(training_rows.shares(status))
+        pages = training_rows.pages(status, self._rows("panel").size.width, PANEL_ROWS)
         self._rows("panel").show(pages[self._page % len(pages)])
         side = self._rows("side").content_size
-        self._rows("side").show(training_rows.pages(standing, side.width, max(PANEL_ROWS, side.height))[0])
+        self._rows("side").show(training_rows.pages(status, side.width, max(PANEL_ROWS, side.height))[0])
 
     def _show_moment(self) -> None:
         if not self.is_active:
@@ -244,8 +244,8 @@ class TrainingScreen(ActivePaintScreen[None]):
 
     @work
     async def action_case(self) -> None:
-        if self.standing is not None:
-            names = self.standing.plan.cases
+        if self.status is not None:
+            names = self.status.plan.cases
             choices = [
                 PickerItem(ALL, "all", "one after the other"),
                 *(PickerItem(name, name) for name in names),

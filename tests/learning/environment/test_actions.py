@@ -29,8 +29,8 @@ def test_one_number_or_two_choose_the_same(actions: Actions) -> None:
     assert actions.space(2).n == count**2
     assert apart.space(2).nvec.tolist() == [count, count]
     pairs = np.array([(one, other) for one in range(count) for other in range(count)])
-    assert np.array_equal(apart.chosen(pairs, 2), pairs)
-    assert np.array_equal(actions.chosen(np.arange(count**2), 2), pairs)
+    assert np.array_equal(apart.decode(pairs, 2), pairs)
+    assert np.array_equal(actions.decode(np.arange(count**2), 2), pairs)
 
 
 @every_one
@@ -38,10 +38,10 @@ def test_one_robot_takes_numbers(actions: Actions) -> None:
     count = len(actions.moves)
     for each in (actions, replace(actions, one_number=False)):
         assert each.space(1).n == count
-        assert each.chosen(np.arange(count), 1).tolist() == [[i] for i in range(count)]
+        assert each.decode(np.arange(count), 1).tolist() == [[i] for i in range(count)]
 
 
 @pytest.mark.parametrize("wrong", [[16], [-1], [0, 99]])
 def test_what_is_not_in_the_space_is_refused(wrong: list[int]) -> None:
     with pytest.raises(ValueError, match="outside Discrete"):
-        FOUR_MOVES.chosen(np.array(wrong), 2)
+        FOUR_MOVES.decode(np.array(wrong), 2)

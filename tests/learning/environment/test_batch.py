@@ -113,7 +113,7 @@ def test_cases_are_dealt_in_turn() -> None:
 
 
 def test_a_world_may_stay_with_its_case() -> None:
-    batch = BatchEnv(HALLWAY, 17, seed=0, first=2, stay=True)
+    batch = BatchEnv(HALLWAY, 17, seed=0, first=2, fixed_cases=True)
     batch.reset()
     for _ in range(300):
         batch.step(np.ones(17, dtype=np.int64))
@@ -123,9 +123,9 @@ def test_a_world_may_stay_with_its_case() -> None:
 
 def test_worlds_that_stay_are_dealt_anew_when_their_episodes_are_over() -> None:
     task = replace(HALLWAY.on("straight", "left_door", "turn_left_90"), max_steps=5)
-    batch = BatchEnv(task, 20, seed=0, stay=True)
+    batch = BatchEnv(task, 20, seed=0, fixed_cases=True)
     batch.reset()
-    batch.deal(np.array([0.1, 0.65, 0.25]))
+    batch.assign_cases(np.array([0.1, 0.65, 0.25]))
     assert np.bincount(batch.state.case).tolist() == [7, 7, 6]
     for _ in range(6):
         batch.step(np.zeros(20, dtype=np.int64))
@@ -133,7 +133,7 @@ def test_worlds_that_stay_are_dealt_anew_when_their_episodes_are_over() -> None:
     kept = batch.state.case == np.arange(20) % 3
     assert kept.sum() == 2 + 7 + 5
     with pytest.raises(ValueError, match="in turn"):
-        BatchEnv(task, 20, seed=0).deal(np.array([0.1, 0.65, 0.25]))
+        BatchEnv(task, 20, seed=0).assign_cases(np.array([0.1, 0.65, 0.25]))
 
 
 def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
@@ -149,7 +149,7 @@ def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
 
 @every_task
 def test_no_start_touches_anything_or_is_in_the_target(task: LearningTask) -> None:
-    cases = len(task.courses())
+    cases = len(task.map_cases())
     n = cases * -(-2000 // cases)
     task = replace(task, actions=replace(task.actions, speed=0.0, turn=0.0))
     batch = BatchEnv(task, n, seed=11)

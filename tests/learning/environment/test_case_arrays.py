@@ -15,11 +15,11 @@ from kit.learning.environment.tasks import HALLWAY, TASKS, WHEELCHAIRS, Learning
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_a_start_depends_on_case_key_and_number_alone(task: LearningTask) -> None:
     courses, chance = CaseArrays(task), np.random.default_rng(0)
-    cases = chance.integers(len(task.courses()), size=50)
+    cases = chance.integers(len(task.map_cases()), size=50)
     keys, first = chance.integers(2**62, size=50), chance.integers(2**40, size=50)
-    together = courses.start(cases, keys, first)
+    together = courses.draw_starts(cases, keys, first)
     for i in range(50):
-        alone = courses.start(cases[i : i + 1], keys[i : i + 1], first[i : i + 1])
+        alone = courses.draw_starts(cases[i : i + 1], keys[i : i + 1], first[i : i + 1])
         assert alone.poses.tobytes() == together.poses[i : i + 1].tobytes()
         assert alone.targets.tobytes() == together.targets[i : i + 1].tobytes()
 
@@ -27,7 +27,7 @@ def test_a_start_depends_on_case_key_and_number_alone(task: LearningTask) -> Non
 def test_noise_reaches_as_far_as_it_should() -> None:
     task = replace(WHEELCHAIRS, start=StartVariation(noise=0.05, turned=0.1))
     cases, keys = np.zeros(4000, dtype=np.int64), np.arange(4000)
-    poses = CaseArrays(task).start(cases, keys, keys).poses
+    poses = CaseArrays(task).draw_starts(cases, keys, keys).poses
     spread = poses - poses.mean(axis=0)
     assert np.abs(spread).max(axis=(0, 1)) == pytest.approx([0.05, 0.05, 0.1], rel=0.05)
     assert spread.std(axis=(0, 1)) == pytest.approx(np.array([0.05, 0.05, 0.1]) / np.sqrt(3), rel=0.05)

@@ -45,7 +45,7 @@ def test_beside_a_wall_a_metre_counts_for_more() -> None:
 @pytest.mark.parametrize("case", ["turn_right_180", "curve_left_180", "left_door", "two_doors"])
 def test_it_leads_round_walls(case: str) -> None:
     task = HALLWAY.on(case)
-    ((_, course),) = task.courses()
+    ((_, course),) = task.map_cases()
     (there,) = to_go(task, course.start[:2])
     plain = math.hypot(course.target[0] - course.start.x, course.target[1] - course.start.y)
     assert there > plain + 0.1 * ("180" in case or "left" in case)
@@ -56,7 +56,7 @@ def test_it_leads_round_walls(case: str) -> None:
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_from_every_start_a_way_leads_to_the_target(task: LearningTask) -> None:
     courses = CaseArrays(task)
-    number = np.arange(len(task.courses()))
+    number = np.arange(len(task.map_cases()))
     start = courses.start(number, number, number)
     far = courses.to_go(number, start.poses)
     assert (far > 0.9).all()

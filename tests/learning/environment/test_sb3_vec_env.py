@@ -100,8 +100,8 @@ def test_half_of_every_case_is_seen_in_a_mirror() -> None:
 
     task = HALLWAY.on("left_door", "turn_left_90", "straight")
     plainly, mirrored = (
-        make_vec_env(task, 12, 3, stay=True),
-        HalfMirroredVecEnv(make_vec_env(task, 12, 3, stay=True)),
+        make_vec_env(task, 12, 3, fixed_cases=True),
+        HalfMirroredVecEnv(make_vec_env(task, 12, 3, fixed_cases=True)),
     )
     mirror, which = TaskMirror(task), np.array([3, 4, 5, 9, 10, 11])
     others = np.setdiff1d(np.arange(12), which)

@@ -55,7 +55,7 @@ def test_the_dissertations_rewards() -> None:
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_a_task_is_found_by_its_name(task: LearningTask) -> None:
     assert find_task(task.name) is task
-    assert task.courses()
+    assert task.map_cases()
 
 
 def test_the_nearest_name_is_offered() -> None:
@@ -64,12 +64,12 @@ def test_the_nearest_name_is_offered() -> None:
     with pytest.raises(UnknownTask, match="left_door"):
         HALLWAY.on("left_dor")
     with pytest.raises(UnknownTask, match="straight"):
-        replace(HALLWAY, cases=("strait",)).courses()
+        replace(HALLWAY, cases=("strait",)).map_cases()
 
 
 def test_cases_by_name_and_by_group() -> None:
     def names(task: LearningTask) -> list[str]:
-        return [case.name for _, case in task.courses()]
+        return [case.name for _, case in task.map_cases()]
 
     assert len(names(HALLWAY)) == 15
     assert names(HALLWAY.on("doors", "straight")) == ["straight", "left_door", "center_door", "right_door"]

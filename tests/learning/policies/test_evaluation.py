@@ -125,7 +125,7 @@ def test_ways_lead_from_start_to_end() -> None:
         steps = np.hypot(*np.diff(way.poses[:, 0, :2], axis=0).T)
         assert steps == pytest.approx(0.06, abs=1e-6)
         assert np.hypot(*(way.poses[-1, 0, :2] - way.target)) < 0.4
-    card, case = AHEAD_ONLY.courses()[0]
+    card, case = AHEAD_ONLY.map_cases()[0]
     scene = build_paths_scene(card, case, ways, 0.25)
     assert len(scene.paths) == 3
     assert not len(scene.contacts)

@@ -134,7 +134,7 @@ def test_a_choice_goes_into_a_file_and_back() -> None:
     assert TaskSpec.from_dict(choice.as_dict()) == choice
     task = choice.resolve()
     assert (task.measured_to, task.observation.target, task.reward.scale) == ("axle", True, 0.5)
-    assert len(task.courses()) == 3
+    assert len(task.map_cases()) == 3
     for wrong in (None, {}, {"task": "turn", "colour": 1}):
         with pytest.raises(ValueError, match="choice"):
             TaskSpec.from_dict(wrong)

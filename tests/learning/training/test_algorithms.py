@@ -74,10 +74,10 @@ class Onlooker:
         self.stops = 0
         self.episodes: list[EpisodeStats] = []
 
-    def between(self) -> None:
+    def between_updates(self) -> None:
         self.stops += 1
 
-    def saw(self, episode: EpisodeStats) -> None:
+    def on_episode_end(self, episode: EpisodeStats) -> None:
         self.episodes.append(episode)
 
 
@@ -128,9 +128,9 @@ def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
     learner = make_learner(algorithm, preset, TaskSpec("hallway"), STRAIGHT_ON, seed=3)
     examiner = Evaluator(STRAIGHT_ON)
-    known, before = learner.remember(), examiner.test(learner.policy(), 10, 1)
+    known, before = learner.snapshot(), examiner.test(learner.policy(), 10, 1)
     learner.learn(1200, Onlooker())
-    learner.recall(known)
+    learner.restore(known)
     assert examiner.test(learner.policy(), 10, 1) == before
 
 
@@ -139,7 +139,7 @@ def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
 def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: str) -> None:
     for task in TASKS:
         preset = find_preset(name, algorithm, task.name)  # type: ignore[arg-type]  # PRESETS are its names
-        assert preset.steps >= preset.strategy.every > 0
+        assert preset.steps >= preset.stopping_rule.every > 0
 
 
 def test_an_unknown_algorithm_is_told_from_a_known_one() -> None:

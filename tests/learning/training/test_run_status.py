@@ -32,7 +32,7 @@ def stands(*events: TrainingEvent, alive: bool = True) -> RunStatus:
     logbook = RunTracker(PLAN)
     for event in events:
         logbook.add(event)
-    return logbook.standing(alive=alive, order="go")
+    return logbook.status(alive=alive, order="go")
 
 
 def batch(steps: int, **changes: object) -> TrainingProgress:
@@ -43,8 +43,8 @@ def test_curves_and_cases() -> None:
     found = stands(TrainingStarted(0.0, 0), BATCH, TEST, batch(2000))
     assert found.batches.steps.tolist() == [1000, 2000]
     assert found.batches.outcomes.tolist() == [[3, 1, 4]] * 2
-    assert found.looks.mean.tolist() == pytest.approx([0.7])
-    assert found.looks.worst.tolist() == [0.5]
+    assert found.evaluations.mean.tolist() == pytest.approx([0.7])
+    assert found.evaluations.worst.tolist() == [0.5]
     assert [(case.name, case.trained, case.tested) for case in found.cases] == [
         (A, (6, 2, 0), (9, 1, 0)),
         (B, (0, 0, 8), (5, 0, 5)),
@@ -70,11 +70,11 @@ def test_a_batch_without_an_end_of_an_episode_is_no_batch() -> None:
 
 
 def test_time_left_counts_tests_in_and_ends_with_the_training() -> None:
-    assert stands(BATCH).left_s is None
-    assert stands(BATCH, batch(2000)).left_s == pytest.approx(8.0)
+    assert stands(BATCH).remaining_s is None
+    assert stands(BATCH, batch(2000)).remaining_s == pytest.approx(8.0)
     slowed = replace(batch(2000), seconds=3.0)
-    assert stands(BATCH, slowed).left_s == pytest.approx(16.0)
-    assert stands(BATCH, batch(2000), alive=False).left_s is None
+    assert stands(BATCH, slowed).remaining_s == pytest.approx(16.0)
+    assert stands(BATCH, batch(2000), alive=False).remaining_s is None
 
 
 def test_what_a_killed_learner_had_done_since_its_checkpoint_is_gone() -> None:
@@ -88,7 +88,7 @@ def test_what_a_killed_learner_had_done_since_its_checkpoint_is_gone() -> None:
         batch(2500),
     )
     assert found.batches.steps.tolist() == [1000, 2000, 2500]
-    assert found.looks.steps.tolist() == [1000]
+    assert found.evaluations.steps.tolist() == [1000]
 
 
 def test_the_newest_word_is_told() -> None:
@@ -102,7 +102,7 @@ def test_the_newest_word_is_told() -> None:
 def test_nothing_has_happened_yet() -> None:
     found = stands(alive=False)
     assert found.summary.state == "new"
-    assert len(found.looks.steps) == len(found.batches.steps) == 0
+    assert len(found.evaluations.steps) == len(found.batches.steps) == 0
     assert [sum(case.trained) for case in found.cases] == [0, 0]
 
 

@@ -148,21 +148,21 @@ def test_a_damaged_configuration_is_named(tmp_path: Path) -> None:
 
 def test_orders_arrive_and_nonsense_does_not(tmp_path: Path) -> None:
     run = TrainingRun(tmp_path)
-    assert run.asked() == "go"
-    run.ask("pause")
-    assert run.asked() == "pause"
+    assert run.read_command() == "go"
+    run.send_command("pause")
+    assert run.read_command() == "pause"
     (tmp_path / "control").write_bytes(b"\xff\xfe")
-    assert run.asked() == "go"
+    assert run.read_command() == "go"
 
 
 def test_two_cannot_train_one_run(tmp_path: Path) -> None:
     run = TrainingRun(tmp_path)
-    assert not run.alive
-    with run.held():
-        assert run.alive
-        with pytest.raises(RunError, match="already"), run.held():
+    assert not run.is_active
+    with run.lock():
+        assert run.is_active
+        with pytest.raises(RunError, match="already"), run.lock():
             pass
-    assert not run.alive
+    assert not run.is_active
 
 
 def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
@@ -170,8 +170,8 @@ def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
     with (tmp_path / "lock").open("ab") as look:
         fcntl.flock(look, fcntl.LOCK_SH)
         threading.Timer(0.05, fcntl.flock, (look, fcntl.LOCK_UN)).start()
-        with run.held():
-            assert run.alive
+        with run.lock():
+            assert run.is_active
 
 
 def test_the_older_checkpoint_stands_in_for_a_damaged_one(tmp_path: Path) -> None:

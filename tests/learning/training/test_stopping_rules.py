@@ -37,7 +37,7 @@ class Tries:
 def test_the_first_goes_on_whatever_happens_and_keeps_the_newest() -> None:
     strategy = TrainThenTest(every=10)
     for shares in ((1.0, 1.0), (0.1, 0.1)):
-        verdict = strategy.look(10, StoppingMemory(), Tries(shares))
+        verdict = strategy.evaluate(10, StoppingMemory(), Tries(shares))
         assert verdict.keep
         assert not verdict.stop
         assert not verdict.go_back
@@ -45,9 +45,9 @@ def test_the_first_goes_on_whatever_happens_and_keeps_the_newest() -> None:
 
 def test_the_second_stops_at_the_first_good_test() -> None:
     strategy = TrainUntilGoal(every=10, episodes=20, goal=0.8)
-    verdict = strategy.look(10, StoppingMemory(), Tries((0.7, 0.7)))
+    verdict = strategy.evaluate(10, StoppingMemory(), Tries((0.7, 0.7)))
     assert not verdict.stop
-    verdict = strategy.look(20, verdict.memory, Tries((1.0, 0.6)))
+    verdict = strategy.evaluate(20, verdict.memory, Tries((1.0, 0.6)))
     assert verdict.stop
     assert verdict.keep
     assert "0.80" in verdict.reason
@@ -55,11 +55,11 @@ def test_the_second_stops_at_the_first_good_test() -> None:
 
 def test_the_second_remembers_the_best() -> None:
     strategy = TrainUntilGoal(every=10)
-    memory = strategy.look(10, StoppingMemory(), Tries((0.7, 0.7))).memory
-    worse = strategy.look(20, memory, Tries((0.5, 0.5)))
+    memory = strategy.evaluate(10, StoppingMemory(), Tries((0.7, 0.7))).memory
+    worse = strategy.evaluate(20, memory, Tries((0.5, 0.5)))
     assert not worse.keep
     assert worse.memory.best_steps == 10
-    assert strategy.look(30, worse.memory, Tries((0.7, 0.72))).keep
+    assert strategy.evaluate(30, worse.memory, Tries((0.7, 0.72))).keep
 
 
 SURE = TrainUntilSure(every=10, goal=0.95, screening=40, confirming=500)
@@ -67,13 +67,13 @@ SURE = TrainUntilSure(every=10, goal=0.95, screening=40, confirming=500)
 
 def test_a_pooled_accuracy_does_not_hide_a_bad_case() -> None:
     tries = Tries((1.0, 1.0, 0.5))
-    assert not SURE.look(10, StoppingMemory(), tries).stop
+    assert not SURE.evaluate(10, StoppingMemory(), tries).stop
     assert tries.sizes == [40]
 
 
 def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
     tries = Tries((1.0, 1.0), (0.998, 0.996))
-    verdict = SURE.look(10, StoppingMemory(), tries)
+    verdict = SURE.evaluate(10, StoppingMemory(), tries)
     assert verdict.stop
     assert verdict.keep
     assert tries.sizes == [40, 500]
@@ -81,15 +81,15 @@ def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
 
 
 def test_luck_in_the_short_test_is_not_enough() -> None:
-    verdict = SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
+    verdict = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
     assert not verdict.stop
     assert verdict.memory.confirmations == 1
 
 
 def test_trying_often_makes_it_harder() -> None:
     shares = (0.974, 0.974)
-    assert SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), shares)).stop
-    assert not SURE.look(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
+    assert SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), shares)).stop
+    assert not SURE.evaluate(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
 
 
 def test_a_mediocre_policy_is_all_but_never_passed() -> None:
@@ -106,7 +106,7 @@ def test_a_mediocre_policy_is_all_but_never_passed() -> None:
     def passes(strategy: TrainUntilSure | TrainUntilGoal) -> bool:
         memory = StoppingMemory()
         for steps in range(60):
-            verdict = strategy.look(steps, memory, Coin())
+            verdict = strategy.evaluate(steps, memory, Coin())
             if verdict.stop:
                 return True
             memory = verdict.memory
@@ -117,25 +117,25 @@ def test_a_mediocre_policy_is_all_but_never_passed() -> None:
 
 
 def test_the_longer_test_counts_more_than_the_luckier() -> None:
-    memory = SURE.look(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.97))).memory
-    assert not SURE.look(20, memory, Tries((1.0, 1.0), (0.9, 0.9))).keep
-    assert not replace(SURE, goal=1.1).look(20, memory, Tries((1.0, 1.0))).keep
+    memory = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.97))).memory
+    assert not SURE.evaluate(20, memory, Tries((1.0, 1.0), (0.9, 0.9))).keep
+    assert not replace(SURE, goal=1.1).evaluate(20, memory, Tries((1.0, 1.0))).keep
 
 
 def test_what_was_forgotten_is_fetched_back_a_few_times() -> None:
-    memory = SURE.look(10, StoppingMemory(), Tries((0.9, 0.9))).memory
+    memory = SURE.evaluate(10, StoppingMemory(), Tries((0.9, 0.9))).memory
     for _ in range(SURE.patience):
-        verdict = SURE.look(20, memory, Tries((0.1, 0.2)))
+        verdict = SURE.evaluate(20, memory, Tries((0.1, 0.2)))
         assert verdict.go_back
         assert "back to the policy of step 10" in verdict.reason
         assert not verdict.keep
         memory = verdict.memory
-    assert not SURE.look(30, memory, Tries((0.1, 0.2))).go_back
+    assert not SURE.evaluate(30, memory, Tries((0.1, 0.2))).go_back
 
 
 def test_a_small_setback_is_left_alone() -> None:
-    memory = SURE.look(10, StoppingMemory(), Tries((0.9, 0.9))).memory
-    assert not SURE.look(20, memory, Tries((0.7, 0.7))).go_back
+    memory = SURE.evaluate(10, StoppingMemory(), Tries((0.9, 0.9))).memory
+    assert not SURE.evaluate(20, memory, Tries((0.7, 0.7))).go_back
 
 
 def test_side_by_side_decides_among_those_that_arrive() -> None:
@@ -152,11 +152,11 @@ def test_side_by_side_decides_among_those_that_arrive() -> None:
             return self._counts
 
     strategy = replace(SURE, to_the_end=True, enough=0.95)
-    first = strategy.look(10, StoppingMemory(), Once(pair(1.0, 0.6)))
+    first = strategy.evaluate(10, StoppingMemory(), Once(pair(1.0, 0.6)))
     assert not first.stop
-    second = strategy.look(20, first.memory, Once(pair(0.99, 0.9)))
+    second = strategy.evaluate(20, first.memory, Once(pair(0.99, 0.9)))
     assert second.keep
-    third = strategy.look(30, second.memory, Once(pair(0.9, 0.99)))
+    third = strategy.evaluate(30, second.memory, Once(pair(0.9, 0.99)))
     assert not third.keep
 
 

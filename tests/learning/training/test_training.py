@@ -73,15 +73,15 @@ def test_it_stops_and_pauses_as_asked(tmp_path: Path) -> None:
     run = create_run(tmp_path, ENDLESS)
     process = start_worker(run)
     until(lambda: events(run, TrainingProgress))
-    run.ask("pause")
+    run.send_command("pause")
     until(lambda: run.summary().state == "paused" and run.checkpoints[0].exists())
     time.sleep(0.3)
     count = len(run.events())
     time.sleep(0.8)
     assert len(run.events()) == count
-    run.ask("go")
+    run.send_command("go")
     until(lambda: len(run.events()) > count)
-    run.ask("stop")
+    run.send_command("stop")
     assert process.wait(20) == 0
     summary = run.summary()
     assert summary.state == "stopped"
@@ -109,7 +109,7 @@ def test_a_killed_run_goes_on_and_says_so(tmp_path: Path, after: float) -> None:
     began = events(run, TrainingStarted)[-1]
     assert isinstance(began, TrainingStarted)
     assert began.steps >= steps > 0
-    run.ask("stop")
+    run.send_command("stop")
     assert third.wait(20) == 0
 
 
@@ -123,7 +123,7 @@ def test_a_hang_up_does_not_end_it(tmp_path: Path) -> None:
     until(lambda: len(run.events()) > count)
     with pytest.raises(RunError, match="already"):
         train(run)
-    run.ask("stop")
+    run.send_command("stop")
     assert process.wait(20) == 0
 
 
@@ -217,9 +217,9 @@ def test_a_configuration_changes_its_preset() -> None:
     assert (preset.steps, preset.worlds) == (7, 3)
     assert preset.learning_rate is not None
     assert preset.learning_rate.at(1.0) == preset.learning_rate.at(0.0) == 0.5
-    assert isinstance(preset.strategy, TrainUntilSure)
-    assert preset.strategy.goal == 0.6
-    assert isinstance(resolve_preset(TABLE).strategy, TrainThenTest)
+    assert isinstance(preset.stopping_rule, TrainUntilSure)
+    assert preset.stopping_rule.goal == 0.6
+    assert isinstance(resolve_preset(TABLE).stopping_rule, TrainThenTest)
 
 
 def test_a_pair_s_moves_become_one_number_where_they_must() -> None:
@@ -238,9 +238,9 @@ def test_what_went_wrong_is_practised_more() -> None:
 
 
 class Onlooker:
-    def between(self) -> None: ...
+    def between_updates(self) -> None: ...
 
-    def saw(self, episode: EpisodeStats) -> None: ...
+    def on_episode_end(self, episode: EpisodeStats) -> None: ...
 
 
 @needs_learner
@@ -248,7 +248,7 @@ def test_hard_cases_get_more_of_the_worlds() -> None:
     choice = TaskSpec("hallway", ("straight", "center_door"))
     preset = replace(KIT_PPO_HALLWAY, worlds=60)
     learner = make_learner(ALGORITHMS["ppo"], preset, choice, choice.resolve(), seed=1)
-    learner.deal(np.array([0.25, 0.75]))
+    learner.assign_cases(np.array([0.25, 0.75]))
     learner.learn(60 * 400, Onlooker())
     batch = learner._env.unwrapped.batch  # type: ignore[attr-defined]  # not in the protocol
     assert np.bincount(batch.state.case).tolist() == [15, 45]

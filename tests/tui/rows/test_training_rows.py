@@ -21,11 +21,11 @@ def text(row: Row) -> str:
     return "".join(part for part, _ in row)
 
 
-def standing(*events: TrainingEvent, cases: tuple[str, ...] = ("a", "b"), alive: bool = True) -> RunStatus:
+def status(*events: TrainingEvent, cases: tuple[str, ...] = ("a", "b"), alive: bool = True) -> RunStatus:
     logbook = RunTracker(RunPlan("title", cases, 4_000_000, 0.9, True))
     for event in events:
         logbook.add(event)
-    return logbook.standing(alive=alive, order="go")
+    return logbook.status(alive=alive, order="go")
 
 
 def full(cases: tuple[str, ...], terms: int) -> RunStatus:
@@ -36,7 +36,7 @@ def full(cases: tuple[str, ...], terms: int) -> RunStatus:
         0.5,
     )
     later = replace(batch, steps=1_300_000, seconds=5000.0)
-    return standing(batch, Evaluated(1, 1.0, {case: [95, 3, 2] for case in cases}, True), later, cases=cases)
+    return status(batch, Evaluated(1, 1.0, {case: [95, 3, 2] for case in cases}, True), later, cases=cases)
 
 
 def test_outcomes_are_called_as_in_the_learning_side() -> None:
@@ -47,7 +47,7 @@ def test_outcomes_are_called_as_in_the_learning_side() -> None:
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 @pytest.mark.parametrize(("width", "height"), [(39, 9), (36, 9), (46, 45), (20, 9), (1, 1)])
 def test_every_case_and_every_term_is_on_some_page(task: object, width: int, height: int) -> None:
-    cases = tuple(case.name for _, case in task.courses())  # type: ignore[attr-defined]  # a Task
+    cases = tuple(case.name for _, case in task.map_cases())  # type: ignore[attr-defined]  # a Task
     pages = training_rows.pages(full(cases, 17), width, height)
     if width >= 36:
         assert all(len(text(row).rstrip()) <= width for page in pages for row in page)
@@ -64,7 +64,7 @@ def test_with_much_room_all_is_on_one_page() -> None:
 
 def test_bars_show_what_the_counts_say() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    rows = [text(row) for row in training_rows.pages(standing(batch), 34, 9)[0]]
+    rows = [text(row) for row in training_rows.pages(status(batch), 34, 9)[0]]
     assert "█" * 10 + "▒" * 6 + "░" * 4 in rows[1]
     assert rows[1].split()[-2:] == ["50", "-"]
     assert rows[2].split() == ["b", "-", "-"]
@@ -72,7 +72,7 @@ def test_bars_show_what_the_counts_say() -> None:
 
 def test_a_hundred_means_all() -> None:
     assert "99 " in text(
-        training_rows.pages(standing(Evaluated(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
+        training_rows.pages(status(Evaluated(1, 1.0, {"a": [999, 1, 0]}, True)), 39, 9)[0][1]
     )
 
 
@@ -104,7 +104,7 @@ def test_the_lines_fit_into_eighty_columns() -> None:
 
 def test_what_can_be_done_is_said_where_nobody_trains() -> None:
     batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {})
-    found = standing(batch, alive=False)
+    found = status(batch, alive=False)
     assert "p goes on" in text(training_rows.note("mine", found, 80))
     assert "interrupted" in text(training_rows.heading("mine", found, 80))
 
