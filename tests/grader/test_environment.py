@@ -55,13 +55,13 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def graded(folder: Path, *changes: tuple[str, str], terms: GradingOptions = DESK) -> GradingResult:
+def graded(folder: Path, *changes: tuple[str, str], options: GradingOptions = DESK) -> GradingResult:
     source = GOOD.read_text()
     for old, new in (SHORT, *changes):
         assert old in source
         source = source.replace(old, new)
     return grade(
-        read(folder), Submission("ada", "hallway_env.py", {"hallway_env.py": source.encode()}), terms
+        read(folder), Submission("ada", "hallway_env.py", {"hallway_env.py": source.encode()}), options
     )
 
 
@@ -71,12 +71,12 @@ def lost(result: GradingResult) -> set[str]:
 
 @LOCKS
 def test_a_good_one_earns_everything_locked_in(folder: Path) -> None:
-    assert lost(graded(folder, grading_options=GradingOptions(Level.FILTERED))) == set()
+    assert lost(graded(folder, options=GradingOptions(Level.FILTERED))) == set()
 
 
 def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
     (folder / "secret.yaml").write_text("seed: 99\n")
-    assert lost(graded(folder, grading_options=GradingOptions(Level.LIMITED, secret=True))) == set()
+    assert lost(graded(folder, options=GradingOptions(Level.LIMITED, secret=True))) == set()
 
 
 @pytest.mark.parametrize(

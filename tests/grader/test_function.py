@@ -64,13 +64,13 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def graded(folder: Path, source: str, terms: GradingOptions = DESK) -> GradingResult:
-    return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), terms)
+def graded(folder: Path, source: str, options: GradingOptions = DESK) -> GradingResult:
+    return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), options)
 
 
-@pytest.mark.parametrize("terms", [DESK, GRADE], ids=["practice", "grade"])
-def test_a_good_one_earns_everything(folder: Path, terms: GradingOptions) -> None:
-    result = graded(folder, NEAREST + HALVES, terms)
+@pytest.mark.parametrize("options", [DESK, GRADE], ids=["practice", "grade"])
+def test_a_good_one_earns_everything(folder: Path, options: GradingOptions) -> None:
+    result = graded(folder, NEAREST + HALVES, options)
     assert (result.points, result.verdict) == (3.0, GradingVerdict.PASS)
 
 

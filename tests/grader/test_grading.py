@@ -132,7 +132,7 @@ def test_a_check_that_breaks_costs_nobody_anything(
 
     table = dict(drives.CHECKS)
     table["moves"] = dataclasses.replace(table["moves"], measure=broken)
-    monkeypatch.setattr(controller, "SORT", dataclasses.replace(controller.KIND, checks=table))
+    monkeypatch.setattr(controller, "KIND", dataclasses.replace(controller.KIND, checks=table))
     result = grade(quick, handed_in(FORWARD), DESK)
     assert statuses(result)["moves"] == "grader_error"
     assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
@@ -147,7 +147,7 @@ def test_a_docstring_is_the_feedback() -> None:
         return 3.0
 
     assert far.feedback == "Only {actual} of {full}."
-    assert (far.said(2.5), far.said(3.0)) == ("2.5 m", "3 m")
+    assert (far.format(2.5), far.format(3.0)) == ("2.5 m", "3 m")
 
 
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
@@ -205,7 +205,7 @@ def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
         (drive,) = grading.evidence("moves")
         assert drive.steps == 400
         assert grading.result().verdict is GradingVerdict.FAIL
-        assert grading.worst() is drive
+        assert grading.worst_evidence() is drive
 
 
 def test_a_shutdown_that_ends_the_program_first_leaves_no_result(tmp_path: Path) -> None:

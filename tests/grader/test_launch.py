@@ -42,9 +42,9 @@ def assignment() -> Assignment:
     return read(LESSON)
 
 
-def handed_in(assignment: Assignment, text: str, terms: GradingOptions = DESK) -> GradingResult:
+def handed_in(assignment: Assignment, text: str, options: GradingOptions = DESK) -> GradingResult:
     name = assignment.submit
-    return grade(assignment, Submission("ada", name, {name: text.encode()}), terms)
+    return grade(assignment, Submission("ada", name, {name: text.encode()}), options)
 
 
 def test_a_right_one_earns_everything(assignment: Assignment) -> None:

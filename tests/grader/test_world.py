@@ -205,9 +205,9 @@ def test_facts_travel_as_json(folder: Path) -> None:
 
     facts, world = read_world_facts(folder / "world.yaml")
     assert world is not None
-    assert WorldFacts.told(json.loads(json.dumps(asdict(facts)))) == facts
+    assert WorldFacts.from_json(json.loads(json.dumps(asdict(facts)))) == facts
     told = run_world(world, REST)
-    assert RunFacts.told(json.loads(json.dumps(asdict(told)))) == told
+    assert RunFacts.from_json(json.loads(json.dumps(asdict(told)))) == told
 
 
 # What a stranger may hand in
