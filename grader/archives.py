@@ -22,9 +22,9 @@ MAX_DEPTH: Final = 6
 MAX_COMPRESSION_RATIO: Final = 200
 """Unpacked to packed bytes: text packs to a tenth, a bomb to a thousandth."""
 
-_PLAIN: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. +\-()]{0,99}")
-_ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
-_IGNORED: Final = ("__MACOSX", "__pycache__", ".DS_Store", ".git")
+_NAME_PATTERN: Final = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. +\-()]{0,99}")
+_ARCHIVE_ENDINGS: Final = (".zip", ".tar", ".tar.gz", ".tgz")
+_IGNORED_PARTS: Final = ("__MACOSX", "__pycache__", ".DS_Store", ".git")
 
 
 class SubmissionRefused(Exception):
@@ -32,17 +32,17 @@ class SubmissionRefused(Exception):
 
 
 def is_archive(name: str) -> bool:
-    return name.lower().endswith(_ENDINGS)
+    return name.lower().endswith(_ARCHIVE_ENDINGS)
 
 
 def unpack_archive(content: bytes, name: str) -> dict[str, bytes]:
     """The plain files of an archive. Raises Refused."""
     try:
-        pairs = _zip(content) if name.lower().endswith(".zip") else _tar(content)
+        pairs = _zip_files(content) if name.lower().endswith(".zip") else _tar_files(content)
         files: dict[str, bytes] = {}
         lower: set[str] = set()
         for path, data in pairs:
-            if any(part in _IGNORED for part in path.split("/")):
+            if any(part in _IGNORED_PARTS for part in path.split("/")):
                 continue
             check_name(path)
             if path.lower() in lower:
@@ -65,12 +65,12 @@ def check_name(path: str) -> None:
     if len(parts) > MAX_DEPTH:
         raise SubmissionRefused(f"The folders are more than {MAX_DEPTH} deep.")
     for part in parts:
-        if not _PLAIN.fullmatch(part) or part.endswith((".", " ")):
+        if not _NAME_PATTERN.fullmatch(part) or part.endswith((".", " ")):
             shown = ascii(path[:80])
             raise SubmissionRefused(f"{shown} is no name for a file here: letters, digits, and _ . - + ( ).")
 
 
-class _Budget:
+class _UnpackLimit:
     def __init__(self, packed: int) -> None:
         self._bytes = min(MAX_BYTES, max(65536, packed * MAX_COMPRESSION_RATIO))
         self._files = MAX_FILES
@@ -83,35 +83,35 @@ class _Budget:
             raise SubmissionRefused(f"The archive unpacks to more than {MAX_BYTES >> 20} MiB, or is a bomb.")
         return data
 
-    def count(self) -> None:
+    def count_entry(self) -> None:
         self._files -= 1
         if self._files < 0:
             raise SubmissionRefused(f"The archive holds more than {MAX_FILES} entries.")
 
 
-def _zip(content: bytes) -> Iterator[tuple[str, bytes]]:
-    budget = _Budget(len(content))
+def _zip_files(content: bytes) -> Iterator[tuple[str, bytes]]:
+    limit = _UnpackLimit(len(content))
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for entry in archive.infolist():
-            budget.count()
+            limit.count_entry()
             if entry.is_dir():
                 continue
             mode = entry.external_attr >> 16
             if mode & 0o170000 not in (0, 0o100000):
                 raise SubmissionRefused(f"{entry.filename[:80]!a} is a link or a device; hand in files only.")
             with archive.open(entry) as stream:
-                yield entry.filename, budget.read(stream)
+                yield entry.filename, limit.read(stream)
 
 
-def _tar(content: bytes) -> Iterator[tuple[str, bytes]]:
-    budget = _Budget(len(content))
+def _tar_files(content: bytes) -> Iterator[tuple[str, bytes]]:
+    limit = _UnpackLimit(len(content))
     with tarfile.open(fileobj=io.BytesIO(content), mode="r|*") as archive:
         for entry in archive:
-            budget.count()
+            limit.count_entry()
             if entry.isdir():
                 continue
             if not entry.isreg():
                 raise SubmissionRefused(f"{entry.name[:80]!a} is a link or a device; hand in files only.")
             stream = archive.extractfile(entry)
             assert stream is not None  # a regular file
-            yield entry.name.removeprefix("./"), budget.read(stream)
+            yield entry.name.removeprefix("./"), limit.read(stream)

@@ -150,5 +150,5 @@ class Assignment:
         return next(trial for trial in self.trials if trial.name == name)
 
 
-HINT_STEPS = 3
+MAX_HINTS = 3
 """A criterion has at most so many hints: the first says where to look, the last nearly how."""

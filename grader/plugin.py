@@ -20,7 +20,7 @@ import pytest
 from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
 from grader.grading import Grading, GradingOptions, LevelTooLow, open_grading
-from grader.reading import ASSIGNMENT_FILE, read
+from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
 from grader.teacher_tests import MARK, MARK_HELP
@@ -40,23 +40,23 @@ class CriterionFailed(Exception):
     """A criterion is not met; the message is for the student."""
 
 
-class GraderBroken(Exception):
+class GraderError(Exception):
     """The grader could not judge."""
 
 
-def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> AssignmentFile | None:
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> AssignmentNode | None:
     if file_path.name != ASSIGNMENT_FILE or parent.config.getoption("--submission") is None:
         return None
-    file: AssignmentFile = AssignmentFile.from_parent(parent, path=file_path)
+    file: AssignmentNode = AssignmentNode.from_parent(parent, path=file_path)
     return file
 
 
-class AssignmentFile(pytest.File):
+class AssignmentNode(pytest.File):
     """One assignment: an item for each of its criteria."""
 
     def collect(self) -> Iterator[CriterionItem]:
         try:
-            assignment = read(self.path.parent)
+            assignment = read_assignment(self.path.parent)
         except WorldError as error:
             raise self.CollectError(str(error)) from None
         for criterion in assignment.criteria:
@@ -74,7 +74,7 @@ class CriterionItem(pytest.Item):
         self._criterion = criterion
 
     def runtest(self) -> None:
-        test = self.config.stash[GRADINGS_KEY].open(self._assignment).judge(self._criterion)
+        test = self.config.stash[GRADING_SESSION_KEY].open(self._assignment).judge(self._criterion)
         self.user_properties += [
             ("points", format_points(test.points)),
             ("max_points", format_points(test.max_points)),
@@ -83,7 +83,7 @@ class CriterionItem(pytest.Item):
         if test.status is CriterionStatus.SKIPPED:
             pytest.skip(plain(test.rationale))
         if test.status is CriterionStatus.GRADER_ERROR:
-            raise GraderBroken(plain(f"{test.rationale}\n{test.log}"))
+            raise GraderError(plain(f"{test.rationale}\n{test.log}"))
         if test.status is not CriterionStatus.PASS:
             raise CriterionFailed(_feedback(test))
 
@@ -133,17 +133,17 @@ class GradingSession:
         self._stack.close()
 
 
-GRADINGS_KEY = pytest.StashKey[GradingSession]()
+GRADING_SESSION_KEY = pytest.StashKey[GradingSession]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", MARK_HELP)
-    config.stash[GRADINGS_KEY] = GradingSession(config)
+    config.stash[GRADING_SESSION_KEY] = GradingSession(config)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    if GRADINGS_KEY in config.stash:
-        config.stash[GRADINGS_KEY].close()
+    if GRADING_SESSION_KEY in config.stash:
+        config.stash[GRADING_SESSION_KEY].close()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -162,7 +162,7 @@ def pytest_runtest_makereport(
     if (
         isinstance(item, CriterionItem)
         and call.excinfo is not None
-        and call.excinfo.errisinstance(GraderBroken)
+        and call.excinfo.errisinstance(GraderError)
     ):
         report.when = "setup"
     return report
@@ -174,4 +174,4 @@ def grading(request: pytest.FixtureRequest) -> Grading:
     folder = request.config.rootpath
     if request.config.getoption("--submission") is None:
         pytest.skip("nothing was handed in: say --submission FILE")
-    return request.config.stash[GRADINGS_KEY].open(read(folder))
+    return request.config.stash[GRADING_SESSION_KEY].open(read_assignment(folder))

@@ -12,11 +12,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final
 
-from grader.assignment import HINT_STEPS, Assignment, Criterion, SeedSet, TeacherTest, Trial
+from grader.assignment import MAX_HINTS, Assignment, Criterion, SeedSet, TeacherTest, Trial
 from grader.checks.contract import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import Anchors
-from grader.teacher_tests import read_declared
+from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER, MIB, Limits
 from kit.plain_text import quoted, suggestion
@@ -31,7 +31,7 @@ ASSIGNMENT_FILE: Final = "assignment.yaml"
 SECRET_FILE: Final = "secret.yaml"
 
 
-def read(folder: Path) -> Assignment:
+def read_assignment(folder: Path) -> Assignment:
     """The assignment in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
     sheet = folder / ASSIGNMENT_FILE
@@ -107,7 +107,7 @@ def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[Teache
     known: set[str] = set()
     for file in files:
         try:
-            found = tuple(read_declared(file))
+            found = tuple(read_teacher_tests(file))
         except (ValueError, OSError, SyntaxError) as error:
             section.error(str(error), "tests")
             continue
@@ -160,8 +160,8 @@ def _criteria(
         after = each.text("after", choices=known or ("none so far",)) if each.has("after") else None
         known.append(identity)
         hints = each.texts("hints", ())
-        if len(hints) > HINT_STEPS:
-            each.error(f"at most {HINT_STEPS} hints, from where to look to nearly how", "hints")
+        if len(hints) > MAX_HINTS:
+            each.error(f"at most {MAX_HINTS} hints, from where to look to nearly how", "hints")
         on = each.texts("on", tuple(trial.name for trial in trials))
         for trial in on:
             if trial not in {known_trial.name for known_trial in trials}:

@@ -23,7 +23,7 @@ STARTER: Final = "starter"
 SOLUTION: Final = "solution"
 WRONG: Final = "wrong"
 
-SUCCESSES: Final = (0.9, 0.95, 0.99)
+SUCCESS_RATES: Final = (0.9, 0.95, 0.99)
 """How often a good work may truly succeed; for the odds."""
 
 
@@ -43,10 +43,10 @@ class UnfairFailOdds:
 
     criterion: str
     episodes: int
-    passes: int
+    required_passes: int
     """So many have to succeed."""
-    unfair: tuple[float, ...]
-    """For each of ``SUCCESSES``."""
+    probabilities: tuple[float, ...]
+    """For each of ``SUCCESS_RATES``."""
 
 
 def try_works(
@@ -55,8 +55,8 @@ def try_works(
     """Tries the folder's works one after the other; ``solutions``: where the right and the wrong ones lie, if not in
     the assignment's folder. Raises LevelTooLow."""
     solutions = assignment.folder if solutions is None else solutions
-    yield _starter(assignment, _work(assignment.folder, STARTER, assignment), options)
-    yield _solution(assignment, _work(solutions, SOLUTION, assignment), options)
+    yield _try_starter(assignment, _work_path(assignment.folder, STARTER, assignment), options)
+    yield _try_solution(assignment, _work_path(solutions, SOLUTION, assignment), options)
     ending = Path(assignment.submit).suffix
     wrong = sorted(
         each
@@ -66,7 +66,7 @@ def try_works(
     if not wrong:
         yield WorkReport(WRONG, ("there is no wrong solution: nothing shows that points can be lost",), "")
     for file in wrong:
-        yield _wrong(assignment, file, options)
+        yield _try_wrong(assignment, file, options)
 
 
 def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:
@@ -78,22 +78,22 @@ def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[Unfair
             count += len(trial.seeds) if criterion.seeds is not SeedSet.SECRET else 0
             count += len(trial.secret_seeds) if secret and criterion.seeds is not SeedSet.PUBLIC else 0
         if count:
-            passes = required_passes(count, criterion.need if criterion.need is not None else 1.0)
+            required = required_passes(count, criterion.need if criterion.need is not None else 1.0)
             yield UnfairFailOdds(
                 criterion.id,
                 count,
-                passes,
-                tuple(unfair_fail_probability(success, count, passes) for success in SUCCESSES),
+                required,
+                tuple(unfair_fail_probability(success, count, required) for success in SUCCESS_RATES),
             )
 
 
-def _work(folder: Path, stem: str, assignment: Assignment) -> Path:
+def _work_path(folder: Path, stem: str, assignment: Assignment) -> Path:
     """A work by its name: a folder that holds what is handed in, or the file itself under this name."""
     whole = folder / stem
     return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
 
 
-def _starter(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
+def _try_starter(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
     result = _grade(assignment, file, options)
     if isinstance(result, str):
         return WorkReport(file.name, (result,), "")
@@ -112,7 +112,7 @@ def _starter(assignment: Assignment, file: Path, options: GradingOptions) -> Wor
     return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _solution(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
+def _try_solution(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
     result = _grade(assignment, file, options)
     if isinstance(result, str):
         return WorkReport(file.name, (result,), "")
@@ -135,7 +135,7 @@ def _solution(assignment: Assignment, file: Path, options: GradingOptions) -> Wo
     return WorkReport(file.name, tuple(problems), _summary(result))
 
 
-def _wrong(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
+def _try_wrong(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:
     name = f"{WRONG}/{file.name}"
     named = set((file.name if file.is_dir() else file.stem).partition("__")[0].split("+"))
     known = {each.id for each in assignment.tests}
@@ -146,7 +146,7 @@ def _wrong(assignment: Assignment, file: Path, options: GradingOptions) -> WorkR
         return WorkReport(name, (result,), "")
     lost = {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
     depending = {
-        criterion.id for criterion in assignment.criteria if _depends(assignment, criterion.id, named)
+        criterion.id for criterion in assignment.criteria if _depends_on(assignment, criterion.id, named)
     }
     problems = _grader_errors(result)
     problems += [f"it should lose {each}, and does not" for each in sorted(named - lost)]
@@ -154,7 +154,7 @@ def _wrong(assignment: Assignment, file: Path, options: GradingOptions) -> WorkR
     return WorkReport(name, tuple(problems), _summary(result))
 
 
-def _depends(assignment: Assignment, identity: str, named: set[str]) -> bool:
+def _depends_on(assignment: Assignment, identity: str, named: set[str]) -> bool:
     after = {criterion.id: criterion.after for criterion in assignment.criteria}
     at: str | None = identity
     while at is not None:

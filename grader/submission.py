@@ -33,11 +33,11 @@ class Submission:
     @property
     def digest(self) -> str:
         """Equal for equal content."""
-        made = hashlib.sha256(self.main.encode())
+        digest = hashlib.sha256(self.main.encode())
         for name, content in sorted(self.files.items()):
-            made.update(repr((name, len(content))).encode())
-            made.update(content)
-        return made.hexdigest()[:32]
+            digest.update(repr((name, len(content))).encode())
+            digest.update(content)
+        return digest.hexdigest()[:32]
 
     @contextmanager
     def in_temporary_folder(self) -> Iterator[Path]:
@@ -53,55 +53,55 @@ class Submission:
             yield Path(folder, self.main)
 
 
-def read_submission(path: Path, wanted: str) -> Submission:
-    """The submission at ``path``: the file itself, or a folder or an archive that holds the file ``wanted``.
+def read_submission(path: Path, main: str) -> Submission:
+    """The submission at ``path``: the file itself, or a folder or an archive that holds the file ``main``.
 
     Raises Refused, whose message a student understands.
     """
     if path.is_symlink():
         raise SubmissionRefused(f"{path.name} is a link; hand in the file itself.")
     if path.is_dir():
-        return _of(path.name, dict(_folder(path)), wanted)
-    content = _plain(path)
+        return _find_main_file(path.name, dict(_folder_files(path)), main)
+    content = _read_plain_file(path)
     if is_archive(path.name):
-        return _of(_stem(path), unpack_archive(content, path.name), wanted)
-    return Submission(path.stem, wanted, {wanted: content})
+        return _find_main_file(_archive_stem(path), unpack_archive(content, path.name), main)
+    return Submission(path.stem, main, {main: content})
 
 
-def _of(name: str, files: Mapping[str, bytes], wanted: str) -> Submission:
+def _find_main_file(name: str, files: Mapping[str, bytes], main: str) -> Submission:
     """Looks for the wanted file: at the top, or in the only folder in which it is."""
-    places = sorted(
-        (each for each in files if each == wanted or each.endswith(f"/{wanted}")),
+    matches = sorted(
+        (each for each in files if each == main or each.endswith(f"/{main}")),
         key=lambda each: each.count("/"),
     )
-    if not places:
+    if not matches:
         join_faults = ", ".join(sorted(files)[:5]) or "nothing"
-        raise SubmissionRefused(f"{wanted} is missing. What was handed in: {join_faults}.")
-    if len(places) > 1 and places[0].count("/") == places[1].count("/"):
-        raise SubmissionRefused(f"{wanted} is there more than once: {', '.join(places[:3])}.")
-    top = places[0].removesuffix(wanted)
+        raise SubmissionRefused(f"{main} is missing. What was handed in: {join_faults}.")
+    if len(matches) > 1 and matches[0].count("/") == matches[1].count("/"):
+        raise SubmissionRefused(f"{main} is there more than once: {', '.join(matches[:3])}.")
+    top = matches[0].removesuffix(main)
     return Submission(
         name,
-        wanted,
+        main,
         {each.removeprefix(top): content for each, content in files.items() if each.startswith(top)},
     )
 
 
-def _folder(folder: Path) -> Iterator[tuple[str, bytes]]:
+def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     """The plain files below a folder."""
     total = count = 0
-    for place, folders, names in os.walk(folder, followlinks=False):
+    for path_name, folders, names in os.walk(folder, followlinks=False):
         folders[:] = sorted(each for each in folders if each not in IGNORED_NAMES)
         for link in folders:
-            if Path(place, link).is_symlink():
+            if Path(path_name, link).is_symlink():
                 raise SubmissionRefused(f"{link} is a link; hand in files only.")
         for name in sorted(names):
-            path = Path(place, name)
+            path = Path(path_name, name)
             relative = path.relative_to(folder).as_posix()
             if name in IGNORED_NAMES:
                 continue
             check_name(relative)
-            content = _plain(path)
+            content = _read_plain_file(path)
             total, count = total + len(content), count + 1
             if total > MAX_BYTES or count > MAX_FILES:
                 raise SubmissionRefused(
@@ -110,7 +110,7 @@ def _folder(folder: Path) -> Iterator[tuple[str, bytes]]:
             yield relative, content
 
 
-def _plain(path: Path) -> bytes:
+def _read_plain_file(path: Path) -> bytes:
     """A plain file's content; without following a link, waiting for a pipe, or reading without end."""
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -127,7 +127,7 @@ def _plain(path: Path) -> bytes:
     return content
 
 
-def _stem(path: Path) -> str:
+def _archive_stem(path: Path) -> str:
     name = path.name
     for ending in (".tar.gz", ".tgz", ".tar", ".zip"):
         name = name.removesuffix(ending)

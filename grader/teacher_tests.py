@@ -32,7 +32,7 @@ MARK: Final = "points"
 MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's own test is worth"
 
 
-def read_declared(file: Path) -> Iterator[TeacherTest]:
+def read_teacher_tests(file: Path) -> Iterator[TeacherTest]:
     """The tests of a file, which is read and not run. Raises ValueError, OSError, SyntaxError."""
     for node in ast.parse(file.read_text(encoding="utf-8"), file.name).body:
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):

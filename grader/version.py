@@ -17,33 +17,36 @@ import grader
 import kit
 from kit.world.catalogue import maps_folder
 
-NOT_JUDGING: Final = ("cli", "tui", "school", "study", "data")
-"""Parts of the kit that no grading runs through; ``data`` holds an installation's maps, which are looked at as maps."""
+UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
+"""Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
+USED_FILES: Final = ("school/result.py", "school/result_text.py")
+"""What grading uses of these parts all the same."""
 
 
 @cache
 def grader_version() -> str:
     """The version, and a digest of the code and the maps that grading depends on."""
-    made = hashlib.sha256()
-    for name, file in _sources():
+    digest = hashlib.sha256()
+    for name, file in _source_files():
         content = file.read_bytes()
-        made.update(repr((name, len(content))).encode())
-        made.update(content)
-    return f"{_version()}+{made.hexdigest()[:12]}"
+        digest.update(repr((name, len(content))).encode())
+        digest.update(content)
+    return f"{_package_version()}+{digest.hexdigest()[:12]}"
 
 
-def _sources() -> Iterator[tuple[str, Path]]:
+def _source_files() -> Iterator[tuple[str, Path]]:
     for package in (grader, kit):
         folder = Path(package.__path__[0])
         for file in sorted(folder.rglob("*.py")):
             name = file.relative_to(folder)
-            if package is grader or name.parts[0] not in NOT_JUDGING:
+            is_used = name.parts[0] not in UNUSED_PARTS or name.as_posix() in USED_FILES
+            if package is grader or is_used:
                 yield f"{package.__name__}/{name.as_posix()}", file
     for file in sorted(path for path in maps_folder().rglob("*") if path.is_file()):
         yield f"maps/{file.relative_to(maps_folder()).as_posix()}", file
 
 
-def _version() -> str:
+def _package_version() -> str:
     try:
         return version("robot-learning-kit")
     except PackageNotFoundError:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions
-from grader.reading import read as read_assignment
+from grader.reading import read_assignment
 from grader.self_test import STARTER, try_works
 from kit.cli import VERBS
 from kit.host.sandbox.confinement import Level

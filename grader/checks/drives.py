@@ -196,11 +196,11 @@ def rate(drive: DriveRecord, params: TopicRateParams) -> float:
 def topics(drive: DriveRecord, params: TopicsParams) -> float:
     """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
     what the task says: `kit ros topic list` shows what there is, `kit ros node info` who publishes."""
-    heard = [_is_heard(drive, *each.split()) for each in params.topics]
-    return sum(heard) / len(heard) if heard else math.nan
+    published = [_is_published(drive, *each.split()) for each in params.topics]
+    return sum(published) / len(published) if published else math.nan
 
 
-def _is_heard(drive: DriveRecord, name: str, kind: str = "", node: str = "") -> bool:
+def _is_published(drive: DriveRecord, name: str, kind: str = "", node: str = "") -> bool:
     traffic = drive.traffic.get(name)
     return traffic is not None and kind in ("", traffic.kind) and (not node or traffic.nodes == (node,))
 
@@ -219,13 +219,13 @@ def comes_by(drive: DriveRecord, params: WaypointParams) -> float:
     if not len(drive.track):
         return 0.0
     start, passed = Pose(*drive.track[0].tolist()), 0
-    way = drive.track[::CLEARANCE_INTERVAL, :2]
+    path = drive.track[::CLEARANCE_INTERVAL, :2]
     for place in params.places:
         x, y = (float(number) for number in place.split())
-        near = np.flatnonzero(np.hypot(*(way - start.transform_point(x, y)).T) <= params.within)
+        near = np.flatnonzero(np.hypot(*(path - start.transform_point(x, y)).T) <= params.within)
         if not len(near):
             break
-        way, passed = way[near[0] :], passed + 1
+        path, passed = path[near[0] :], passed + 1
     return passed / len(params.places)
 
 
@@ -281,23 +281,23 @@ def goes_home(drive: DriveRecord, params: NoParams) -> float:
 def says(drive: DriveRecord, params: PrintedTextParams) -> float:
     """The program does not say what was asked as often as was asked: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, and `self.get_logger().info(...)` says it."""
-    heard = sum(params.text.casefold() in line.casefold() for line in drive.printed)
+    published = sum(params.text.casefold() in line.casefold() for line in drive.printed)
     if drive.seconds == 0.0 or params.seconds <= 0.0:
         return math.nan
-    return abs(heard * params.seconds / drive.seconds - 1.0)
+    return abs(published * params.seconds / drive.seconds - 1.0)
 
 
 @check(none=0.5, full=0.1, unit="%", params=CircleParams)
 def circle(drive: DriveRecord, params: CircleParams) -> float:
     """The robot's way should be a circle of the asked radius; its points are off by {actual} of that ({where}); {full}
     is allowed. A circle's radius is the speed divided by the rate of turning."""
-    way = drive.track[round(params.after / drive.recording.step_size) :, :2]
-    if len(way) < 10 or params.radius <= 0.0:
+    path = drive.track[round(params.after / drive.recording.step_size) :, :2]
+    if len(path) < 10 or params.radius <= 0.0:
         return math.inf
     # Kasa's fit: x2 + y2 = 2 a x + 2 b y + c is linear in the middle (a, b).
-    rows = np.column_stack((2 * way, np.ones(len(way))))
-    (a, b, _), *_ = np.linalg.lstsq(rows, (way**2).sum(axis=1), rcond=None)
-    off = np.abs(np.hypot(way[:, 0] - a, way[:, 1] - b) - params.radius)
+    rows = np.column_stack((2 * path, np.ones(len(path))))
+    (a, b, _), *_ = np.linalg.lstsq(rows, (path**2).sum(axis=1), rcond=None)
+    off = np.abs(np.hypot(path[:, 0] - a, path[:, 1] - b) - params.radius)
     return float(off.max()) / params.radius
 
 

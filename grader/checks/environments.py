@@ -13,16 +13,16 @@ from grader.evidence.environment import EnvironmentEpisode, EnvironmentRecord, s
 from kit.geometry import Pose
 
 SECTORS: Final = 9
-NEAR_HOME: Final = (0.15, 0.35)
+MAX_START_OFFSET: Final = (0.15, 0.35)
 """m, rad: so far from home an episode may begin."""
-ALIKE: Final = 1e-3
+OBSERVATION_TOLERANCE: Final = 1e-3
 """How far an observation may be off [m], for numbers of single precision."""
-SLACK: Final = 0.2
+MOVE_TOLERANCE: Final = 0.2
 """How far a move may be off, as a share of it."""
-BAND: Final = 0.06
+TARGET_TOLERANCE: Final = 0.06
 """m: so much nearer to or farther from the target than asked the end may be noticed: more than one step's way."""
 
-NUMBERS: Final = ("float", "int", "float64", "float32", "int64", "int32")
+NUMBER_TYPES: Final = ("float", "int", "float64", "float32", "int64", "int32")
 
 
 Complaints = Callable[[EnvironmentRecord], Iterator[str]]
@@ -59,28 +59,30 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
     yield (
         ""
         if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", wanted, 0)
-        else f"action_space should be Discrete({wanted}), one number for each action, and is {_space(action)}."
+        else f"action_space should be Discrete({wanted}), one number for each action, and is {_space_text(action)}."
     )
     fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
     if not fits:
-        yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space(observation)}."
+        yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space_text(observation)}."
     elif observation.get("low") != 0.0 or observation.get("high") != record.task.clip:
-        yield f"observation_space should reach from 0 to {record.task.clip:g}, and is {_space(observation)}."
+        yield f"observation_space should reach from 0 to {record.task.clip:g}, and is {_space_text(observation)}."
     elif observation.get("dtype") not in ("float32", "float64"):
         yield f"what is seen are metres: the Box's dtype should be numpy.float32, not {observation.get('dtype')}."
     else:
         yield ""
 
 
-def _space(told: Mapping[str, object]) -> str:
+def _space_text(value: Mapping[str, object]) -> str:
     """A space as one would write it."""
-    kind = told.get("kind")
+    kind = value.get("kind")
     if kind == "Discrete":
-        return f"Discrete({told.get('n')})" + (f" from {told.get('start')} on" if told.get("start") else "")
+        return f"Discrete({value.get('n')})" + (
+            f" from {value.get('start')} on" if value.get("start") else ""
+        )
     if kind == "Box":
-        shape = told.get("shape")
+        shape = value.get("shape")
         sizes = ", ".join(map(str, shape)) if isinstance(shape, list) else "?"
-        return f"Box({told.get('low')}, {told.get('high')}, shape ({sizes}), {told.get('dtype')})"
+        return f"Box({value.get('low')}, {value.get('high')}, shape ({sizes}), {value.get('dtype')})"
     return "missing" if kind in (None, "NoneType") else f"a {kind}"
 
 
@@ -97,12 +99,12 @@ def resets(record: EnvironmentRecord) -> Iterator[str]:
             yield f"reset() returns two values, observation and info, not a {returned.get('kind')}."
         elif parts[1].get("kind") != "dict":
             yield f"The second value of reset() is info, a dictionary, not a {parts[1].get('kind')}."
-        elif not episode.inside:
+        elif not episode.is_in_space:
             yield "The observation of reset() is not in observation_space: look at its shape, dtype and bounds."
-        elif away > NEAR_HOME[0] or turned > NEAR_HOME[1]:
+        elif away > MAX_START_OFFSET[0] or turned > MAX_START_OFFSET[1]:
             yield f"After reset() the robot stands {away:.2f} m and {math.degrees(turned):.0f} degrees from its home."
-        elif not _seen_right(parts[0], episode.ranges, record):
-            wrong = _difference(parts[0], episode.ranges, record)
+        elif not _is_observation_right(parts[0], episode.ranges, record):
+            wrong = _explain_difference(parts[0], episode.ranges, record)
             yield f"In the observation of reset(): {wrong} Was the scan from before the reset kept?"
         else:
             yield ""
@@ -116,9 +118,9 @@ def steps(record: EnvironmentRecord) -> Iterator[str]:
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
             count = returned.get("count", "no")
             yield f"step() returns five values: observation, reward, terminated, truncated, info; not {count}."
-        elif not step.inside:
+        elif not step.is_in_space:
             yield "The observation of step() is not in observation_space: look at its shape, dtype and bounds."
-        elif step.part(1).get("kind") not in NUMBERS or step.part(1).get("value") is None:
+        elif step.part(1).get("kind") not in NUMBER_TYPES or step.part(1).get("value") is None:
             yield f"The second value of step(), the reward, is a finite number, not a {step.part(1).get('kind')}."
         elif (step.part(2).get("kind"), step.part(3).get("kind")) != ("bool", "bool"):
             kinds = f"{step.part(2).get('kind')} and {step.part(3).get('kind')}"
@@ -133,35 +135,39 @@ def steps(record: EnvironmentRecord) -> Iterator[str]:
 def sees(record: EnvironmentRecord) -> Iterator[str]:
     """The observation is the nine sectors of the newest scan in {actual} of the steps."""
     for step in record.step_records:
-        told = step.part(0)
-        if _seen_right(told, step.ranges, record):
+        value = step.part(0)
+        if _is_observation_right(value, step.ranges, record):
             yield ""
         else:
-            wrong = _difference(told, step.ranges, record)
+            wrong = _explain_difference(value, step.ranges, record)
             yield wrong[0].upper() + wrong[1:]
 
 
-def _seen_right(told: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord) -> bool:
-    numbers, wanted = told.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
+def _is_observation_right(
+    value: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord
+) -> bool:
+    numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     return (
         isinstance(numbers, list)
         and len(numbers) == len(wanted)
         and all(
-            isinstance(given, float) and math.isclose(given, right, abs_tol=ALIKE)
+            isinstance(given, float) and math.isclose(given, right, abs_tol=OBSERVATION_TOLERANCE)
             for given, right in zip(numbers, wanted, strict=True)
         )
     )
 
 
-def _difference(told: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord) -> str:
+def _explain_difference(
+    value: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord
+) -> str:
     """Where an observation that is not right is wrong first."""
-    numbers, wanted = told.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
+    numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     if not isinstance(numbers, list) or len(numbers) != len(wanted):
         return f"an observation is {SECTORS} numbers."
     place = next(
         k
         for k, (one, other) in enumerate(zip(numbers, wanted, strict=True))
-        if not isinstance(one, float) or not math.isclose(one, other, abs_tol=ALIKE)
+        if not isinstance(one, float) or not math.isclose(one, other, abs_tol=OBSERVATION_TOLERANCE)
     )
     given = numbers[place]
     shown = f"{given:.3f}" if isinstance(given, float) else "no finite number"
@@ -172,14 +178,14 @@ def _difference(told: Mapping[str, object], ranges: tuple[float, ...], record: E
 def acts(record: EnvironmentRecord) -> Iterator[str]:
     """The robot did what the action says in {actual} of the steps."""
     for step in record.step_records:
-        if step.touched:
+        if step.collided:
             continue
         speed, turn = record.task.moves[step.action]
-        gone = math.hypot(step.after.x - step.before.x, step.after.y - step.before.y)
-        turned = (step.after.theta - step.before.theta + math.pi) % (2 * math.pi) - math.pi
+        gone = math.hypot(step.pose_after.x - step.pose_before.x, step.pose_after.y - step.pose_before.y)
+        turned = (step.pose_after.theta - step.pose_before.theta + math.pi) % (2 * math.pi) - math.pi
         wanted = speed * record.task.step_s, turn * record.task.step_s
-        room = SLACK * max(abs(wanted[0]), abs(wanted[1]), 0.01)
-        if abs(gone - wanted[0]) > room or abs(turned - wanted[1]) > room:
+        tolerance = MOVE_TOLERANCE * max(abs(wanted[0]), abs(wanted[1]), 0.01)
+        if abs(gone - wanted[0]) > tolerance or abs(turned - wanted[1]) > tolerance:
             yield (
                 f"step({step.action}) should drive {wanted[0]:.3f} m and turn {math.degrees(wanted[1]):.0f} degrees; "
                 f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
@@ -192,8 +198,8 @@ def acts(record: EnvironmentRecord) -> Iterator[str]:
 def crash(record: EnvironmentRecord) -> Iterator[str]:
     """A collision ends the episode."""
     episode = record.episodes["into the wall"]
-    hit = next((k for k, step in enumerate(episode.step_records) if step.touched), None)
-    yield _ended(episode, hit, "the robot touched a wall", "terminated")
+    hit = next((k for k, step in enumerate(episode.step_records) if step.collided), None)
+    yield _ending_complaint(episode, hit, "the robot touched a wall", "terminated")
 
 
 @complaint_check(none=0, full=1, words=("something else", "terminated"))
@@ -203,11 +209,13 @@ def arrival(record: EnvironmentRecord) -> Iterator[str]:
     assert case is not None  # drives to a target are only asked for where there is one
     episode, radius = record.episodes["to the target"], case.target_radius
     step_records = episode.step_records
-    late = next((k for k, step in enumerate(step_records) if step.target_distance < radius - BAND), None)
-    if step_records and step_records[-1].is_over and not step_records[-1].touched:
+    late = next(
+        (k for k, step in enumerate(step_records) if step.target_distance < radius - TARGET_TOLERANCE), None
+    )
+    if step_records and step_records[-1].is_over and not step_records[-1].collided:
         away = step_records[-1].target_distance
-        late = len(step_records) - 1 if away <= radius + BAND else late
-    yield _ended(episode, late, f"the robot came within {radius:g} m of the target", "terminated")
+        late = len(step_records) - 1 if away <= radius + TARGET_TOLERANCE else late
+    yield _ending_complaint(episode, late, f"the robot came within {radius:g} m of the target", "terminated")
 
 
 @complaint_check(none=0, full=1, words=("something else", "truncated"))
@@ -215,10 +223,10 @@ def timeout(record: EnvironmentRecord) -> Iterator[str]:
     """When its time is up an episode is cut off."""
     last = record.task.max_steps - 1
     episode = record.episodes["turning on the spot"]
-    yield _ended(episode, last, "the time was up", "truncated")
+    yield _ending_complaint(episode, last, "the time was up", "truncated")
 
 
-def _ended(episode: EnvironmentEpisode, due: int | None, why: str, how: str) -> str:
+def _ending_complaint(episode: EnvironmentEpisode, due: int | None, why: str, how: str) -> str:
     """A complaint unless the episode ended at this moment, and in this way."""
     step_records = episode.step_records
     over = next((k for k, step in enumerate(step_records) if step.is_over), None)

@@ -96,7 +96,7 @@ def _fault_check(
     return check(none=1, full=0, words=NO_WORDS, params=params, faults=faults)(count)
 
 
-def metres(value: float) -> str:
+def format_metres(value: float) -> str:
     """A length as one writes it."""
     return f"{round(value, 3) + 0.0:g} m"
 

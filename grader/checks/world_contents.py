@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grader.checks.contract import NoParams, check
-from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
+from grader.checks.faults import UNSPECIFIED, format_metres, missing_model, world_check
 from grader.evidence.contract import EvidenceRecord
 from grader.evidence.world.facts import Box, WorldFacts
 from kit.plain_text import quoted
@@ -76,22 +76,22 @@ def walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
         return
     if params.source and (wrong := [walls.source for walls in some if walls.source != params.source]):
         yield f"its walls come from {wrong[0]}, not from {params.source}"
-    left, bottom, right, top = around(boxes)
+    left, bottom, right, top = bounding_box(boxes)
     for what, is_, wanted in (
         ("wide", right - left, params.width),
         ("high", top - bottom, params.height),
     ):
         if abs(is_ - wanted) > params.within:
-            yield f"it is {metres(is_)} {what}, not {metres(wanted)}"
+            yield f"it is {format_metres(is_)} {what}, not {format_metres(wanted)}"
     for what, is_, wanted in (
         ("x of its left side", left, params.left),
         ("y of its lower side", bottom, params.bottom),
     ):
         if abs(is_ - wanted) > params.within:
-            yield f"the {what} is {metres(is_)}, not {metres(wanted)}"
+            yield f"the {what} is {format_metres(is_)}, not {format_metres(wanted)}"
 
 
-def around(boxes: list[Box]) -> Box:
+def bounding_box(boxes: list[Box]) -> Box:
     left, bottom, right, top = zip(*boxes, strict=True)
     return min(left), min(bottom), max(right), max(top)
 

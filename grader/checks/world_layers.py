@@ -24,22 +24,24 @@ class CollisionParams:
     """Models whose bodies count one by one, as ``model/body``."""
 
 
-def _called(thing: tuple[str, str], split: tuple[str, ...]) -> str:
+def _thing_name(thing: tuple[str, str], split: tuple[str, ...]) -> str:
     model, name = thing
     return name if not model else f"{model}/{name}" if model in split else model
 
 
-def _pair(a: str, b: str) -> tuple[str, str]:
+def _sorted_pair(a: str, b: str) -> tuple[str, str]:
     return (a, b) if a <= b else (b, a)
 
 
 @world_check(CollisionParams)
 def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
     """Who collides with whom is not as the task asks:"""
-    wanted, free = ({_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free))
+    wanted, free = (
+        {_sorted_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free)
+    )
     why: dict[tuple[str, str], tuple[bool, str]] = {}
     for meeting in world.collisions:
-        pair = _pair(_called(meeting.a, params.split), _called(meeting.b, params.split))
+        pair = _sorted_pair(_thing_name(meeting.a, params.split), _thing_name(meeting.b, params.split))
         if pair not in why or (meeting.collides and not why[pair][0]):
             why[pair] = meeting.collides, meeting.why
     known = {name for pair in why for name in pair} | {each.name for each in world.models}
@@ -71,7 +73,7 @@ def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
         wanted = {part.strip() for part in join_faults.split(",") if part.strip()}
         views: dict[str, tuple[bool, str]] = {}
         for view in world.sights:
-            thing = _called(view.thing, params.split)
+            thing = _thing_name(view.thing, params.split)
             if view.laser == name and (thing not in views or (view.sees and not views[thing][0])):
                 views[thing] = view.sees, view.why
         if not views:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from grader.checks.faults import UNSPECIFIED, metres, missing_model, world_check
+from grader.checks.faults import UNSPECIFIED, format_metres, missing_model, world_check
 from grader.evidence.world.facts import BodyFacts, JointFacts, ModelFacts, PluginFacts, WorldFacts
 from kit.plain_text import quoted, suggestion
 
@@ -71,7 +71,7 @@ def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
         ("is at y", part.pose[1], params.y),
     ):
         if abs(is_ - wanted) > params.within:
-            yield f"{name} {what}: {metres(is_)}; {metres(wanted)} is wanted"
+            yield f"{name} {what}: {format_metres(is_)}; {format_metres(wanted)} is wanted"
     for what, flags, asked in (
         ("collision", [each.collision for each in part.shapes], params.collision),
         ("sensor", [each.sensor for each in part.shapes], params.sensor),
@@ -100,7 +100,7 @@ def joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
     if model is None:
         yield missing_model(world, params.model)
         return
-    joint = _between(model, params)
+    joint = _find_joint(model, params)
     if joint is None:
         yield f"no joint joins {params.a} and {params.b} of {params.model}"
         return
@@ -114,19 +114,19 @@ def joint(world: WorldFacts, params: JointParams) -> Iterator[str]:
             )
 
 
-def _between(model: ModelFacts, params: JointParams) -> JointFacts | None:
+def _find_joint(model: ModelFacts, params: JointParams) -> JointFacts | None:
     return next((each for each in model.joints if set(each.bodies) == {params.a, params.b}), None)
 
 
 @dataclass(frozen=True, slots=True)
-class TopicsParams:
+class PluginTopicsParams:
     model: str = ""
     """By default any."""
     topics: tuple[str, ...] = ()
     """Each a name, perhaps with the type of its messages after a space."""
 
 
-def _wrong_topics(world: WorldFacts, params: TopicsParams, *, publishes: bool) -> Iterator[str]:
+def _wrong_topics(world: WorldFacts, params: PluginTopicsParams, *, publishes: bool) -> Iterator[str]:
     there = {
         end.topic: end.type
         for end in world.endpoints
@@ -145,20 +145,20 @@ def _wrong_topics(world: WorldFacts, params: TopicsParams, *, publishes: bool) -
             yield f"no plugin {does} {topic}: {suggestion(topic, tuple(there))}"
 
 
-@world_check(TopicsParams)
-def publishes(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
+@world_check(PluginTopicsParams)
+def publishes(world: WorldFacts, params: PluginTopicsParams) -> Iterator[str]:
     """The world's plugins do not say what the task asks:"""
     return _wrong_topics(world, params, publishes=True)
 
 
-@world_check(TopicsParams)
-def subscribes(world: WorldFacts, params: TopicsParams) -> Iterator[str]:
+@world_check(PluginTopicsParams)
+def subscribes(world: WorldFacts, params: PluginTopicsParams) -> Iterator[str]:
     """The world's plugins do not listen where the task asks:"""
     return _wrong_topics(world, params, publishes=False)
 
 
 @dataclass(frozen=True, slots=True)
-class LaserParams:
+class LaserCheckParams:
     laser: str = "robot/lidar"
     """Model and plugin."""
     body: str = ""
@@ -170,8 +170,8 @@ class LaserParams:
     within: float = 0.01
 
 
-@world_check(LaserParams)
-def laser(world: WorldFacts, params: LaserParams) -> Iterator[str]:
+@world_check(LaserCheckParams)
+def laser(world: WorldFacts, params: LaserCheckParams) -> Iterator[str]:
     """The laser is not as the task asks:"""
     device = _find_laser(world, params.laser)
     if isinstance(device, str):

@@ -13,7 +13,7 @@ from grader.evidence.contract import EvidenceRecord
 
 
 @dataclass(frozen=True, slots=True)
-class TopicRateParams:
+class PublishRateParams:
     topic: str = "/scan"
     rate: float = 10.0
     """Messages a second."""
@@ -21,8 +21,8 @@ class TopicRateParams:
     """A share."""
 
 
-@run_check(TopicRateParams)
-def rate(run: WorldRun, params: TopicRateParams) -> Iterator[str]:
+@run_check(PublishRateParams)
+def rate(run: WorldRun, params: PublishRateParams) -> Iterator[str]:
     """A plugin speaks too often or too rarely:"""
     count_faults = {heard.topic: heard.count for heard in run.run.topics}.get(params.topic, 0)
     is_ = count_faults / run.run.seconds if run.run.seconds else 0.0

@@ -32,12 +32,12 @@ def number_problems(problems: Sequence[str]) -> Iterator[str]:
 def join_faults(faults: Iterable[str]) -> str:
     """The faults in one sentence, of many only the first."""
     some = tuple(faults)
-    more = f"; and {len(some) - MOST_TOLD} more" if len(some) > MOST_TOLD else ""
-    said = "; ".join(some[:MOST_TOLD]) + more
+    more = f"; and {len(some) - MAX_FAULTS_SHOWN} more" if len(some) > MAX_FAULTS_SHOWN else ""
+    said = "; ".join(some[:MAX_FAULTS_SHOWN]) + more
     return said if not said or said[-1] in ".?" else f"{said}."
 
 
-MOST_TOLD: Final = 4
+MAX_FAULTS_SHOWN: Final = 4
 """Faults of one check."""
 
 

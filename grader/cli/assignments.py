@@ -52,7 +52,7 @@ MARGIN: Final = 18
 
 
 @click.command()
-@click.argument("kind", required=False, default="controller")
+@click.argument("kind", require_level=False, default="controller")
 def checks(kind: str) -> None:
     """List the checks that an assignment of this KIND may use: what each measures, what earns nothing and what earns
     everything unless `share` says otherwise, and what `with` may set.
@@ -97,30 +97,30 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
     """
     from grader.grading import GradingOptions, LevelTooLow
     from grader.reports.cleaning import plain
-    from grader.self_test import SUCCESSES, try_works, unfair_fail_odds
+    from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
 
-    assignment = options.read_assignment(folder)
+    assignment = options.load_assignment(folder)
     grading_options = GradingOptions(
-        options.as_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets
+        options.to_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets
     )
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False
     try:
-        for proof in try_works(assignment, grading_options, solutions):
-            failed |= bool(proof.problems)
-            click.echo(f"{'[no]' if proof.problems else '[ok]'} {proof.name:<32} {proof.summary}")
-            for problem in proof.problems:
+        for report in try_works(assignment, grading_options, solutions):
+            failed |= bool(report.problems)
+            click.echo(f"{'[no]' if report.problems else '[ok]'} {report.name:<32} {report.summary}")
+            for problem in report.problems:
                 click.echo(f"     {plain(problem, 600)}")
     except LevelTooLow as error:
         options.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
         click.echo("\nThe odds that a work fails by bad luck, if in each episode it succeeds with")
-        click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESSES))
+        click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESS_RATES))
         for each in chances:
-            rule = f"{each.criterion} ({each.passes} of {each.episodes})"
-            click.echo(f"{rule:<32}" + "".join(f"{unfair:>9.1%}" for unfair in each.unfair))
-    raise SystemExit(options.FAILED if failed else 0)
+            rule = f"{each.criterion} ({each.required_passes} of {each.episodes})"
+            click.echo(f"{rule:<32}" + "".join(f"{unfair:>9.1%}" for unfair in each.probabilities))
+    raise SystemExit(options.EXIT_FAILED if failed else 0)
 
 
 PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
@@ -131,7 +131,7 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
 @options.assignment
 @click.option(
     "--kit",
-    required=True,
+    require_level=True,
     metavar="ADDRESS[@VERSION]",
     help="Where the kit is cloned from: https://..., perhaps with a branch or tag.",
 )
@@ -150,7 +150,7 @@ def ci(service: str, folder: Path, kit: str, write: bool) -> None:
     """
     from kit.workspace import write_atomically
 
-    assignment = options.read_assignment(folder)
+    assignment = options.load_assignment(folder)
     name = folder.as_posix()
     if not PLAIN_PATH.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
         options.fail(f"{name}: name the folder relative to the repository, in letters, digits, _ . - and /.")

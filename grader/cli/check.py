@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.grading import Grading
     from kit.school.result import GradingResult
 
-EXITS = {"pass": 0, "fail": options.FAILED, "broken": options.BROKEN}
+EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
 
 
 @click.command()
@@ -78,10 +78,12 @@ def check(
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
-    assignment = options.read_assignment(folder)
-    grading_level = options.as_level(level)
+    assignment = options.load_assignment(folder)
+    grading_level = options.to_level(level)
     if require_level is not None:
-        grading_level = options.required(max(require_level, assignment.level if level is None else level))
+        grading_level = options.require_level(
+            max(require_level, assignment.level if level is None else level)
+        )
     try:
         submission = read_submission(file, assignment.submit)
         with open_grading(assignment, submission, GradingOptions(grading_level, secret)) as grading:
@@ -98,7 +100,7 @@ def check(
         from kit.workspace import write_atomically
 
         write_atomically(output.absolute(), text.encode())
-    raise SystemExit(EXITS[result.verdict.value])
+    raise SystemExit(EXIT_CODES[result.verdict.value])
 
 
 def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     "--queue",
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
-    required=True,
+    require_level=True,
     help="Where jobs, results and the gradebook lie; the same folder again goes on.",
 )
 @click.option(
@@ -66,9 +66,9 @@ def cohort(
     def count(key: str) -> None:
         bar.update(1)
 
-    assignment = options.read_assignment(folder)
+    assignment = options.load_assignment(folder)
     queue = Queue(queue_folder.absolute())
-    grading_options = GradingOptions(options.as_level(level), secret, may_fall=False)
+    grading_options = GradingOptions(options.to_level(level), secret, may_fall=False)
     wanted = assignment.level if grading_options.level is None else grading_options.level
     if secret and wanted < assignment.level:
         options.fail(
@@ -101,7 +101,7 @@ def publish(queue: Queue) -> int:
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
     click.echo(f"{summary(table)}: {queue.folder / 'gradebook.csv'}")
-    return options.BROKEN if any(row.verdict == "broken" for row in table) else 0
+    return options.EXIT_BROKEN if any(row.verdict == "broken" for row in table) else 0
 
 
 @click.command()
@@ -180,7 +180,7 @@ def gradebook(
     from grader.cohort.gradebook import as_csv, as_json, changes, gradebook_rows, read_json
     from grader.cohort.late import read_policy, read_submission_times
     from grader.cohort.queue import Queue, QueueError
-    from grader.reports.cleaning import one_line
+    from grader.reports.cleaning import clean_line
     from kit.world.problems import WorldError
 
     try:
@@ -195,7 +195,7 @@ def gradebook(
     except (WorldError, QueueError, ValueError, OSError) as error:
         options.fail(str(error))
     if timeless:
-        named = ", ".join(map(one_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
+        named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
         click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)
     if before is not None:
         lines = list(changes(before, table))

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-FAILED: Final = 1
-BAD_INPUT: Final = 2
-BROKEN: Final = 3
+EXIT_FAILED: Final = 1
+EXIT_BAD_INPUT: Final = 2
+EXIT_BROKEN: Final = 3
 """The grader itself: never the student's doing."""
 
 
-def fail(message: str, code: int = BAD_INPUT) -> NoReturn:
+def fail(message: str, code: int = EXIT_BAD_INPUT) -> NoReturn:
     """Ends the verb with this message on standard error."""
     click.echo(message, err=True)
     raise SystemExit(code)
@@ -30,7 +30,7 @@ assignment: Decorator = click.option(
     "--assignment",
     "folder",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    required=True,
+    require_level=True,
     help="The assignment's folder.",
 )
 level: Decorator = click.option(
@@ -43,18 +43,18 @@ secret: Decorator = click.option(
 )
 
 
-def read_assignment(folder: Path) -> Assignment:
+def load_assignment(folder: Path) -> Assignment:
     """The assignment, or its mistakes and exit code 2."""
-    from grader.reading import read
+    from grader.reading import load_assignment
     from kit.world.problems import WorldError
 
     try:
-        return read(folder)
+        return load_assignment(folder)
     except WorldError as error:
         fail(str(error))
 
 
-def required(number: int) -> Level:
+def require_level(number: int) -> Level:
     """This level; exit code 2 where the machine does not reach it."""
     from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import highest
@@ -64,7 +64,7 @@ def required(number: int) -> Level:
     return Level(number)
 
 
-def as_level(number: int | None) -> Level | None:
+def to_level(number: int | None) -> Level | None:
     from kit.host.sandbox.confinement import Level
 
     return None if number is None else Level(number)

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Final
 
 from grader.cohort.queue import Queue
-from grader.cohort.work import TRIES, WorkerPool, grade_job, record_incident
+from grader.cohort.work import MAX_TRIES, WorkerPool, grade_job, record_incident
 from kit.workspace import write_atomically
 
-SCRIPT: Final = "slurm.sh"
+SLURM_SCRIPT: Final = "slurm.sh"
 
 
 class ExecutorUnavailable(Exception):
@@ -42,7 +42,7 @@ exec {command} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
 
 def run_on_slurm(queue: Queue, shards: int) -> None:
     """Submits the array job and waits until it is over. Raises CannotRun."""
-    script = queue.folder / SCRIPT
+    script = queue.folder / SLURM_SCRIPT
     write_atomically(script, slurm_script(queue, shards).encode())
     sbatch = shutil.which("sbatch")
     if sbatch is None:
@@ -68,7 +68,8 @@ def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callab
     folder = str(queue.folder.absolute())
     with Client(address) as client:
         futures = {
-            client.submit(grade_job_by_key, folder, key, pure=False, retries=TRIES - 1): key for key in keys
+            client.submit(grade_job_by_key, folder, key, pure=False, retries=MAX_TRIES - 1): key
+            for key in keys
         }
         for future in as_completed(futures):
             problem = future.exception()

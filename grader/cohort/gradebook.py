@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from grader.cohort.late import LatePolicy, SubmissionTime
 from grader.cohort.queue import Queue
-from grader.reports.cleaning import cell, one_line
+from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.school.result import CriterionStatus, GradingVerdict, format_points
 
 REFUSED: Final = "refused"
@@ -54,7 +54,9 @@ def _rows(
         submitted = submission_times.get(entry.name)
         kept = policy.kept(submitted.at) if policy is not None and submitted is not None else 1.0
         if entry.key is None:
-            yield GradebookRow(entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, one_line(entry.refused), "")
+            yield GradebookRow(
+                entry.name, REFUSED, 0.0, most, kept, 0.0, {}, {}, clean_line(entry.refused), ""
+            )
             continue
         result = queue.result(entry.key)
         if result is None:
@@ -70,7 +72,7 @@ def _rows(
             None if points is None else round(points * kept, 6),
             {test.id: test.points for test in result.tests},
             {test.id: test.status.value for test in result.tests},
-            one_line(
+            clean_line(
                 next((test.rationale for test in result.tests if test.status is not CriterionStatus.PASS), "")
             ),
             result.submission,
@@ -87,7 +89,7 @@ def as_csv(table: Sequence[GradebookRow]) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(
-        ["name", "verdict", "final", "points", "max_points", "kept", *map(cell, criteria), "note"]
+        ["name", "verdict", "final", "points", "max_points", "kept", *map(spreadsheet_cell, criteria), "note"]
     )
     for row in table:
         tests = [_number(row.tests.get(identity)) for identity in criteria]
@@ -97,7 +99,7 @@ def as_csv(table: Sequence[GradebookRow]) -> str:
             format_points(row.max_points),
             format_points(row.kept),
         ]
-        writer.writerow([cell(row.name), row.verdict, *sums, *tests, cell(row.note)])
+        writer.writerow([spreadsheet_cell(row.name), row.verdict, *sums, *tests, spreadsheet_cell(row.note)])
     return out.getvalue()
 
 
@@ -119,7 +121,7 @@ def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> It
     for name in sorted(old.keys() | new.keys()):
         was, now = old.get(name), new.get(name)
         if was is None or now is None:
-            yield f"{one_line(name)}: {'new' if was is None else 'gone'}"
+            yield f"{clean_line(name)}: {'new' if was is None else 'gone'}"
         elif (was.final, was.verdict, dict(was.statuses)) != (now.final, now.verdict, dict(now.statuses)):
             tests = [
                 f"{each} {was.statuses.get(each, '-')} -> {now.statuses.get(each, '-')}"
@@ -127,7 +129,7 @@ def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> It
                 if was.statuses.get(each) != now.statuses.get(each)
             ]
             detail = f" ({', '.join(tests)})" if tests else ""
-            yield f"{one_line(name)}: {_number(was.final) or 'none'} -> {_number(now.final) or 'none'}{detail}"
+            yield f"{clean_line(name)}: {_number(was.final) or 'none'} -> {_number(now.final) or 'none'}{detail}"
 
 
 def summary(table: Sequence[GradebookRow]) -> str:

@@ -14,7 +14,7 @@ from typing import Any, Final
 from grader.archives import SubmissionRefused, is_archive
 from grader.assignment import Assignment
 from grader.grading import GradingOptions
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import IGNORED_NAMES, Submission, read_submission
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level
@@ -57,7 +57,7 @@ class Queue:
 
     def assignment(self) -> Assignment:
         """As it was when the queue was made. Raises WorldError."""
-        return read(self.assignment_folder)
+        return read_assignment(self.assignment_folder)
 
     def manifest(self) -> dict[str, Any]:
         try:
@@ -160,7 +160,7 @@ def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
     """The assignment as it is now, beside the jobs; a whole copy or none."""
     target = queue.assignment_folder
     if target.exists():
-        if read(target).version == assignment.version:
+        if read_assignment(target).version == assignment.version:
             return
         shutil.rmtree(target)
     coming = queue.folder / "assignment.coming"

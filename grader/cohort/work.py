@@ -20,7 +20,7 @@ from grader.version import grader_version
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 
 DONE: Final = "done"
-TRIES: Final = 2
+MAX_TRIES: Final = 2
 """How often a job is tried whose grader breaks. What fails for the student's sake is never tried again."""
 
 
@@ -35,7 +35,7 @@ def grade_job(queue: Queue, key: str) -> GradingResult:
     assignment = _assignment(queue.folder, manifest["assignment_version"])
     submission, options = queue.submission(key), queue.grading_options()
     result = grade(assignment, submission, options)
-    for _ in range(TRIES - 1):
+    for _ in range(MAX_TRIES - 1):
         if result.verdict is not GradingVerdict.BROKEN:
             break
         result = grade(assignment, submission, options)
@@ -78,13 +78,13 @@ class WorkerPool:
         worker: subprocess.Popen[str] | None = None
         try:
             while (key := self._next()) is not None:
-                for attempt in range(TRIES):
+                for attempt in range(MAX_TRIES):
                     worker = worker or self._start()
                     if self._is_done(worker, key):
                         break
                     _stop_worker(worker, now=True)
                     worker = None
-                    if attempt == TRIES - 1:
+                    if attempt == MAX_TRIES - 1:
                         record_incident(self._queue, key)
                 with self._lock:
                     self._on_done(key)

@@ -28,9 +28,9 @@ class ControllerEpisodes:
 
     def evidence(self, criterion: Criterion) -> Sequence[DriveRecord]:
         return [
-            self._drive(self._assignment.trial(name), place, seed, secret)
+            self._drive(self._assignment.trial(name), number, seed, secret)
             for name in criterion.trials
-            for secret, place, seed in self._seeds(self._assignment.trial(name), criterion.seeds)
+            for secret, number, seed in self._seeds(self._assignment.trial(name), criterion.seeds)
         ]
 
     def collected(self) -> Sequence[DriveRecord]:
@@ -44,10 +44,10 @@ class ControllerEpisodes:
         )
         return [(False, *each) for each in public] + [(True, *each) for each in secret]
 
-    def _drive(self, trial: Trial, place: int, seed: int, secret: bool) -> DriveRecord:
+    def _drive(self, trial: Trial, number: int, seed: int, secret: bool) -> DriveRecord:
         key = trial.name, secret, seed
         if key not in self._drives:
-            label = f"{trial.name}, secret seed {place}" if secret else f"{trial.name}, seed {seed}"
+            label = f"{trial.name}, secret seed {number}" if secret else f"{trial.name}, seed {seed}"
             self._drives[key] = self._run(EpisodeSpec(trial, seed, label, secret))
         return self._drives[key]
 

@@ -70,11 +70,11 @@ class StepRecord:
 
     action: int
     returned: Mapping[str, Json]
-    inside: bool
+    is_in_space: bool
     """Whether the observation lies in the space of observations."""
-    before: Pose
-    after: Pose
-    touched: bool
+    pose_before: Pose
+    pose_after: Pose
+    collided: bool
     """Whether the robot touched something during the step."""
     target_distance: float
     """From the hull to the target's middle, after it."""
@@ -101,7 +101,7 @@ class EnvironmentEpisode:
 
     name: str
     returned: Mapping[str, Json]
-    inside: bool
+    is_in_space: bool
     pose: Pose
     ranges: tuple[float, ...]
     step_records: list[StepRecord] = field(default_factory=list)
@@ -145,7 +145,7 @@ def examine_environment(
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
         arguments = [file.stem, task.class_name, *controller_arguments(task.place)]
         # It listens before there is anything to hear.
-        examination = _Examination(runner, task, seed)
+        examination = _EnvironmentExaminer(runner, task, seed)
         guest = Guest.start(
             graph, Path(folder, EXAMINER_FILE.name), args=arguments, limits=assignment.limits, level=level
         )
@@ -157,7 +157,7 @@ def examine_environment(
     return examination.record
 
 
-class _Examination:
+class _EnvironmentExaminer:
     """Asks, and notes what happened."""
 
     def __init__(self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int) -> None:
@@ -210,7 +210,7 @@ class _Examination:
             episode.step_records.append(step)
             if step.is_over:
                 return
-            is_due = step.touched or step.target_distance < 0.1 or done + 1 > steps
+            is_due = step.collided or step.target_distance < 0.1 or done + 1 > steps
             overdue += is_due or overdue > 0
 
     def _make_step(self, action: int) -> StepRecord:
@@ -220,9 +220,11 @@ class _Examination:
         case = self._task.place.case
         assert case is not None  # the sheet's reader sees to it
         distance = self._runner.simulation.hull_distance(self._robot, case.target)
-        returned, inside = answer.get("returned", {}), answer.get("inside") is True
+        returned, is_in_space = answer.get("returned", {}), answer.get("inside") is True
         touched = self._metrics.contact_steps(self._robot) > contact_steps
-        return StepRecord(action, returned, inside, before, self._pose(), touched, distance, self._ranges)
+        return StepRecord(
+            action, returned, is_in_space, before, self._pose(), touched, distance, self._ranges
+        )
 
     def _make_pilot(self) -> Callable[[int], int]:
         """Chooses moves along the way: turn towards the next point, then go."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -232,6 +231,3 @@ def _with_laser_noise(model: Model, noise: float) -> Model:
 def _parameters(trial: Trial) -> list[str]:
     words = [word for parameter in trial.parameters for word in ("-p", parameter)]
     return ["--ros-args", *words] if words else []
-
-
-PLATFORM: Final = f"{sys.platform} python {sys.version_info.major}.{sys.version_info.minor}"

@@ -127,7 +127,7 @@ KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_querie
 
 
 @contextmanager
-def package_copy(package: Path, file: Path) -> Iterator[LaunchTarget]:
+def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
     """The package with the student's launch file in it, in a folder of its own."""
     with tempfile.TemporaryDirectory(prefix="launch-") as made:
         folder = Path(made) / "package"

@@ -14,7 +14,7 @@ from grader.assignment import Assignment, Criterion
 from grader.evidence import exploit, value_iteration
 from grader.evidence.behaviours import BehaviourComparison, LoopComparison, compare_behaviours, compare_loops
 from grader.evidence.reward_training import RewardTrainingParams, mean_success
-from grader.evidence.symmetry import Turned, mirrored, rotated
+from grader.evidence.symmetry import mirrored, rotated
 from grader.evidence.task_model import Floats, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from kit.host.failure import Failure, FailureKind, GuestError
@@ -99,7 +99,7 @@ class RewardEvidence:
         sample = everything.at(sampled)
         known = self.rewards.reshape(-1)[sampled]
         same = np.ones(len(sample), dtype=np.bool_)
-        transforms: tuple[Turned, ...] = (mirrored(sample), rotated(sample))
+        transforms: tuple[TransitionBatch, ...] = (mirrored(sample), rotated(sample))
         try:
             with self._open() as functions:
                 for transformed in transforms:

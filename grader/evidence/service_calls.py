@@ -20,7 +20,7 @@ from kit.world.yaml_section import Section
 NO_ANSWER: Final = "no answer"
 NO_SERVICE: Final = "no such service"
 
-LONGEST_ANSWER: Final = 2000
+MAX_ANSWER: Final = 2000
 """Characters that are kept."""
 
 
@@ -86,4 +86,4 @@ def _answer_text(future: Future[Any] | None) -> str:
     if future is None:
         return NO_SERVICE
     answer = future.result() if future.done() else None
-    return NO_ANSWER if answer is None else printable(json.dumps(to_dict(answer)))[:LONGEST_ANSWER]
+    return NO_ANSWER if answer is None else printable(json.dumps(to_dict(answer)))[:MAX_ANSWER]

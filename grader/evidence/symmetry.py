@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
@@ -12,13 +11,11 @@ from grader.assignment import GridTask
 from grader.evidence.task_model import HEADINGS, LAST_MOVES, LEFT, RIGHT, GridModel, Integers, build_model
 from grader.evidence.transitions import TransitionBatch
 
-Turned: TypeAlias = TransitionBatch
-
 MIRRORED_MOVES = np.arange(LAST_MOVES)
 MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT
 
 
-def mirrored(steps: TransitionBatch) -> Turned:
+def mirrored(steps: TransitionBatch) -> TransitionBatch:
     """Left and right exchanged: x runs the other way."""
     task = steps.model.task
     width = len(task.rows[0])
@@ -31,7 +28,7 @@ def mirrored(steps: TransitionBatch) -> Turned:
     )
 
 
-def rotated(steps: TransitionBatch) -> Turned:
+def rotated(steps: TransitionBatch) -> TransitionBatch:
     """A quarter turn counter-clockwise."""
     task = steps.model.task
     height = len(task.rows)

@@ -31,7 +31,7 @@ NO_MOVE: Final = 4
 LAST_MOVES: Final = len(MOVES) + 1
 HEADING_STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """By heading, counter-clockwise from x: the next cell (columns, rows up)."""
-LONGEST_RANGE: Final = 10.0
+MAX_RANGE: Final = 10.0
 """m, to which the model looks ahead."""
 
 
@@ -88,7 +88,7 @@ class GridModel:
                 free = 0
                 while (column + (free + 1) * dx, row + (free + 1) * dy) in floor:
                     free += 1
-                room[number, heading] = min(LONGEST_RANGE, (free + 0.5) * CELL * float(np.hypot(dx, dy)))
+                room[number, heading] = min(MAX_RANGE, (free + 0.5) * CELL * float(np.hypot(dx, dy)))
         return room
 
     @cached_property
@@ -129,7 +129,7 @@ def build_model(task: GridTask) -> GridModel:
     for cell, (x, y) in enumerate(cells):
         for heading in range(HEADINGS):
             first = (cell * HEADINGS + heading) * LAST_MOVES
-            for move, (to, turned, is_hit) in enumerate(_moves(number, x, y, heading)):
+            for move, (to, turned, is_hit) in enumerate(_move_results(number, x, y, heading)):
                 after[first : first + LAST_MOVES, move] = (to * HEADINGS + turned) * LAST_MOVES + move
                 hit[first : first + LAST_MOVES, move] = is_hit
     reached = (after // (HEADINGS * LAST_MOVES) == target) & (
@@ -138,7 +138,7 @@ def build_model(task: GridTask) -> GridModel:
     return GridModel(task, np.array(cells, dtype=np.int64), target, after, hit, reached & ~hit)
 
 
-def _moves(
+def _move_results(
     number: Mapping[tuple[int, int], int], x: int, y: int, heading: int
 ) -> Sequence[tuple[int, int, bool]]:
     """For each move: the cell and heading after it, and whether it is a collision."""

@@ -135,12 +135,12 @@ class TrainingResults:
 
     def success_lower_bound(self, *cases: str) -> float:
         """What the success in these cases together is not below, with 95 % confidence (Wilson)."""
-        counts = [self.pooled(case) for case in cases or self.budget.cases]
+        counts = [self.pooled_count(case) for case in cases or self.budget.cases]
         return lower_bound(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
     @property
     def worst_case(self) -> str:
-        return min(self.budget.cases, key=lambda case: self.pooled(case).share)
+        return min(self.budget.cases, key=lambda case: self.pooled_count(case).share)
 
     def picture(self) -> str:
         """The tests of the worst training, a row each."""

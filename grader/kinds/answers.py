@@ -93,14 +93,14 @@ class SubmittedAnswers:
 
 
 @dataclass(frozen=True, slots=True)
-class AnswerParams:
+class AnswerKeysParams:
     """Which questions a criterion is about: by default all."""
 
     keys: tuple[str, ...] = ()
 
 
-@check(none=0, full=1, unit="%", params=AnswerParams)
-def answers(evidence: EvidenceRecord, params: AnswerParams) -> float:
+@check(none=0, full=1, unit="%", params=AnswerKeysParams)
+def answers(evidence: EvidenceRecord, params: AnswerKeysParams) -> float:
     """Of these questions {actual} are answered rightly."""
     submitted: SubmittedAnswers = evidence.content
     names = params.keys or tuple(submitted.task.keys)

@@ -22,7 +22,7 @@ from kit.world.catalogue import MapCase
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
 
-LONGEST_EPISODE: Final = 3600.0
+MAX_EPISODE_S: Final = 3600.0
 """s"""
 
 
@@ -58,8 +58,8 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         if name in seen:
             each.error(f"a trial named {quoted(name)} already exists", "name")
         seen.add(name)
-        place = place_of(each, folder)
-        time_s = each.number("time", 60.0, above=0, maximum=LONGEST_EPISODE)
+        place = read_scenario(each, folder)
+        time_s = each.number("time", 60.0, above=0, maximum=MAX_EPISODE_S)
         seeds = _seeds(each, "seeds", (1, 2, 3))
         shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
         noise = each.number("noise", minimum=0, maximum=10) if each.has("noise") else None
@@ -97,7 +97,7 @@ def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, .
     return seeds
 
 
-def place_of(section: Section, folder: Path) -> Where | None:
+def read_scenario(section: Section, folder: Path) -> Where | None:
     """A map of the kit or a world of the folder, with its case or target; None if there is a mistake, which is noted."""
     name = section.name("place")
     case = section.name("case") if section.has("case") else None

@@ -33,7 +33,7 @@ from grader.evidence.contract import (
 )
 from grader.evidence.drive_record import DriveRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.kinds.controller import place_of
+from grader.kinds.controller import read_scenario
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
@@ -89,7 +89,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     """Where the drive must have taken place."""
     section = files.public.section("drive")
     made = HandDriveTask(
-        place_of(section, files.folder), section.number("time", 180.0, above=0, maximum=MAX_TIME_S)
+        read_scenario(section, files.folder), section.number("time", 180.0, above=0, maximum=MAX_TIME_S)
     )
     section.finish()
     return KindSettings(task=made)

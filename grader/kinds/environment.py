@@ -28,7 +28,7 @@ from grader.checks.environments import CHECKS, first_complaint
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.kinds.controller import place_of
+from grader.kinds.controller import read_scenario
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
@@ -41,7 +41,7 @@ MOST_STEPS: Final = 400
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Where the environment lives, and what its actions do."""
     section = files.public.section("environment")
-    place = place_of(section, files.folder)
+    place = read_scenario(section, files.folder)
     moves = section.points("moves", at_least=2, at_most=20)
     seed = files.public.integer("seed", 1, minimum=0, maximum=10**6)
     secret = None if files.secret is None else files.secret.integer("seed", minimum=0, maximum=10**6)

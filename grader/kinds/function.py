@@ -224,7 +224,7 @@ class FunctionCollector:
         try:
             with StudentFunctions(self._file, limits=self._assignment.limits, level=self.level) as functions:
                 for case in cases:
-                    expected, actual = _plain(right(**case)), functions.tell(spec.name, case)
+                    expected, actual = _as_json(right(**case)), functions.tell(spec.name, case)
                     if not is_close(expected, actual, spec.within):
                         differences.append(CaseDifference(case, expected, actual))
                 printed = tuple(printable(line.text) for line in functions.take_output().lines)
@@ -255,12 +255,12 @@ def failed_record(
     )
 
 
-def _plain(value: Any) -> Json:
+def _as_json(value: Any) -> Json:
     """What the reference returns, as what comes from the student's process looks like."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
+        return [_as_json(each) for each in value]
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
 
 

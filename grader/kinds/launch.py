@@ -22,7 +22,7 @@ from typing import Any, Final
 from grader.assignment import Assignment, Criterion
 from grader.checks.contract import Check, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions
-from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, package_copy, run_launch
+from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
@@ -155,7 +155,7 @@ def _is_distance_right(record: LaunchRecord, model: str, least: str, most: str) 
     return float(least) <= record.distances.get(model, -1.0) <= float(most)
 
 
-def _remark(record: LaunchRecord, name: str, params: Any) -> str:
+def _explain(record: LaunchRecord, name: str, params: Any) -> str:
     """The first thing that is not as asked, and what is there instead."""
     return EXPLANATIONS[name](record, params)
 
@@ -197,8 +197,8 @@ def _explain_distance(record: LaunchRecord, params: DistanceParams) -> str:
     for each in params.ways:
         model, least, most = each.split()
         if not _is_distance_right(record, model, least, most):
-            way = record.distances.get(model)
-            drove = "is not in the world" if way is None else f"drove {way:.2f} m"
+            distance = record.distances.get(model)
+            drove = "is not in the world" if distance is None else f"drove {distance:.2f} m"
             return f"{model} {drove}; it should be {least} to {most} m."
     return ""
 
@@ -273,7 +273,7 @@ class LaunchCollector:
     def _run(self, run: LaunchCase) -> LaunchRecord:
         key = run.name, run.secret
         while key not in self._records:
-            with package_copy(self._assignment.task.package, self._file) as target:
+            with copied_package(self._assignment.task.package, self._file) as target:
                 record = run_launch(
                     run, target, self._queries, level=self.level, limits=self._assignment.limits
                 )
@@ -281,7 +281,7 @@ class LaunchCollector:
             if cannot and self._may_fall and self.level > Level.LIMITED:
                 self.level = Level(self.level - 1)
                 continue
-            record = replace(record, explain_with=_remark)
+            record = replace(record, explain_with=_explain)
             self._records[key] = record
         return self._records[key]
 

@@ -109,10 +109,10 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     plan = read_submitted_yaml(file, lambda section: _read_plan(section, case))
     if isinstance(plan, Failure):
         return EvidenceRecord(failure=plan)
-    return EvidenceRecord(plan, label="your plan", explain_with=lambda name, params: _remark(plan, name))
+    return EvidenceRecord(plan, label="your plan", explain_with=lambda name, params: _explain(plan, name))
 
 
-def _remark(plan: SubmittedPlan, name: str) -> str:
+def _explain(plan: SubmittedPlan, name: str) -> str:
     if name == proof.name:
         return "; ".join(plan.combinable_pairs())
     if name in (complete.name, nothing_more.name):

@@ -13,7 +13,7 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
-LARGEST_PLAN: Final = 40
+MAX_GRID_SIZE: Final = 40
 """Rows and columns of a grid."""
 
 
@@ -39,9 +39,9 @@ def _grid(section: Section) -> GridTask:
         section.integer("max_steps", 200, minimum=1, maximum=10_000),
     )
     section.finish()
-    if not rows or len({len(row) for row in rows}) != 1 or max(len(rows), len(rows[0])) > LARGEST_PLAN:
+    if not rows or len({len(row) for row in rows}) != 1 or max(len(rows), len(rows[0])) > MAX_GRID_SIZE:
         section.error(
-            f"{quoted('map')} must be rows of equal length, at most {LARGEST_PLAN} by {LARGEST_PLAN}", "map"
+            f"{quoted('map')} must be rows of equal length, at most {MAX_GRID_SIZE} by {MAX_GRID_SIZE}", "map"
         )
     elif set("".join(rows)) - set("#.G") or "".join(rows).count("G") != 1:
         section.error(

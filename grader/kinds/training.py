@@ -146,7 +146,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         label="the trainings",
         outcome="trained",
         steps=sum(training.steps for training in results.trainings),
-        explain_with=lambda check, params: _remark(results, check),
+        explain_with=lambda check, params: _explain(results, check),
         draw_with=lambda check: results.picture(),
     )
 
@@ -156,10 +156,10 @@ def _failed(message: str) -> EvidenceRecord:
     return EvidenceRecord(failure=failure, label="the trainings", outcome="not trained")
 
 
-def _remark(results: TrainingResults, check: str) -> str:
+def _explain(results: TrainingResults, check: str) -> str:
     """Which training or case it is about."""
     if check == "every_case":
-        count = results.pooled(results.worst_case)
+        count = results.pooled_count(results.worst_case)
         return f"That is {results.worst_case}, reached {count.reached} times in {count.episodes}."
     if check in ("succeeds", "reliable"):
         shares = ", ".join(f"{training.accuracy:.2f}" for training in results.trainings)

@@ -156,7 +156,9 @@ class WorldCollector:
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:
             try:
-                self._read = _record(WorldContents(self._running_process().world()), "what you handed in")
+                self._read = _record(
+                    WorldContents(self._running_process().read_world()), "what you handed in"
+                )
             except GuestError as error:
                 self._read = EvidenceRecord(failure=error.failure)
         return self._read
@@ -184,7 +186,7 @@ class WorldCollector:
         if self._process is None:
             self._process = WorldProcess(self._file)
             if self._read is not None:
-                self._process.world()
+                self._process.read_world()
         return self._process
 
 

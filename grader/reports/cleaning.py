@@ -9,19 +9,19 @@ import re
 import unicodedata
 from typing import Final
 
-LONGEST: Final = 4000
+MAX_TEXT: Final = 4000
 """Characters of one text in a report."""
-CUT: Final = " … (shortened)"
+CUT_MARK: Final = " … (shortened)"
 
 _COMMAND: Final = re.compile(r"::|##(?=[A-Za-z]*\[)")
 _FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%")
 _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 
 
-def plain(text: str, limit: int = LONGEST) -> str:
+def plain(text: str, limit: int = MAX_TEXT) -> str:
     """Lines of printable characters: no control characters, so no terminal escapes; no marks that turn the
     direction of writing; nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
-    cut = text if len(text) <= limit else text[:limit] + CUT
+    cut = text if len(text) <= limit else text[:limit] + CUT_MARK
     kept = "".join(
         c if c == "\n" or c.isprintable() or unicodedata.category(c) == "Zs" else "\N{REPLACEMENT CHARACTER}"
         for c in cut
@@ -32,20 +32,20 @@ def plain(text: str, limit: int = LONGEST) -> str:
     return kept
 
 
-def one_line(text: str, limit: int = 300) -> str:
+def clean_line(text: str, limit: int = 300) -> str:
     """``plain``, on one line."""
     return " ".join(plain(text, limit).split())
 
 
-def indented(text: str, margin: str) -> str:
+def indented_text(text: str, margin: str) -> str:
     """``plain`` with something before every line, so that no line starts with what the student wrote."""
     return "\n".join(margin + line for line in plain(text).split("\n"))
 
 
-def markdown(text: str, limit: int = 300) -> str:
+def escape_markdown(text: str, limit: int = 300) -> str:
     """One line in which nothing is markup, a link, a mention or HTML."""
     return (
-        _MARKUP.sub(r"\\\1", one_line(text, limit))
+        _MARKUP.sub(r"\\\1", clean_line(text, limit))
         .replace("\\<", "&lt;")
         .replace("\\>", "&gt;")
         .replace("\\&", "&amp;")
@@ -53,7 +53,7 @@ def markdown(text: str, limit: int = 300) -> str:
     )
 
 
-def fenced(text: str) -> str:
+def fenced_block(text: str) -> str:
     """A block of code that its content cannot leave."""
     content = plain(text)
     longest = max((len(run) for run in re.findall(r"`+", content)), default=0)
@@ -61,13 +61,13 @@ def fenced(text: str) -> str:
     return f"{fence}text\n{content}\n{fence}"
 
 
-def cell(text: str) -> str:
+def spreadsheet_cell(text: str) -> str:
     """One cell of a table that a spreadsheet will not compute."""
-    shown = one_line(text)
+    shown = clean_line(text)
     return f"'{shown}" if shown.startswith(_FORMULA) else shown
 
 
-def xml(text: str) -> str:
+def xml_text(text: str) -> str:
     """Only characters that XML 1.0 allows; the XML library escapes the rest."""
     return "".join(
         c

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from typing import Any, Final
 
-from grader.reports.cleaning import fenced, markdown, one_line, plain
+from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, format_points
 
 
@@ -29,7 +29,7 @@ def write_check50(result: GradingResult) -> str:
     """JSON in the manner of check50: passed is true, false, or null where nothing is known."""
     result = result.for_student()
     content = {
-        "slug": one_line(result.assignment),
+        "slug": clean_line(result.assignment),
         "version": result.grader_version,
         "results": [_check50_test(test) for test in result.tests],
     }
@@ -41,10 +41,10 @@ def _check50_test(test: CriterionResult) -> dict[str, Any]:
     if test.status is not CriterionStatus.PASS:
         cause = {"rationale": plain(test.rationale), "help": plain(test.hints[0]) if test.hints else None}
         if test.actual:
-            cause |= {"expected": one_line(test.expected), "actual": one_line(test.actual)}
+            cause |= {"expected": clean_line(test.expected), "actual": clean_line(test.actual)}
     return {
-        "name": one_line(test.id),
-        "description": one_line(test.title),
+        "name": clean_line(test.id),
+        "description": clean_line(test.title),
         "passed": test.status is CriterionStatus.PASS if test.is_judged else None,
         "log": plain(test.log).splitlines()[:100],
         "cause": cause,
@@ -80,10 +80,10 @@ def write_classroom(result: GradingResult) -> str:
 
 def _classroom_test(test: CriterionResult) -> dict[str, Any]:
     return {
-        "name": f"{one_line(test.title, 120)} ({format_points(test.points)}/{format_points(test.max_points)})",
+        "name": f"{clean_line(test.title, 120)} ({format_points(test.points)}/{format_points(test.max_points)})",
         "status": "pass" if test.status is CriterionStatus.PASS else "fail",
         "score": test.points,
-        "message": one_line(test.rationale, MAX_CLASSROOM_OUTPUT - 20),
+        "message": clean_line(test.rationale, MAX_CLASSROOM_OUTPUT - 20),
         "output": plain(
             "\n".join(part for part in (test.rationale, *test.hints[:1]) if part), MAX_CLASSROOM_OUTPUT - 20
         ),
@@ -115,8 +115,8 @@ def write_prairielearn(result: GradingResult) -> str:
 
 def _prairielearn_test(test: CriterionResult) -> dict[str, Any]:
     return {
-        "name": one_line(test.title),
-        "description": one_line(test.rationale),
+        "name": clean_line(test.title),
+        "description": clean_line(test.rationale),
         "points": test.points,
         "max_points": test.max_points,
         "message": plain("\n".join(f"hint: {hint}" for hint in test.hints[:1])),
@@ -135,22 +135,22 @@ def _markdown_lines(result: GradingResult) -> Iterator[str]:
         if result.points is None
         else f"{format_points(result.points)} of {format_points(result.max_points)} points"
     )
-    yield f"## {markdown(result.assignment)}: {points}"
+    yield f"## {escape_markdown(result.assignment)}: {points}"
     yield ""
     yield "| Test | Outcome | Points |"
     yield "| --- | --- | ---: |"
     for test in result.tests:
-        yield f"| {markdown(test.title)} | {test.status.value} | {format_points(test.points)}/{format_points(test.max_points)} |"
+        yield f"| {escape_markdown(test.title)} | {test.status.value} | {format_points(test.points)}/{format_points(test.max_points)} |"
     for test in result.tests:
         if test.rationale and test.status is not CriterionStatus.PASS:
             yield ""
-            yield f"**{markdown(test.title)}**: {markdown(test.rationale, 600)}"
+            yield f"**{escape_markdown(test.title)}**: {escape_markdown(test.rationale, 600)}"
             for hint in test.hints[:1]:
-                yield f"\nHint: {markdown(hint, 600)}"
+                yield f"\nHint: {escape_markdown(hint, 600)}"
     worst = next((test for test in result.tests if test.replay), None)
     if worst is not None:
         yield ""
-        yield fenced(worst.replay)
+        yield fenced_block(worst.replay)
     for notice in result.notices:
         yield ""
-        yield f"_{markdown(notice)}_"
+        yield f"_{escape_markdown(notice)}_"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from grader.reports.cleaning import one_line, plain
+from grader.reports.cleaning import clean_line, plain
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 
 VISIBILITY_NAMES: Final[Mapping[Visibility, str]] = MappingProxyType(
@@ -59,7 +59,7 @@ def _test(number: int, test: CriterionResult) -> dict[str, Any]:
     # The picture is ours and needs no cleaning: cleaned, it would lose its shape.
     output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
     return {
-        "name": one_line(test.title),
+        "name": clean_line(test.title),
         "number": str(number),
         "score": test.points,
         "max_score": test.max_points,

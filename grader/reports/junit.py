@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from grader.reports.cleaning import one_line, xml
+from grader.reports.cleaning import clean_line, xml_text
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, format_points
 
 
@@ -44,7 +44,7 @@ def write_junit(result: GradingResult) -> str:
 
 
 def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, names: set[str]) -> None:
-    name = one_line(test.title, 120)
+    name = clean_line(test.title, 120)
     while name in names:  # of two tests with one name GitLab keeps the first
         name += " (again)"
     names.add(name)
@@ -59,17 +59,17 @@ def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, na
     if test.status is CriterionStatus.SKIPPED:
         ElementTree.SubElement(case, "skipped", {"message": message})
     elif test.status is CriterionStatus.GRADER_ERROR:
-        ElementTree.SubElement(case, "error", {"type": test.status.value, "message": message}).text = xml(
-            test.log
-        )
+        ElementTree.SubElement(
+            case, "error", {"type": test.status.value, "message": message}
+        ).text = xml_text(test.log)
     elif test.status is not CriterionStatus.PASS:
         text = "\n".join(part for part in (test.rationale, *test.hints[:1]) if part)
-        ElementTree.SubElement(case, "failure", {"type": test.status.value, "message": message}).text = xml(
-            text
-        )
+        ElementTree.SubElement(
+            case, "failure", {"type": test.status.value, "message": message}
+        ).text = xml_text(text)
     if test.log and test.is_judged:
-        ElementTree.SubElement(case, "system-out").text = xml(test.log)
+        ElementTree.SubElement(case, "system-out").text = xml_text(test.log)
 
 
 def _attribute(text: str) -> str:
-    return xml(one_line(text, 600))
+    return xml_text(clean_line(text, 600))

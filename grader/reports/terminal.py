@@ -7,7 +7,7 @@ import json
 import textwrap
 from collections.abc import Iterator
 
-from grader.reports.cleaning import one_line
+from grader.reports.cleaning import clean_line
 from grader.reports.formats import write_json
 from kit.school.result import GradingResult
 from kit.school.result_text import VERDICTS, criterion_lines, plain, points_text
@@ -32,7 +32,7 @@ def _lines(result: GradingResult, hints: int) -> Iterator[str]:
     points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
     yield f"{points}. {VERDICTS[shown.verdict]}"
     for notice in shown.notices:
-        yield from textwrap.wrap(one_line(notice), WIDTH)
+        yield from textwrap.wrap(clean_line(notice), WIDTH)
     yield (
         f"level {shown.level}, seeds {shown.seeds}, "
         f"fingerprint {shown.submission[:8]}-{shown.assignment_version[:8]}"

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.archives import SubmissionRefused
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
@@ -296,7 +296,7 @@ def attempt(attack: Attack, level: Level, folder: Path) -> Outcome:
         (handed / "controller.py").write_text(source, encoding="utf-8")
         for name, content in attack.files.items():
             (handed / name).write_bytes(content)
-    assignment = read(assignment_folder)
+    assignment = read_assignment(assignment_folder)
     try:
         result = grade(
             assignment, read_submission(handed, assignment.submit), GradingOptions(level, may_fall=False)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.assignment import Assignment
-from grader.reading import read
+from grader.reading import read_assignment
 from kit.host.sandbox import landlock
 
 LOCKS = pytest.mark.skipif(
@@ -61,4 +61,4 @@ def write_assignment(folder: Path, text: str = QUICK, secret: str | None = None)
 
 @pytest.fixture
 def quick(tmp_path: Path) -> Assignment:
-    return read(write_assignment(tmp_path / "quick"))
+    return read_assignment(write_assignment(tmp_path / "quick"))

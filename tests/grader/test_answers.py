@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict
@@ -61,13 +61,13 @@ def handed_in(text: str) -> Submission:
     ids=["right", "written otherwise", "some", "wrong", "blank", "empty"],
 )
 def test_what_is_right(folder: Path, text: str, points: float) -> None:
-    result = grade(read(folder), handed_in(text), DESK)
+    result = grade(read_assignment(folder), handed_in(text), DESK)
     assert result.points == pytest.approx(points)
     assert all(not test.status.value.endswith("error") for test in result.tests)
 
 
 def test_a_known_mistake_is_answered(folder: Path) -> None:
-    result = grade(read(folder), handed_in("topic: odom\n"), DESK)
+    result = grade(read_assignment(folder), handed_in("topic: odom\n"), DESK)
     assert "comes from the robot" in result.tests[0].rationale
 
 
@@ -84,14 +84,14 @@ def test_a_known_mistake_is_answered(folder: Path) -> None:
     ids=["broken", "key", "choice", "list", "long", "tag"],
 )
 def test_a_file_that_cannot_be_read_is_an_error_with_its_place(folder: Path, text: str) -> None:
-    result = grade(read(folder), handed_in(text), DESK)
+    result = grade(read_assignment(folder), handed_in(text), DESK)
     assert {test.status for test in result.tests} == {CriterionStatus.STUDENT_ERROR}
     assert "answers.yaml" in result.tests[0].rationale
     assert "/tmp" not in result.tests[0].rationale
 
 
 def test_without_the_secret_nothing_is_judged(folder: Path) -> None:
-    result = grade(read(folder), handed_in("topic: cmd_vel\n"), GradingOptions(Level.LIMITED))
+    result = grade(read_assignment(folder), handed_in("topic: cmd_vel\n"), GradingOptions(Level.LIMITED))
     assert {test.status for test in result.tests} == {CriterionStatus.SKIPPED}
     assert result.verdict is GradingVerdict.FAIL
 
@@ -99,4 +99,4 @@ def test_without_the_secret_nothing_is_judged(folder: Path) -> None:
 def test_a_key_must_be_one_of_the_choices(folder: Path) -> None:
     (folder / "secret.yaml").write_text(KEYS.replace("[cmd_vel]", "[cmd]"))
     with pytest.raises(WorldError, match="none of the choices"):
-        read(folder)
+        read_assignment(folder)

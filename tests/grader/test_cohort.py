@@ -36,7 +36,7 @@ from grader.cohort.late import LatePolicy, SubmissionTime, parse_time, read_poli
 from grader.cohort.queue import Queue, QueueError, job_key, prepare_queue
 from grader.cohort.work import WorkerPool, grade_job
 from grader.grading import GradingOptions
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe
@@ -62,7 +62,7 @@ def submissions(folder: Path, count: int = 3) -> Path:
 
 @pytest.fixture
 def queue(tmp_path: Path) -> Queue:
-    assignment = read(write_assignment(tmp_path / "quick"))
+    assignment = read_assignment(write_assignment(tmp_path / "quick"))
     made = Queue(tmp_path / "queue")
     prepare_queue(made, submissions(tmp_path / "in"), assignment, TERMS)
     return made
@@ -134,7 +134,7 @@ def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> Non
     assert job_key(read_submission(tmp_path / "in" / "copy.py", assignment.submit), assignment, TERMS) == key
     assert job_key(submission, assignment, GradingOptions(Level.FILTERED)) != key
     assert job_key(submission, assignment, GradingOptions(Level.LIMITED, secret=True)) != key
-    changed = read(write_assignment(tmp_path / "quick2", QUICK.replace("points: 3", "points: 4")))
+    changed = read_assignment(write_assignment(tmp_path / "quick2", QUICK.replace("points: 3", "points: 4")))
     assert job_key(submission, changed, TERMS) != key
 
 
@@ -143,7 +143,7 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     for key in queue.waiting():
         grade_job(queue, key)
     assert version.grader_version() == version.grader_version.__wrapped__()
-    seen = list(version._sources())
+    seen = list(version._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
     edited.write_text(seen[0][1].read_text() + "# another line\n")
@@ -159,7 +159,7 @@ def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_pa
     for key in queue.waiting():
         grade_job(queue, key)
     before = gradebook_rows(queue)
-    changed = read(write_assignment(tmp_path / "quick", QUICK.replace("full: 0.5", "full: 5")))
+    changed = read_assignment(write_assignment(tmp_path / "quick", QUICK.replace("full: 0.5", "full: 5")))
     prepare_queue(queue, tmp_path / "in", changed, TERMS)
     assert len(queue.waiting()) == 4
     for key in queue.waiting():
@@ -355,7 +355,7 @@ def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> No
 
 @LOCKS
 def test_levels_do_not_change_points(tmp_path: Path) -> None:
-    assignment = read(write_assignment(tmp_path / "quick"))
+    assignment = read_assignment(write_assignment(tmp_path / "quick"))
     folder = submissions(tmp_path / "in")
     tables = []
     levels = [rung.level for rung in probe() if rung.is_available]

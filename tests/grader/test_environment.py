@@ -9,7 +9,7 @@ import pytest
 
 from grader.evidence.environment import sector_minima
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.observations import NINE_NUMBERS
@@ -61,7 +61,9 @@ def graded(folder: Path, *changes: tuple[str, str], options: GradingOptions = DE
         assert old in source
         source = source.replace(old, new)
     return grade(
-        read(folder), Submission("ada", "hallway_env.py", {"hallway_env.py": source.encode()}), options
+        read_assignment(folder),
+        Submission("ada", "hallway_env.py", {"hallway_env.py": source.encode()}),
+        options,
     )
 
 
@@ -154,7 +156,7 @@ def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> 
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
     (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
     with pytest.raises(WorldError, match=message):
-        read(folder)
+        read_assignment(folder)
 
 
 def test_the_sectors_are_those_that_agents_of_the_kit_see() -> None:

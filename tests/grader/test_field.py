@@ -8,7 +8,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
@@ -39,7 +39,7 @@ def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     pull = 15 / (2 * 1.6**2) / 2**0.5
     sheet = ASSIGNMENT_FILE.replace("FX", f"{pull}").replace("FY", f"{pull + 1 / 0.22**2}")
     (folder / "assignment.yaml").write_text(sheet)
-    return read(folder)
+    return read_assignment(folder)
 
 
 def handed_in(assignment: Assignment, text: str) -> GradingResult:

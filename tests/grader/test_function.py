@@ -8,7 +8,7 @@ import pytest
 
 from grader.grading import GradingOptions, grade
 from grader.kinds.function import format_value, is_close
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
@@ -65,7 +65,9 @@ def folder(tmp_path: Path) -> Path:
 
 
 def graded(folder: Path, source: str, options: GradingOptions = DESK) -> GradingResult:
-    return grade(read(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), options)
+    return grade(
+        read_assignment(folder), Submission("ada", "scans.py", {"scans.py": source.encode()}), options
+    )
 
 
 @pytest.mark.parametrize("options", [DESK, GRADE], ids=["practice", "grade"])
@@ -161,7 +163,7 @@ def test_a_teachers_mistake_is_told_when_read(
     path = folder / file
     path.write_text(path.read_text().replace(old, new, 1))
     with pytest.raises(WorldError, match=message):
-        read(folder)
+        read_assignment(folder)
 
 
 @pytest.mark.parametrize(

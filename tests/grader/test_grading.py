@@ -18,7 +18,7 @@ from grader.checks import contract, drives
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds import controller
 from grader.kinds.contract import find_kind, kind_names
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.sandbox import probe
@@ -85,7 +85,7 @@ def test_a_share_of_episodes_may_be_enough(tmp_path: Path) -> None:
         folder = write_assignment(
             tmp_path / f"n{need}", text.replace("{none: 0, full: 0.5}", "{none: 0, full: 0.4}" + extra)
         )
-        result = grade(read(folder), handed_in(source), DESK)
+        result = grade(read_assignment(folder), handed_in(source), DESK)
         shares[need] = result.tests[1].metrics["share"]
     driven = shares["1.0"]
     assert 0.0 < driven < 1.0, "some seeds drive, some do not"
@@ -98,7 +98,7 @@ SECRET = QUICK.replace("level: 0", "level: 1")
 
 def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     text = SECRET.replace("check: reached, points: 3", "check: reached, seeds: secret, points: 3")
-    assignment = read(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [123456789]}"))
+    assignment = read_assignment(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [123456789]}"))
     practice = grade(assignment, handed_in(FORWARD), GradingOptions(Level.LIMITED))
     assert statuses(practice)["reached"] == "skipped"
     assert any("1 more tests" in notice for notice in practice.notices)
@@ -115,7 +115,7 @@ def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
 
 def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None:
     text = SECRET.replace("level: 1", "level: 0").replace("check: runs,", "check: runs, seeds: secret,")
-    assignment = read(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [5]}"))
+    assignment = read_assignment(write_assignment(tmp_path / "s", text, secret="seeds: {turn: [5]}"))
     source = FORWARD.replace(
         "        self.drive.publish", "        raise ValueError('what I saw')\n        self.drive.publish"
     )
@@ -152,10 +152,10 @@ def test_a_docstring_is_the_feedback() -> None:
 
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_prove_themselves(kind: str) -> None:
-    assignment = dataclasses.replace(read(TEMPLATES / kind), level=Level.LIMITED)
-    proofs = list(try_works(assignment, DESK))
-    assert {proof.name: proof.problems for proof in proofs if proof.problems} == {}
-    assert len(proofs) >= 4
+    assignment = dataclasses.replace(read_assignment(TEMPLATES / kind), level=Level.LIMITED)
+    reports = list(try_works(assignment, DESK))
+    assert {report.name: report.problems for report in reports if report.problems} == {}
+    assert len(reports) >= 4
 
 
 def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Path) -> None:
@@ -167,7 +167,9 @@ def test_an_assignment_that_does_not_do_what_it_should_is_found_out(tmp_path: Pa
     (wrong / "moves.py").write_text(FORWARD)
     (wrong / "nothing.py").write_text(FORWARD)
     (wrong / "reached__ok.py").write_text(FORWARD)
-    problems = {proof.name: "\n".join(proof.problems) for proof in try_works(read(folder), DESK)}
+    problems = {
+        report.name: "\n".join(report.problems) for report in try_works(read_assignment(folder), DESK)
+    }
     assert "student_error" in problems["starter.py"]
     assert "reached: fail" in problems["solution.py"]
     assert "should lose moves, and does not" in problems["wrong/moves.py"]
@@ -184,7 +186,9 @@ def test_chance_is_found_out(tmp_path: Path) -> None:
                 "SPEED = 0.3", "import os\nSPEED = 0.1 + int.from_bytes(os.urandom(2), 'big') / 2**18"
             )
         )
-    problems = {proof.name: "\n".join(proof.problems) for proof in try_works(read(folder), DESK)}
+    problems = {
+        report.name: "\n".join(report.problems) for report in try_works(read_assignment(folder), DESK)
+    }
     assert "does not do the same twice" in problems["solution.py"]
 
 
@@ -194,10 +198,10 @@ def test_the_odds_are_told(tmp_path: Path) -> None:
     )
     told = {
         each.criterion: each
-        for each in unfair_fail_odds(read(write_assignment(tmp_path / "q", text)), secret=False)
+        for each in unfair_fail_odds(read_assignment(write_assignment(tmp_path / "q", text)), secret=False)
     }
-    assert (told["reached"].passes, told["reached"].episodes) == (9, 10)
-    assert told["reached"].unfair[1] == pytest.approx(0.086, abs=1e-3)
+    assert (told["reached"].required_passes, told["reached"].episodes) == (9, 10)
+    assert told["reached"].probabilities[1] == pytest.approx(0.086, abs=1e-3)
 
 
 def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
@@ -329,7 +333,7 @@ def test_what_can_be_checked_is_listed(kind: str) -> None:
 def test_a_new_assignment_is_a_working_one(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     assert invoke("new", str(folder), "--kind", "reward")[0] == 0
-    assert read(folder).id == "mine"
+    assert read_assignment(folder).id == "mine"
     assert not list(folder.rglob("__pycache__"))
     code, text = invoke("new", str(folder))
     assert code == 2

@@ -9,7 +9,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
@@ -39,7 +39,7 @@ WORLD = """Node(package='flatland_server', executable='flatland_server', name='f
 
 @pytest.fixture(scope="module")
 def assignment() -> Assignment:
-    return read(LESSON)
+    return read_assignment(LESSON)
 
 
 def handed_in(assignment: Assignment, text: str, options: GradingOptions = DESK) -> GradingResult:
@@ -105,7 +105,7 @@ def test_a_package_outside_the_folder_is_refused(tmp_path: Path) -> None:
     sheet = (LESSON / "assignment.yaml").read_text().replace("package: starter", "package: ../outside")
     (tmp_path / "inside" / "assignment.yaml").write_text(sheet)
     with pytest.raises(WorldError, match=r"package\.xml"):
-        read(tmp_path / "inside")
+        read_assignment(tmp_path / "inside")
 
 
 @LOCKS

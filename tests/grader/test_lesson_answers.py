@@ -10,7 +10,7 @@ import pytest
 from grader.evidence.world.facts import WorldFacts
 from grader.evidence.world.world_reading import read_world_facts
 from grader.kinds.answers import AnswerKey, AnswersTask
-from grader.reading import read
+from grader.reading import read_assignment
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 YARD = LESSONS / "07-who-collides-who-sees" / "what-happens"
@@ -27,7 +27,7 @@ PLUGINS = {
 
 
 def keys_of(folder: Path) -> Mapping[str, AnswerKey]:
-    task: AnswersTask = read(folder).task
+    task: AnswersTask = read_assignment(folder).task
     return task.keys
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
@@ -49,7 +49,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def graded(folder: Path, text: str) -> GradingResult:
-    return grade(read(folder), Submission("ada", "plan.yaml", {"plan.yaml": text.encode()}), DESK)
+    return grade(read_assignment(folder), Submission("ada", "plan.yaml", {"plan.yaml": text.encode()}), DESK)
 
 
 @pytest.mark.parametrize(
@@ -109,10 +109,10 @@ def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
 
 def test_an_example_of_the_kit_can_be_the_case(folder: Path) -> None:
     (folder / "secret.yaml").write_text("case: drone\n")
-    assert read(folder).task.names
+    assert read_assignment(folder).task.names
 
 
 def test_a_case_that_is_not_there_is_the_teachers_mistake(folder: Path) -> None:
     (folder / "secret.yaml").write_text("case: hangr.layers.yaml\n")
     with pytest.raises(WorldError, match="no case"):
-        read(folder)
+        read_assignment(folder)

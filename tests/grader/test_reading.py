@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.reading import folder_digest, read
+from grader.reading import folder_digest, read_assignment
 from grader.scoring import Anchors
 from kit.world.problems import WorldError
 from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
@@ -14,13 +14,13 @@ from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
 
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_can_be_read(kind: str) -> None:
-    made = read(TEMPLATES / kind)
+    made = read_assignment(TEMPLATES / kind)
     assert made.max_points == 10
     assert made.kind == kind
 
 
 def test_what_is_read(tmp_path: Path) -> None:
-    made = read(write_assignment(tmp_path / "q", secret="seeds: {turn: [11, 12]}"))
+    made = read_assignment(write_assignment(tmp_path / "q", secret="seeds: {turn: [11, 12]}"))
     (trial,) = made.trials
     assert (trial.seeds, trial.secret_seeds, trial.time_s) == ((1,), (11, 12), 4.0)
     assert made.criteria[1].anchors == Anchors(0.0, 0.5)
@@ -60,7 +60,7 @@ def test_a_mistake_names_its_place_and_the_way_out(tmp_path: Path, line: str) ->
         kept = [each for each in kept if not each.startswith("  - ") or key != "checks"]
     folder = write_assignment(tmp_path / "q", "\n".join([*kept, line]) + "\n")
     with pytest.raises(WorldError) as caught:
-        read(folder)
+        read_assignment(folder)
     told = str(caught.value)
     for word in MISTAKES[line]:
         assert word in told
@@ -75,7 +75,7 @@ def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
         tmp_path / "q", QUICK.replace("level: 0", "level: 7\nfoo: 1").replace("place: turn", "place: tarn")
     )
     with pytest.raises(WorldError) as caught:
-        read(folder)
+        read_assignment(folder)
     assert len(caught.value.problems) >= 3
 
 
@@ -92,7 +92,7 @@ def test_a_grid_that_is_no_map(tmp_path: Path, rows: str, said: str) -> None:
     drawn = "\n".join(f"    {row}" for row in rows.splitlines())
     text = f"title: R\nkind: reward\nsubmit: r.py\ngrid:\n  map: |\n{drawn}\nchecks: [{{check: contract, points: 1}}]\n"
     with pytest.raises(WorldError, match=said):
-        read(write_assignment(tmp_path / "r", text))
+        read_assignment(write_assignment(tmp_path / "r", text))
 
 
 def test_the_version_changes_with_what_is_graded_and_with_nothing_else(tmp_path: Path) -> None:
@@ -116,6 +116,6 @@ def test_a_world_of_the_teachers_own(tmp_path: Path) -> None:
     world = folder / "world.yaml"
     world.write_text(world.read_text().replace("../robots/", ""))
     own = QUICK.replace("place: turn", "place: world.yaml, target: [1.6, 1.6], target_radius: 0.3")
-    (trial,) = read(write_assignment(folder, own)).trials
+    (trial,) = read_assignment(write_assignment(folder, own)).trials
     assert trial.place.case is not None
     assert trial.place.case.target == (1.6, 1.6)

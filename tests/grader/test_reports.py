@@ -85,7 +85,7 @@ def test_markdown_stays_text(text: str) -> None:
 
 
 def test_a_block_of_code_cannot_be_left() -> None:
-    block = cleaning.fenced("``` ````\nx")
+    block = cleaning.fenced_block("``` ````\nx")
     fence = block.splitlines()[0].removesuffix("text")
     assert len(fence) == 5
     assert block.count(fence) == 2
@@ -93,7 +93,7 @@ def test_a_block_of_code_cannot_be_left() -> None:
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x"])
 def test_a_spreadsheet_computes_nothing(text: str) -> None:
-    assert not cleaning.cell(text).startswith(("=", "+", "-", "@", "|", "%"))
+    assert not cleaning.spreadsheet_cell(text).startswith(("=", "+", "-", "@", "|", "%"))
 
 
 def test_cut_text_says_so() -> None:

@@ -10,9 +10,9 @@ from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.cohort.work import grade_job
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
-from grader.teacher_tests import read_declared
+from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 from kit.world.problems import WorldError
@@ -61,14 +61,14 @@ def folder_with(tmp_path: Path, own: str, sheet: str = QUICK + "tests: [test_own
 
 def graded(folder: Path) -> tuple[GradingResult, dict[str, CriterionResult]]:
     submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
-    result = grade(read(folder), submission, DESK)
+    result = grade(read_assignment(folder), submission, DESK)
     return result, {test.id: test for test in result.tests}
 
 
 def test_they_earn_points_and_say_what_they_mean(tmp_path: Path) -> None:
     folder = folder_with(tmp_path, OWN)
     result, tests = graded(folder)
-    assert read(folder).max_points == result.max_points == 6 + 11
+    assert read_assignment(folder).max_points == result.max_points == 6 + 11
     drives, turns, says, far = (
         tests[f"test_it_{name}"] for name in ("drives", "turns", "says_why", "comes_far")
     )
@@ -123,7 +123,7 @@ def test_what_is_not_named_is_not_run(tmp_path: Path) -> None:
 )
 def test_a_teachers_mistake_is_told_with_its_place(tmp_path: Path, own: str, sheet: str, said: str) -> None:
     with pytest.raises(WorldError, match=said) as caught:
-        read(folder_with(tmp_path, own, sheet))
+        read_assignment(folder_with(tmp_path, own, sheet))
     assert "assignment.yaml:" in str(caught.value)
 
 
@@ -132,7 +132,7 @@ def test_marks_are_read_without_running_anything(tmp_path: Path) -> None:
     file.write_text(
         "raise SystemExit\n@pytest.mark.points(2.5)\ndef test_a_b(): 'Say so.'\ndef test_c(): pass\n"
     )
-    assert [(each.title, each.points, each.feedback) for each in read_declared(file)] == [
+    assert [(each.title, each.points, each.feedback) for each in read_teacher_tests(file)] == [
         ("A b", 2.5, "Say so."),
         ("C", 0.0, ""),
     ]
@@ -145,7 +145,10 @@ def test_a_cohort_counts_them(tmp_path: Path) -> None:
     (handed / "ada.py").write_text(FORWARD)
     (handed / "link.py").symlink_to("/etc/passwd")
     prepare_queue(
-        queue, handed, read(folder_with(tmp_path, OWN)), GradingOptions(Level.LIMITED, may_fall=False)
+        queue,
+        handed,
+        read_assignment(folder_with(tmp_path, OWN)),
+        GradingOptions(Level.LIMITED, may_fall=False),
     )
     grade_job(queue, *queue.waiting())
     ada, link = gradebook_rows(queue)

@@ -10,7 +10,7 @@ from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training import CaseOrder, StopRule, TrainingResults
 from grader.grading import GradingOptions, grade
 from grader.kinds.training import collect_evidence
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus
@@ -43,7 +43,7 @@ def folder(tmp_path: Path) -> Path:
 def trained(folder: Path, text: str, conditions: EvidenceOptions = DESK) -> EvidenceRecord:
     file = folder.parent / "training.yaml"
     file.write_text(text)
-    return collect_evidence(read(folder), file, conditions)
+    return collect_evidence(read_assignment(folder), file, conditions)
 
 
 def test_the_same_settings_make_the_same_trainings(folder: Path) -> None:
@@ -65,8 +65,8 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
 def test_who_learns_one_side_only_fails_on_the_other(folder: Path) -> None:
     seen: TrainingResults = trained(folder, "train_on: [turn_a_to_b]\nbatch: 10000\n").content
     assert seen.worst_case == "turn_b_to_a"
-    assert seen.pooled("turn_a_to_b").share - seen.pooled("turn_b_to_a").share > 0.2
-    assert seen.success_lower_bound() < sum(seen.pooled(case).share for case in seen.budget.cases) / 2
+    assert seen.pooled_count("turn_a_to_b").share - seen.pooled_count("turn_b_to_a").share > 0.2
+    assert seen.success_lower_bound() < sum(seen.pooled_count(case).share for case in seen.budget.cases) / 2
 
 
 def test_a_first_good_test_stops(folder: Path) -> None:
@@ -111,7 +111,7 @@ def test_one_after_the_other_learns_both_halves_of_the_steps(folder: Path) -> No
 )
 def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, word: str) -> None:
     result = grade(
-        read(folder),
+        read_assignment(folder),
         Submission("ada", "training.yaml", {"training.yaml": text.encode()}),
         GradingOptions(Level.LIMITED),
     )
@@ -132,4 +132,4 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
     (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
     with pytest.raises(WorldError, match=message):
-        read(folder)
+        read_assignment(folder)

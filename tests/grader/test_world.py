@@ -22,7 +22,7 @@ from grader.evidence.world.process import WorldProcess
 from grader.evidence.world.world_reading import read_world_facts
 from grader.evidence.world.world_run import run_world
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.failure import FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
@@ -48,12 +48,12 @@ def change(folder: Path, name: str, old: str, new: str) -> None:
     (folder / name).write_text(text.replace(old, new))
 
 
-def seen(folder: Path, order: WorldRunSpec | None = None) -> WorldContents | WorldRun:
+def seen(folder: Path, spec: WorldRunSpec | None = None) -> WorldContents | WorldRun:
     facts, world = read_world_facts(folder / "world.yaml")
-    if order is None:
+    if spec is None:
         return WorldContents(facts)
     assert world is not None, facts.problems
-    return WorldRun(facts, run_world(world, order), order.target is not None)
+    return WorldRun(facts, run_world(world, spec), spec.target is not None)
 
 
 def judged(found: WorldContents | WorldRun, name: str, **params: Any) -> tuple[bool, str]:
@@ -243,7 +243,7 @@ def test_a_world_too_slow_to_read_is_ended(folder: Path) -> None:
     began = time.monotonic()
     process = WorldProcess(folder / "world.yaml")
     with pytest.raises(GuestError) as caught:
-        process.world(0.01)
+        process.read_world(0.01)
     assert caught.value.failure.kind is FailureKind.TIMEOUT
     assert time.monotonic() - began < 20
     assert process._child.poll() is not None
@@ -257,7 +257,7 @@ def test_a_world_that_needs_too_much_memory_is_ended(folder: Path) -> None:
         "image: noise.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\n"
     )
     with WorldProcess(folder / "world.yaml", memory=1 << 26) as process, pytest.raises(GuestError) as caught:
-        process.world()
+        process.read_world()
     assert caught.value.failure.kind is FailureKind.MEMORY
 
 
@@ -271,7 +271,9 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
         for n in range(60)
     )
     (folder / "robot.model.yaml").write_text((folder / "robot.model.yaml").read_text() + eyes)
-    result = grade(read(sheet), read_submission(folder, "world.yaml"), GradingOptions(Level.LIMITED))
+    result = grade(
+        read_assignment(sheet), read_submission(folder, "world.yaml"), GradingOptions(Level.LIMITED)
+    )
     status = {test.id: test.status for test in result.tests}
     assert status == {
         "loads": CriterionStatus.PASS,
@@ -285,7 +287,7 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
 
 def test_the_world_file_alone_is_told_what_is_missing(folder: Path) -> None:
     result = grade(
-        read(TEMPLATE),
+        read_assignment(TEMPLATE),
         read_submission(folder / "world.yaml", "world.yaml"),
         replace(DESK, level=Level.FILTERED),
     )
@@ -308,7 +310,7 @@ def test_a_teachers_mistake_has_its_place(tmp_path: Path, old: str, new: str, wo
     sheet = Path(shutil.copytree(TEMPLATE, tmp_path / "sheet"))
     change(sheet, "assignment.yaml", old, new)
     with pytest.raises(WorldError, match=word):
-        read(sheet)
+        read_assignment(sheet)
 
 
 def test_every_check_says_what_is_wrong() -> None:

@@ -24,13 +24,13 @@ from kit.world.records import World
 def main() -> None:
     """Reads the world named on the command line, then makes one run for each line."""
     file, memory = Path(sys.argv[1]), int(sys.argv[2])
-    _limit(memory)
+    _limit_resources(memory)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever else prints, it does not print into the answers
     facts, world = read_world_facts(file)
-    _say(answers, asdict(facts))
+    _send(answers, asdict(facts))
     for line in sys.stdin:
-        _say(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
+        _send(answers, asdict(run_world(_there(world), WorldRunSpec(**json.loads(line)))))
 
 
 def _there(world: World | None) -> World:
@@ -38,12 +38,12 @@ def _there(world: World | None) -> World:
     return world
 
 
-def _say(answers: Any, answer: dict[str, Any]) -> None:
+def _send(answers: Any, answer: dict[str, Any]) -> None:
     answers.write(json.dumps(answer) + "\n")
     answers.flush()
 
 
-def _limit(memory: int) -> None:
+def _limit_resources(memory: int) -> None:
     """Ends with the parent, and takes no more address space than this."""
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):

@@ -8,30 +8,30 @@ from typing import Any, Self
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top."""
-Triple = tuple[float, float, float]
+PoseTriple = tuple[float, float, float]
 
 
 class JsonRecord:
-    """A record whose fields are plain values and tuples of them; those that hold records say so in ``PARTS``."""
+    """A record whose fields are plain values and tuples of them; those that hold records say so in ``RECORD_FIELDS``."""
 
-    PARTS: Mapping[str, type[JsonRecord]] = {}
+    RECORD_FIELDS: Mapping[str, type[JsonRecord]] = {}
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> Self:
         """The record that ``dataclasses.asdict`` and JSON made of one."""
         names = [field.name for field in fields(cls)]  # type: ignore[arg-type]  # every heir is a dataclass
-        return cls(**{name: cls._part(name, content[name]) for name in names})
+        return cls(**{name: cls._field_value(name, content[name]) for name in names})
 
     @classmethod
-    def _part(cls, name: str, value: Any) -> Any:
-        part = cls.PARTS.get(name)
+    def _field_value(cls, name: str, value: Any) -> Any:
+        part = cls.RECORD_FIELDS.get(name)
         if part is not None:
             return tuple(map(part.from_json, value))
-        return _frozen(value)
+        return _as_tuple(value)
 
 
-def _frozen(value: Any) -> Any:
-    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+def _as_tuple(value: Any) -> Any:
+    return tuple(map(_as_tuple, value)) if isinstance(value, list) else value
 
 
 @dataclass(frozen=True)
@@ -65,10 +65,10 @@ class ShapeFacts(JsonRecord):
 class BodyFacts(JsonRecord):
     """One body of a model."""
 
-    PARTS = {"shapes": ShapeFacts}  # noqa: RUF012  # read only
+    RECORD_FIELDS = {"shapes": ShapeFacts}  # noqa: RUF012  # read only
     name: str
     kind: str
-    pose: Triple
+    pose: PoseTriple
     """In the model's frame."""
     shapes: tuple[ShapeFacts, ...]
 
@@ -108,10 +108,10 @@ class PluginFacts(JsonRecord):
 
 @dataclass(frozen=True)
 class ModelFacts(JsonRecord):
-    PARTS = {"bodies": BodyFacts, "joints": JointFacts, "plugins": PluginFacts}  # noqa: RUF012  # read only
+    RECORD_FIELDS = {"bodies": BodyFacts, "joints": JointFacts, "plugins": PluginFacts}  # noqa: RUF012  # read only
     name: str
     namespace: str
-    pose: Triple
+    pose: PoseTriple
     bodies: tuple[BodyFacts, ...]
     joints: tuple[JointFacts, ...]
     plugins: tuple[PluginFacts, ...]
@@ -151,7 +151,7 @@ class EndpointFacts(JsonRecord):
 class WorldFacts(JsonRecord):
     """A world as it was read; or the problems that kept it from being read, and nothing else."""
 
-    PARTS = {  # noqa: RUF012  # read only
+    RECORD_FIELDS = {  # noqa: RUF012  # read only
         "walls": WallFacts,
         "models": ModelFacts,
         "collisions": CollisionFacts,
@@ -187,7 +187,7 @@ class TopicStatistics(JsonRecord):
 class RunFacts(JsonRecord):
     """A world that ran for some seconds, or the reason why it could not."""
 
-    PARTS = {"topics": TopicStatistics}  # noqa: RUF012  # read only
+    RECORD_FIELDS = {"topics": TopicStatistics}  # noqa: RUF012  # read only
     problem: str = ""
     """Why it did not run to its end: our driver failed, or there is nobody to drive."""
     seconds: float = 0.0

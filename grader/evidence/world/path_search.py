@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 CELL: Final = 0.02
 """m; larger where the world is."""
-MOST_CELLS: Final = 1_000
+MAX_CELLS: Final = 1_000
 """Along one side of the grid."""
-RIM: Final = 4
+MARGIN_CELLS: Final = 4
 """Cells around everything."""
 
 
@@ -26,23 +26,23 @@ def search_path(
     points = np.concatenate([walls.reshape(-1, 2), [start], [] if target is None else [target]], axis=None)
     points = points.reshape(-1, 2)
     low, size = points.min(axis=0) - radius, np.ptp(points, axis=0) + 2 * radius
-    cell = max(CELL, float(size.max()) / MOST_CELLS)
-    shape = np.ceil(size / cell).astype(int) + 2 * RIM
-    low = low - RIM * cell
+    cell = max(CELL, float(size.max()) / MAX_CELLS)
+    shape = np.ceil(size / cell).astype(int) + 2 * MARGIN_CELLS
+    low = low - MARGIN_CELLS * cell
     free = np.ones(tuple(shape), dtype=np.bool_)
     for segment in walls:
-        _block(free, segment, low, cell, radius)
+        _mark_blocked(free, segment, low, cell, radius)
 
-    def at(point: tuple[float, float]) -> tuple[int, int]:
+    def cell_at(point: tuple[float, float]) -> tuple[int, int]:
         column, row = ((np.array(point) - low) / cell).astype(int)
         return int(column), int(row)
 
-    wet = _filled(free, at(start))
-    rim = wet[0].any() or wet[-1].any() or wet[:, 0].any() or wet[:, -1].any()
-    return target is not None and bool(wet[at(target)]), bool(wet.any() and not rim)
+    reached = _connected_cells(free, cell_at(start))
+    is_open = reached[0].any() or reached[-1].any() or reached[:, 0].any() or reached[:, -1].any()
+    return target is not None and bool(reached[cell_at(target)]), bool(reached.any() and not is_open)
 
 
-def _block(
+def _mark_blocked(
     free: NDArray[np.bool_],
     segment: NDArray[np.float64],
     low: NDArray[np.float64],
@@ -62,17 +62,17 @@ def _block(
     free[first[0] : last[0], first[1] : last[1]] &= ~near
 
 
-def _filled(free: NDArray[np.bool_], start: tuple[int, int]) -> NDArray[np.bool_]:
+def _connected_cells(free: NDArray[np.bool_], start: tuple[int, int]) -> NDArray[np.bool_]:
     """The free cells that hang together with the start."""
-    wet = np.zeros_like(free)
-    wet[start] = free[start]
-    fresh = wet.copy()
-    while fresh.any():
+    reached = np.zeros_like(free)
+    reached[start] = free[start]
+    frontier = reached.copy()
+    while frontier.any():
         grown = np.zeros_like(free)
-        grown[1:] |= fresh[:-1]
-        grown[:-1] |= fresh[1:]
-        grown[:, 1:] |= fresh[:, :-1]
-        grown[:, :-1] |= fresh[:, 1:]
-        fresh = grown & free & ~wet
-        wet |= fresh
-    return wet
+        grown[1:] |= frontier[:-1]
+        grown[:-1] |= frontier[1:]
+        grown[:, 1:] |= frontier[:, :-1]
+        grown[:, :-1] |= frontier[:, 1:]
+        frontier = grown & free & ~reached
+        reached |= frontier
+    return reached

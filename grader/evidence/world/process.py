@@ -20,18 +20,18 @@ from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.limits import GIB
 
-READ_S: Final = 30.0
+READ_TIMEOUT_S: Final = 30.0
 """Until a world is read; a start on a busy machine included."""
-MEMORY: Final = 4 * GIB
+MEMORY_LIMIT: Final = 4 * GIB
 """Bytes of address space, most of which the simulator only reserves."""
-LONGEST_ANSWER: Final = 64_000_000
+MAX_ANSWER_BYTES: Final = 64_000_000
 """Bytes."""
 
 
 class WorldProcess:
     """One world in a process of its own. Everything raises GuestError when it takes too long or too much."""
 
-    def __init__(self, file: Path, memory: int = MEMORY) -> None:
+    def __init__(self, file: Path, memory: int = MEMORY_LIMIT) -> None:
         self._child = subprocess.Popen(
             [sys.executable, "-P", "-m", "grader.evidence.world.child", str(file), str(memory)],
             stdin=subprocess.PIPE,
@@ -49,20 +49,20 @@ class WorldProcess:
     ) -> None:
         self.close()
 
-    def world(self, seconds: float = READ_S) -> WorldFacts:
+    def read_world(self, seconds: float = READ_TIMEOUT_S) -> WorldFacts:
         """What was read; to be asked first, once."""
-        return WorldFacts.from_json(self._answer(seconds, "The world takes too long to read"))
+        return WorldFacts.from_json(self._await_answer(seconds, "The world takes too long to read"))
 
-    def run(self, order: WorldRunSpec, seconds: float) -> RunFacts:
+    def run(self, spec: WorldRunSpec, seconds: float) -> RunFacts:
         """One run, which may take so many seconds of the wall clock."""
         assert self._child.stdin is not None
         try:
-            self._child.stdin.write(json.dumps(asdict(order)).encode() + b"\n")
+            self._child.stdin.write(json.dumps(asdict(spec)).encode() + b"\n")
             self._child.stdin.flush()
         except OSError:
-            raise self._ended() from None
-        slow = f"{order.time_s:g} simulated seconds of this world take longer than {seconds:g} s"
-        return RunFacts.from_json(self._answer(seconds, slow))
+            raise self._exit_error() from None
+        slow = f"{spec.time_s:g} simulated seconds of this world take longer than {seconds:g} s"
+        return RunFacts.from_json(self._await_answer(seconds, slow))
 
     def close(self) -> None:
         """Ends the process and all that it started. May be called twice."""
@@ -75,7 +75,7 @@ class WorldProcess:
                     pipe.close()
         self._child.wait()
 
-    def _answer(self, seconds: float, slow: str) -> Mapping[str, Any]:
+    def _await_answer(self, seconds: float, slow: str) -> Mapping[str, Any]:
         assert self._child.stdout is not None
         end = time.monotonic() + seconds
         handle = self._child.stdout.fileno()
@@ -87,21 +87,25 @@ class WorldProcess:
                     Failure(FailureKind.TIMEOUT, f"{slow}: it has too many walls, rays or bodies.")
                 )
             more = os.read(handle, 1 << 20)
-            if not more or len(self._rest) > LONGEST_ANSWER:
-                raise self._ended()
+            if not more or len(self._rest) > MAX_ANSWER_BYTES:
+                raise self._exit_error()
             self._rest += more
         line, _, self._rest = self._rest.partition(b"\n")
         answer: Mapping[str, Any] = json.loads(line)
         return answer
 
-    def _ended(self) -> BaseException:
+    def _exit_error(self) -> BaseException:
         """Why the process is no more: for want of memory, or because we have a mistake."""
         assert self._child.stderr is not None
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(5)
-        said = b"" if self._child.poll() is None else self._child.stderr.read(1 << 16)
+        output = b"" if self._child.poll() is None else self._child.stderr.read(1 << 16)
         self.close()
-        words = said.decode("utf-8", "replace").strip()
-        if "MemoryError" in words or "ArrayMemoryError" in words or self._child.returncode == -signal.SIGKILL:
+        message = output.decode("utf-8", "replace").strip()
+        if (
+            "MemoryError" in message
+            or "ArrayMemoryError" in message
+            or self._child.returncode == -signal.SIGKILL
+        ):
             return GuestError(Failure(FailureKind.MEMORY, "The world needs too much memory."))
-        return RuntimeError(f"the process that reads worlds has ended ({self._child.returncode}):\n{words}")
+        return RuntimeError(f"the process that reads worlds has ended ({self._child.returncode}):\n{message}")

@@ -15,9 +15,9 @@ from grader.evidence.world.facts import (
     JointFacts,
     ModelFacts,
     PluginFacts,
+    PoseTriple,
     ShapeFacts,
     SightFacts,
-    Triple,
     WallFacts,
     WorldFacts,
 )
@@ -42,35 +42,35 @@ def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
         world = load_world(file)
         simulation = Simulation(world)
     except WorldError as error:
-        return WorldFacts(tuple(_without_place(str(each), file.parent) for each in error.problems)), None
+        return WorldFacts(tuple(_without_folder(str(each), file.parent) for each in error.problems)), None
     except SimulationError as error:
         return WorldFacts((f"{file.name}: {error}",)), None
-    return _facts(world, simulation), world
+    return _world_facts(world, simulation), world
 
 
-def _without_place(problem: str, folder: Path) -> str:
+def _without_folder(problem: str, folder: Path) -> str:
     """A problem without where the snapshot lies, which is nothing to tell, nor what only a command could allow."""
     said = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
     return said.removesuffix(": allow a wider one as root")
 
 
-def _facts(world: World, simulation: Simulation) -> WorldFacts:
+def _world_facts(world: World, simulation: Simulation) -> WorldFacts:
     touching = CollisionRules(world)
-    maps = {layer.name: _map(layer) for layer in world.layers if layer.walls is not None}
+    maps = {layer.name: _map_name(layer) for layer in world.layers if layer.walls is not None}
 
-    def called(thing: CollisionBody) -> tuple[str, str]:
+    def thing_name(thing: CollisionBody) -> tuple[str, str]:
         return ("", maps[thing.body]) if thing.model is None else (thing.model, thing.body)
 
     return WorldFacts(
         layers=tuple(world.layer_bits),
-        walls=tuple(_walls(layer) for layer in world.layers if layer.walls is not None),
-        models=tuple(map(_model, world.models)),
+        walls=tuple(_wall_facts(layer) for layer in world.layers if layer.walls is not None),
+        models=tuple(map(_model_facts, world.models)),
         collisions=tuple(
-            CollisionFacts(called(a), called(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation)
+            CollisionFacts(thing_name(a), thing_name(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation)
             for a, b, verdict in touching.contact_rules()
         ),
         sights=tuple(
-            SightFacts(laser.name, called(thing), seeing.is_visible, seeing.explanation)
+            SightFacts(laser.name, thing_name(thing), seeing.is_visible, seeing.explanation)
             for laser, thing, seeing in touching.visibilities()
         ),
         endpoints=tuple(
@@ -78,16 +78,16 @@ def _facts(world: World, simulation: Simulation) -> WorldFacts:
             for model in world.models
             for end in simulation.model_endpoints(model.name)
         ),
-        picture=picture(world, simulation),
+        picture=draw_world(world, simulation),
     )
 
 
-def _map(layer: Layer) -> str:
+def _map_name(layer: Layer) -> str:
     assert layer.walls is not None
     return layer.walls.file.name.partition(".")[0]
 
 
-def _walls(layer: Layer) -> WallFacts:
+def _wall_facts(layer: Layer) -> WallFacts:
     assert layer.walls is not None
     points = layer.walls.segments.reshape(-1, 2)
     box: Box | None = None
@@ -95,26 +95,28 @@ def _walls(layer: Layer) -> WallFacts:
         (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         box = left, bottom, right, top
     return WallFacts(
-        _map(layer), layer.walls.drawing_file.name, layer.names, box, len(layer.walls.local_segments)
+        _map_name(layer), layer.walls.drawing_file.name, layer.names, box, len(layer.walls.local_segments)
     )
 
 
-def _model(model: records.Model) -> ModelFacts:
+def _model_facts(model: records.Model) -> ModelFacts:
     poses = {body.name: body.pose for body in model.bodies}
     return ModelFacts(
         model.name,
         model.namespace,
-        _three(model.pose),
+        _pose_triple(model.pose),
         tuple(
-            BodyFacts(body.name, body.kind, _three(body.pose), tuple(map(_shape, body.footprints)))
+            BodyFacts(
+                body.name, body.kind, _pose_triple(body.pose), tuple(map(_shape_facts, body.footprints))
+            )
             for body in model.bodies
         ),
-        tuple(_joint(joint, poses) for joint in model.joints),
-        tuple(map(_device, model.plugins)),
+        tuple(_joint_facts(joint, poses) for joint in model.joints),
+        tuple(map(_plugin_facts, model.plugins)),
     )
 
 
-def _shape(footprint: records.Footprint) -> ShapeFacts:
+def _shape_facts(footprint: records.Footprint) -> ShapeFacts:
     shape = footprint.shape
     if isinstance(shape, Circle):
         (x, y), radius = shape.center, shape.radius
@@ -125,7 +127,7 @@ def _shape(footprint: records.Footprint) -> ShapeFacts:
     return ShapeFacts(kind, box, footprint.sensor, footprint.collision, footprint.density)
 
 
-def _joint(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
+def _joint_facts(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
     one, other = joint.anchors
     return JointFacts(
         joint.name,
@@ -135,7 +137,7 @@ def _joint(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
     )
 
 
-def _device(plugin: records.PluginSpec) -> PluginFacts:
+def _plugin_facts(plugin: records.PluginSpec) -> PluginFacts:
     params = plugin.params
     if isinstance(params, LaserParams):
         rays = params.directions
@@ -151,7 +153,7 @@ def all_wall_segments(world: World) -> FloatArray:
     return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
 
 
-def picture(
+def draw_world(
     world: World,
     simulation: Simulation,
     *,
@@ -161,14 +163,14 @@ def picture(
     """The world as it stands, in plain characters."""
     scene = Scene(
         walls=all_wall_segments(world),
-        bodies=tuple(_bodies(simulation)),
+        bodies=tuple(_scene_bodies(simulation)),
         targets=() if target is None else (target,),
         trails=() if trail is None else (trail,),
     )
     return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))
 
 
-def _bodies(simulation: Simulation) -> Iterator[Body]:
+def _scene_bodies(simulation: Simulation) -> Iterator[Body]:
     """One a model: its footprints, and the pose of its first body."""
     outlines = simulation.outlines()
     for name in simulation.model_names:
@@ -182,5 +184,5 @@ def _bodies(simulation: Simulation) -> Iterator[Body]:
         )
 
 
-def _three(pose: Pose) -> Triple:
+def _pose_triple(pose: Pose) -> PoseTriple:
     return pose.x, pose.y, pose.theta

@@ -11,7 +11,7 @@ import numpy as np
 
 from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
 from grader.evidence.world.path_search import search_path
-from grader.evidence.world.world_reading import all_wall_segments, picture
+from grader.evidence.world.world_reading import all_wall_segments, draw_world
 from kit.geometry import convex_hull
 from kit.host.failure import GuestError
 from kit.host.node_process import Guest
@@ -34,7 +34,7 @@ STEP: Final = 0.01
 """s"""
 SETTLE_S: Final = 0.5
 """Time that joints get to pull their bodies together."""
-LOOK_EVERY: Final = 5
+RECORD_INTERVAL: Final = 5
 """Ticks between two points of the trail, and two looks at the joints."""
 WORLD_NODE: Final = "/flatland_server"
 
@@ -45,9 +45,9 @@ class TopicRecorder:
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[str, int] = {}
         self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
-        self.stop = graph.add_message_listener(self._hear)
+        self.stop = graph.add_message_listener(self._on_message)
 
-    def _hear(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
+    def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         if node.handle.full_name != WORLD_NODE:
             return
         count = self._counts[name] = self._counts.get(name, 0) + 1
@@ -90,7 +90,7 @@ class PathRecorder(Observer):
         self.joint_gap, self.widest_joint = 0.0, ""
 
     def on_step(self, simulation: Simulation) -> None:
-        if simulation.tick % LOOK_EVERY:
+        if simulation.tick % RECORD_INTERVAL:
             return
         if self._model is not None:
             x, y, _ = simulation.pose(self._model.name)
@@ -103,76 +103,79 @@ class PathRecorder(Observer):
                 one, other = (
                     poses[model.name, end.body].transform_point(*end.point) for end in joint.anchors
                 )
-                if (apart := math.dist(one, other)) > self.joint_gap:
-                    self.joint_gap, self.widest_joint = apart, joint.name
+                if (gap := math.dist(one, other)) > self.joint_gap:
+                    self.joint_gap, self.widest_joint = gap, joint.name
 
 
-def run_world(world: World, order: WorldRunSpec) -> RunFacts:
+def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     """The world for as long as the order says, or until the target is reached."""
     graph = Graph(log_sink=lambda record: None)
-    simulation = Simulation(world, seed=order.seed, step_size=STEP)
+    simulation = Simulation(world, seed=spec.seed, step_size=STEP)
     runner = Runner(simulation, graph)
     driving = [m.name for m in world.models if any(p.type.endswith("Drive") for p in m.plugins)]
-    wanted = order.robot or next(iter(driving), "")
+    wanted = spec.robot or next(iter(driving), "")
     model = next((each for each in world.models if each.name == wanted), None)
     case = None
-    if order.target is not None and model is not None:
-        case = MapCase("", model.pose, order.target, order.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
+    if spec.target is not None and model is not None:
+        case = MapCase("", model.pose, spec.target, spec.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
     scenario = Place(str(world.file), "", world, None if model is None else model.name, case)
-    metrics, eye, ear = (
+    metrics, path_recorder, topic_recorder = (
         MetricsRecorder.for_scenario(scenario),
         PathRecorder(model, world),
         TopicRecorder(graph),
     )
-    runner.observers += [metrics, eye]
-    problem, ticks = _drive(runner, metrics, order, scenario, wanted in driving), simulation.tick
-    ear.stop()
+    runner.observers += [metrics, path_recorder]
+    problem, ticks = _drive(runner, metrics, spec, scenario, wanted in driving), simulation.tick
+    topic_recorder.stop()
     score, radius = metrics.metrics, 0.0 if model is None else model_width(model) / 2
     way = closed = False
     if model is not None:
-        way, closed = search_path(all_wall_segments(world), model.pose[:2], order.target, radius)
-    disc = None if order.target is None else Disc(*order.target, order.radius)
+        way, closed = search_path(all_wall_segments(world), model.pose[:2], spec.target, radius)
+    disc = None if spec.target is None else Disc(*spec.target, spec.radius)
     return RunFacts(
         problem=problem,
         seconds=ticks * STEP,
-        topics=ear.statistics(),
+        topics=topic_recorder.statistics(),
         reached_s=score.reached_s,
         target_distance=score.target_m
         if score.target_m is not None and math.isfinite(score.target_m)
         else None,
         distance=score.distance_m,
         bumps=score.bumps,
-        joint_gap=eye.joint_gap,
-        widest_joint=eye.widest_joint,
+        joint_gap=path_recorder.joint_gap,
+        widest_joint=path_recorder.widest_joint,
         is_reachable=way,
         is_enclosed=closed,
-        picture=picture(
-            world, simulation, target=disc, trail=np.array(eye.trail, dtype=np.float64).reshape(-1, 2)
+        picture=draw_world(
+            world,
+            simulation,
+            target=disc,
+            trail=np.array(path_recorder.trail, dtype=np.float64).reshape(-1, 2),
         ),
     )
 
 
 def _drive(
-    runner: Runner, metrics: MetricsRecorder, order: WorldRunSpec, scenario: Place, drives: bool
+    runner: Runner, metrics: MetricsRecorder, spec: WorldRunSpec, scenario: Place, drives: bool
 ) -> str:
     """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
     with ExitStack() as stack:
         guest: Guest | None = None
-        if order.driver:
+        if spec.driver:
             if scenario.driven is None or not drives:
-                wanted = f"The model {order.robot}" if order.robot else "No model of this world"
-                return f"{wanted} has {'no' if order.robot else 'a'} drive for our driver to move."
+                wanted = f"The model {spec.robot}" if spec.robot else "No model of this world"
+                return f"{wanted} has {'no' if spec.robot else 'a'} drive for our driver to move."
             try:
                 guest = Guest.start(
-                    runner.graph, Path(order.driver), args=controller_arguments(scenario), seed=order.seed
+                    runner.graph, Path(spec.driver), args=controller_arguments(scenario), seed=spec.seed
                 )
             except GuestError as error:
                 return f"Our driver does not start: {error}"
             runner.participants.append(stack.enter_context(guest))
         ends = [when_failed(guest)] if guest is not None else []
-        if order.until_reached:
+        if spec.until_reached:
             ends.append(when_reached(metrics))
-        end = run_until(runner, limit_s=order.time_s, ends=ends)
+        end = run_until(runner, limit_s=spec.time_s, ends=ends)
         if guest is not None and end is EndReason.FAILED:
             return f"Our driver stopped: {guest.failure}"
     return ""
@@ -186,7 +189,7 @@ def model_width(model: Model) -> float:
             if footprint.sensor or not footprint.collision:
                 continue
             shape = footprint.shape
-            corners = shape.points if not isinstance(shape, Circle) else _rim(shape)
+            corners = shape.points if not isinstance(shape, Circle) else _circle_points(shape)
             points += [body.pose.transform_point(*corner) for corner in corners]
     hull = np.array(convex_hull(tuple(points))).reshape(-1, 2) if len(points) > 2 else np.empty((0, 2))
     if len(hull) < 3:
@@ -196,7 +199,7 @@ def model_width(model: Model) -> float:
     return float(min(np.ptp(hull @ direction) for direction in across))
 
 
-def _rim(shape: Circle) -> list[tuple[float, float]]:
+def _circle_points(shape: Circle) -> list[tuple[float, float]]:
     (x, y), radius = shape.center, shape.radius
     turns = (math.tau * i / 16 for i in range(16))
     return [(x + radius * math.cos(turn), y + radius * math.sin(turn)) for turn in turns]

@@ -15,7 +15,7 @@ import pytest
 
 from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
-from grader.reading import read
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import Input, Recording, load, save
@@ -42,7 +42,7 @@ Edit = Callable[[dict[str, Any]], None]
 def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     folder = tmp_path_factory.mktemp("forward")
     (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE)
-    return read(folder)
+    return read_assignment(folder)
 
 
 @pytest.fixture(scope="module")
@@ -212,7 +212,7 @@ def test_a_sheet_without_a_place_is_told_so(tmp_path: Path) -> None:
 
     (tmp_path / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace("place: simple", "place: simpel"))
     with pytest.raises(WorldError, match="simple"):
-        read(tmp_path)
+        read_assignment(tmp_path)
 
 
 def test_the_solutions_are_as_their_script_makes_them(tmp_path: Path) -> None:
