@@ -52,7 +52,7 @@ MARGIN: Final = 18
 
 
 @click.command()
-@click.argument("kind", require_level=False, default="controller")
+@click.argument("kind", required=False, default="controller")
 def checks(kind: str) -> None:
     """List the checks that an assignment of this KIND may use: what each measures, what earns nothing and what earns
     everything unless `share` says otherwise, and what `with` may set.
