@@ -131,7 +131,7 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
 @options.assignment
 @click.option(
     "--kit",
-    require_level=True,
+    required=True,
     metavar="ADDRESS[@VERSION]",
     help="Where the kit is cloned from: https://..., perhaps with a branch or tag.",
 )

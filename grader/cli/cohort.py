@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     "--queue",
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
-    require_level=True,
+    required=True,
     help="Where jobs, results and the gradebook lie; the same folder again goes on.",
 )
 @click.option(

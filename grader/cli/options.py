@@ -30,7 +30,7 @@ assignment: Decorator = click.option(
     "--assignment",
     "folder",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    require_level=True,
+    required=True,
     help="The assignment's folder.",
 )
 level: Decorator = click.option(
@@ -45,11 +45,11 @@ secret: Decorator = click.option(
 
 def load_assignment(folder: Path) -> Assignment:
     """The assignment, or its mistakes and exit code 2."""
-    from grader.reading import load_assignment
+    from grader.reading import read_assignment
     from kit.world.problems import WorldError
 
     try:
-        return load_assignment(folder)
+        return read_assignment(folder)
     except WorldError as error:
         fail(str(error))
 

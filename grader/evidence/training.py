@@ -128,7 +128,7 @@ class TrainingResults:
     settings: TrainingSettings
     trainings: tuple[TrainingResult, ...]
 
-    def pooled(self, case: str) -> CaseCount:
+    def pooled_count(self, case: str) -> CaseCount:
         """Of all exams."""
         counts = [training.exam[case] for training in self.trainings]
         return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
