@@ -66,7 +66,9 @@ def _world_facts(world: World, simulation: Simulation) -> WorldFacts:
         walls=tuple(_wall_facts(layer) for layer in world.layers if layer.walls is not None),
         models=tuple(map(_model_facts, world.models)),
         collisions=tuple(
-            CollisionFacts(thing_name(a), thing_name(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation)
+            CollisionFacts(
+                thing_name(a), thing_name(b), verdict.kind is ContactKind.COLLIDES, verdict.explanation
+            )
             for a, b, verdict in touching.contact_rules()
         ),
         sights=tuple(
