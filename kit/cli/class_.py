@@ -13,8 +13,8 @@ import click
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.school.report.document import Report
-    from kit.school.report.measures import Item
+    from kit.school.report.document import ClassReport
+    from kit.school.report.measures import ReportItem
 
 WAYS = ("mean", "half", "scale")
 
@@ -104,9 +104,9 @@ def report(
     student count once. Students are called S1, S2, ... unless --names is given.
     """
     from kit.plain_text import suggestion
-    from kit.school.report.class_data import gather
-    from kit.school.report.class_report import CHAPTERS, class_report, set_up
-    from kit.school.report.students import read_roll
+    from kit.school.report.class_data import build_class_data
+    from kit.school.report.class_report import CHAPTERS, build_report, prepare_report
+    from kit.school.report.students import read_roster
     from kit.school.survey.reading import read_form
 
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
@@ -114,13 +114,13 @@ def report(
         if each not in CHAPTERS:
             options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTERS)}")
     with _mistakes_explained():
-        roll = read_roll(files, names=names)
-        if not roll.students:
-            click.echo("\n".join(roll.cautions), err=True)
+        roster = read_roster(files, names=names)
+        if not roster.students:
+            click.echo("\n".join(roster.warnings), err=True)
             click.echo("No file holds a student's progress. `kit progress export FILE` makes one.", err=True)
             raise SystemExit(EMPTY)
-        data = gather(roll, read_form(), _items())
-        made = class_report(set_up(data, way=division), roll.files, wanted)
+        data = build_class_data(roster, read_form(), _items())
+        made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
         _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
@@ -146,18 +146,18 @@ def study(
         _give_out(made, svg_folder, html_file, csv_folder, json_file, glyphs)
 
 
-def _items() -> Mapping[str, Item]:
+def _items() -> Mapping[str, ReportItem]:
     """The questions of the kit's quiz with their options; none where the lessons are not there."""
     from kit.school.quiz.reading import read_bank
-    from kit.school.report.measures import Item
+    from kit.school.report.measures import ReportItem
 
     try:
         bank = read_bank()
     except FileNotFoundError:
         return {}
-    ordered = (*bank.twelve, *(item for item in bank.items if not item.idea))
+    ordered = (*bank.quiz_items, *(item for item in bank.items if not item.idea))
     return {
-        item.id: Item(
+        item.id: ReportItem(
             item.id, item.topic.value, tuple(option.text for option in item.options), bool(item.idea)
         )
         for item in ordered
@@ -165,7 +165,7 @@ def _items() -> Mapping[str, Item]:
 
 
 def _give_out(
-    made: Report,
+    made: ClassReport,
     svg_folder: Path | None,
     html_file: Path | None,
     csv_folder: Path | None,

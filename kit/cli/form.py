@@ -17,8 +17,8 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
-    from kit.school.survey.form_session import Answers
-    from kit.school.survey.questions import Form, Phase, Question, Value
+    from kit.school.survey.form_session import FormAnswers
+    from kit.school.survey.questions import AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
 
 WIDTH: Final = 78
 
@@ -43,8 +43,8 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
     when you export your progress and hand it in.
     """
     from kit.school.progress import EventKind, ProgressJournal
-    from kit.school.survey.form_session import Answers
-    from kit.school.survey.questions import Phase
+    from kit.school.survey.form_session import FormAnswers
+    from kit.school.survey.questions import SurveyPhase
     from kit.school.survey.reading import read_form
     from kit.workspace import open_workspace
 
@@ -53,65 +53,69 @@ def command(phase: str | None, again: bool, show: bool, workspace: Path | None) 
         with ProgressJournal(open_workspace(workspace).folder) as journal:
             if journal.notice:
                 click.echo(journal.notice, err=True)
-            answers = Answers.of(form, journal.events(EventKind.FORM))
-            chosen = Phase(phase) if phase else _phase_now(form, answers, journal)
+            answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
+            chosen = SurveyPhase(phase) if phase else _phase_now(form, answers, journal)
             if show:
-                _show(form, answers, [Phase(phase)] if phase else list(Phase))
+                _show(form, answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
             else:
                 _ask_all(form, chosen, journal, again=again)
 
 
-def _phase_now(form: Form, answers: Answers, journal: ProgressJournal) -> Phase:
+def _phase_now(form: SurveyForm, answers: FormAnswers, journal: ProgressJournal) -> SurveyPhase:
     """Before, until that is done or a lesson was begun without it; then after; and once the quiz is taken after that."""
     from kit.school.progress import EventKind
-    from kit.school.quiz.answers import Occasion, answers_of
-    from kit.school.survey.form_session import still_open
-    from kit.school.survey.questions import Phase
+    from kit.school.quiz.answers import Occasion, answers_from_events
+    from kit.school.survey.form_session import open_questions
+    from kit.school.survey.questions import SurveyPhase
 
-    if answers.started(Phase.AFTER) and not still_open(form, answers, Phase.AFTER):
+    if answers.has_started(SurveyPhase.AFTER) and not open_questions(form, answers, SurveyPhase.AFTER):
         last = max(
             each.timestamp
             for each in journal.events(EventKind.FORM)
-            if each.content.get("phase") == Phase.AFTER.value
+            if each.content.get("phase") == SurveyPhase.AFTER.value
         )
         quiz = [
-            each for each in answers_of(journal.events(EventKind.ANSWER)) if each.occasion is Occasion.QUIZ
+            each
+            for each in answers_from_events(journal.events(EventKind.ANSWER))
+            if each.occasion is Occasion.QUIZ
         ]
         if any(each.time > datetime.fromisoformat(last) for each in quiz):
-            return Phase.QUIZZED
-    if answers.started(Phase.AFTER) or not still_open(form, answers, Phase.BEFORE):
-        return Phase.AFTER
-    begun = answers.started(Phase.BEFORE) or not journal.events(EventKind.ATTEMPT)
-    return Phase.BEFORE if begun else Phase.AFTER
+            return SurveyPhase.QUIZZED
+    if answers.has_started(SurveyPhase.AFTER) or not open_questions(form, answers, SurveyPhase.BEFORE):
+        return SurveyPhase.AFTER
+    begun = answers.has_started(SurveyPhase.BEFORE) or not journal.events(EventKind.ATTEMPT)
+    return SurveyPhase.BEFORE if begun else SurveyPhase.AFTER
 
 
-def _ask_all(form: Form, phase: Phase, journal: ProgressJournal, *, again: bool) -> None:
+def _ask_all(form: SurveyForm, phase: SurveyPhase, journal: ProgressJournal, *, again: bool) -> None:
     """Asks what is open. Which questions come can change with each answer, so they are looked up each time."""
     from kit.school.progress import EventKind
-    from kit.school.survey.form_session import Answers, asked, still_open
+    from kit.school.survey.form_session import FormAnswers, asked_questions, open_questions
 
-    done: list[Question] = []
+    done: list[SurveyQuestion] = []
     """In this sitting, for going back."""
     lead = ""
-    back_to: Question | None = None
+    back_to: SurveyQuestion | None = None
     introduced = False
     while True:
-        answers = Answers.of(form, journal.events(EventKind.FORM))
-        ahead = asked(form, answers, phase) if again else still_open(form, answers, phase)
+        answers = FormAnswers.from_events(form, journal.events(EventKind.FORM))
+        ahead = asked_questions(form, answers, phase) if again else open_questions(form, answers, phase)
         question = back_to or next((each for each in ahead if each not in done), None)
         if question is None:
             break
         if not introduced:
             _introduce(form, phase, len(ahead))
             introduced = True
-        if question.lead and question.lead != lead:
+        if question.group_text and question.group_text != lead:
             _lead(question)
-        lead = question.lead
-        number = asked(form, answers, phase).index(question) + 1
-        reply = _ask(question, answers.value(question.id, phase), number, len(asked(form, answers, phase)))
+        lead = question.group_text
+        number = asked_questions(form, answers, phase).index(question) + 1
+        reply = _ask(
+            question, answers.value(question.id, phase), number, len(asked_questions(form, answers, phase))
+        )
         back_to = None
         if reply is None:
-            left = len(still_open(form, answers, phase))
+            left = len(open_questions(form, answers, phase))
             click.echo(f"Kept. {_count(left)} left; `kit form {phase.value}` goes on here.")
             return
         if reply.back:
@@ -134,16 +138,16 @@ def _ask_all(form: Form, phase: Phase, journal: ProgressJournal, *, again: bool)
 class _Reply:
     """What came back from one question: an answer, or the wish to go back."""
 
-    value: Value = None
+    value: AnswerValue = None
     back: bool = False
 
 
-def _ask(question: Question, was: Value, number: int, of: int) -> _Reply | None:
+def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _Reply | None:
     """One question until it is answered; None where the student leaves."""
-    from kit.school.survey.form_session import NotAnAnswer, parse
+    from kit.school.survey.form_session import InvalidAnswer, parse_answer
 
     head = f"{number}/{of}  "
-    if question.lead:
+    if question.group_text:
         _say(head, question.text)
     else:
         _lead(question, head)
@@ -162,8 +166,8 @@ def _ask(question: Question, was: Value, number: int, of: int) -> _Reply | None:
         if not word and was is not None:
             return _Reply(was)
         try:
-            return _Reply(parse(question, line))
-        except NotAnAnswer as error:
+            return _Reply(parse_answer(question, line))
+        except InvalidAnswer as error:
             click.echo(f"  {error}")
 
 
@@ -187,15 +191,15 @@ _NEXT: Final = {"after": " Now the quiz: `kit quiz`; then `kit form quizzed`, wh
 _WHEN: Final = {"before": "before the lessons", "after": "after the lessons", "quizzed": "after the quiz"}
 
 
-def _introduce(form: Form, phase: Phase, count: int) -> None:
+def _introduce(form: SurveyForm, phase: SurveyPhase, count: int) -> None:
     click.echo(f"{form.title} ({_WHEN[phase.value]}): {_count(count)}.")
     click.echo("Enter leaves one blank, b goes back, q leaves; each answer is kept at once.")
 
 
-def _lead(question: Question, head: str = "") -> None:
+def _lead(question: SurveyQuestion, head: str = "") -> None:
     """What is asked of a group of rows, with its scale; or one question that stands alone."""
     click.echo()
-    _say(head, question.lead or question.text)
+    _say(head, question.group_text or question.text)
     if question.low:
         click.echo(f"  1 {question.low} ... 7 {question.high}")
     for number, option in enumerate(question.options, 1):
@@ -206,22 +210,24 @@ def _say(head: str, text: str) -> None:
     click.echo("\n".join(wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))))
 
 
-def _show(form: Form, answers: Answers, phases: list[Phase]) -> None:
-    from kit.school.survey.form_session import asked
+def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:
+    from kit.school.survey.form_session import asked_questions
 
     for phase in phases:
-        if not answers.started(phase):
+        if not answers.has_started(phase):
             click.echo(f"{phase.value}: nothing answered yet.")
             continue
         click.echo(f"{phase.value}:")
         lead = ""
-        for question in asked(form, answers, phase):
-            if question.lead and question.lead != lead:
-                click.echo("\n".join(wrap(question.lead, WIDTH, initial_indent="  ", subsequent_indent="  ")))
-            lead = question.lead
+        for question in asked_questions(form, answers, phase):
+            if question.group_text and question.group_text != lead:
+                click.echo(
+                    "\n".join(wrap(question.group_text, WIDTH, initial_indent="  ", subsequent_indent="  "))
+                )
+            lead = question.group_text
             value = answers.value(question.id, phase)
-            said = shown(value) if answers.has(question.id, phase) else "not asked yet"
-            indent = "    " if question.lead else "  "
+            said = shown(value) if answers.is_answered(question.id, phase) else "not asked yet"
+            indent = "    " if question.group_text else "  "
             text = f"{question.text}: {said}"
             click.echo(
                 options.sayable(
@@ -230,7 +236,7 @@ def _show(form: Form, answers: Answers, phases: list[Phase]) -> None:
             )
 
 
-def shown(value: Value) -> str:
+def shown(value: AnswerValue) -> str:
     """An answer as it is told."""
     if isinstance(value, bool):
         return "yes" if value else "no"

@@ -15,9 +15,9 @@ from kit.cli import options
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
-    from kit.school.game.levels import Level
-    from kit.school.game.player_progress import LevelStanding
-    from kit.school.game.race import Driver, Finish
+    from kit.school.game.levels import GameLevel
+    from kit.school.game.player_progress import LevelProgress
+    from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.workspace import Workspace
 
@@ -30,7 +30,7 @@ PLACES = 5
 def _opened(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace]]:
     """The journal and the desk; every mistake ends the verb with a message."""
     from kit.controllers import prepare_workspace
-    from kit.school.game.leaderboard import FameError
+    from kit.school.game.leaderboard import LeaderboardError
     from kit.school.game.levels import UnknownLevel
     from kit.school.progress import ProgressError, ProgressJournal
     from kit.workspace import WorkspaceError
@@ -42,15 +42,22 @@ def _opened(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace
             if journal.notice:
                 click.echo(journal.notice, err=True)
             yield journal, desk
-    except (ProgressError, WorkspaceError, WorldError, UnknownLevel, FameError, FileNotFoundError) as error:
+    except (
+        ProgressError,
+        WorkspaceError,
+        WorldError,
+        UnknownLevel,
+        LeaderboardError,
+        FileNotFoundError,
+    ) as error:
         options.fail(str(error))
 
 
-def _standings(journal: ProgressJournal) -> tuple[LevelStanding, ...]:
+def _standings(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
     from kit.school.game.levels import all_levels
-    from kit.school.game.player_progress import standings
+    from kit.school.game.player_progress import level_progress
 
-    return standings(all_levels(), journal.events())
+    return level_progress(all_levels(), journal.events())
 
 
 @click.group(invoke_without_command=True)
@@ -88,7 +95,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 def play(workspace: Path | None, level: str, plain: bool) -> None:
     """Drive LEVEL (its name or number) by hand."""
     from kit.school.game.levels import find_level
-    from kit.school.game.race import Driver
+    from kit.school.game.race import DriverKind
 
     with _opened(workspace) as (journal, desk):
         chosen = find_level(level)
@@ -101,7 +108,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 
         click.echo(f"{chosen.title}. {chosen.hint} Par is {chosen.par:g} s.")
         finish, recording = drive_by_lines(chosen, desk)
-        _note(journal, desk, chosen, Driver.KEYS, finish, recording)
+        _note(journal, desk, chosen, DriverKind.KEYS, finish, recording)
 
 
 @command.command("race")
@@ -114,7 +121,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
     from kit.school.game.levels import find_level
-    from kit.school.game.race import Driver, race, race_agent
+    from kit.school.game.race import DriverKind, race_agent, race_controller
 
     if (controller is None) == (agent is None):
         options.fail(
@@ -124,12 +131,12 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
         chosen = find_level(level)
         try:
             if controller is not None:
-                driver = Driver.CONTROLLER
-                finish, recording = race(
+                driver = DriverKind.CONTROLLER
+                finish, recording = race_controller(
                     chosen, find_controller(controller, desk.controllers), on_second=_tell
                 )
             else:
-                driver = Driver.AGENT
+                driver = DriverKind.AGENT
                 finish, recording = race_agent(chosen, _policy(agent or "", desk), on_second=_tell)
         except (LookupError, PolicyError) as error:
             options.fail(str(error))
@@ -142,11 +149,11 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.pass_obj
 def fame(workspace: Path | None) -> None:
     """Show who was quickest on this machine, of those who joined. Each time is what that player's own kit noted."""
-    from kit.school.game.leaderboard import entries, hall, has_joined
+    from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries
     from kit.school.game.levels import all_levels
 
     with _opened(workspace) as (_progress, _):
-        found = entries(hall())
+        found = read_entries(leaderboard_folder())
         for level in all_levels():
             best = [each for each in found if each.level == level.id]
             if best:
@@ -156,7 +163,7 @@ def fame(workspace: Path | None) -> None:
                 click.echo(f"  {place}. {each.name:<24} {each.seconds:>7.2f} s  by {each.driver}{me}")
         if not found:
             click.echo("Nobody is in the hall of fame yet.")
-        if not has_joined(hall()):
+        if not has_joined(leaderboard_folder()):
             click.echo(
                 "You are not in it. `kit game join` puts your name and times there; `kit game leave` takes them out."
             )
@@ -167,64 +174,66 @@ def fame(workspace: Path | None) -> None:
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
     """Put your name and best times where all users of this machine can see them."""
-    from kit.school.game.leaderboard import hall, publish
+    from kit.school.game.leaderboard import leaderboard_folder, publish_entry
 
     with _opened(workspace) as (journal, _):
         called = name or journal.student_name
         if not called or not called.isprintable():
             options.fail("Say what to be called: `kit game join --name Ada`.")
-        publish(hall(), called, _standings(journal))
-        click.echo(f"{called} is in the hall of fame of this machine ({hall()}). `kit game leave` undoes it.")
+        publish_entry(leaderboard_folder(), called, _standings(journal))
+        click.echo(
+            f"{called} is in the hall of fame of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
+        )
 
 
 @command.command("leave")
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
     """Take your name and times out of the hall of fame."""
-    from kit.school.game.leaderboard import hall, leave
+    from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
     with _opened(workspace):
-        leave(hall())
+        remove_own_entry(leaderboard_folder())
         click.echo("You are not in the hall of fame.")
 
 
-def _list(found: tuple[LevelStanding, ...]) -> None:
+def _list(found: tuple[LevelProgress, ...]) -> None:
     for number, each in enumerate(found, 1):
         stars = "".join(STAR if has else NO_STAR for has in each.stars)
-        times = ", ".join(f"{driver} {time:.1f} s" for driver, time in each.best.items())
-        state = times if each.is_open else f"opens after {' or '.join(each.level.after)}"
+        times = ", ".join(f"{driver} {time:.1f} s" for driver, time in each.best_times.items())
+        state = times if each.is_open else f"opens after {' or '.join(each.level.opened_by)}"
         level = each.level
         click.echo(f"{number:>2}  {stars}  {level.id:<18} par {level.par:>4g} s  {state}")
-    have = sum(each.count for each in found)
+    have = sum(each.star_count for each in found)
     click.echo(f"\n{have} of {3 * len(found)} stars. `kit game play NAME` drives one by hand.")
 
 
 def _note(
     journal: ProgressJournal,
     desk: Workspace,
-    level: Level,
-    driver: Driver,
-    finish: Finish,
+    level: GameLevel,
+    driver: DriverKind,
+    finish: RaceFinish,
     recording: Recording,
 ) -> None:
     """Keeps a drive, and says what it earned."""
-    from kit.school.game.drive_records import note
-    from kit.school.game.ghosts import reference_ghost
+    from kit.school.game.drive_records import record_drive
+    from kit.school.game.ghosts import load_reference_ghost
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    noted = note(journal, desk, level, driver, finish, recording)
+    noted = record_drive(journal, desk, level, driver, finish, recording)
     end = f"reached the target after {finish.seconds:.2f} s" if finish.reached else "did not reach the target"
     click.echo(f"{level.title}: {end}, {finish.bumps} bumps.")
     for title, has in zip(
         ("finished", "touched nothing", f"under par ({level.par:g} s)"), noted.stars, strict=True
     ):
         click.echo(f"  {STAR if has else NO_STAR} {title}")
-    if noted.kept is not None:
-        click.echo(f"Your best so far with {driver}; watch it: kit replay {noted.kept}")
-    ghost = reference_ghost(desk, level)
+    if noted.recording is not None:
+        click.echo(f"Your best so far with {driver}; watch it: kit replay {noted.recording}")
+    ghost = load_reference_ghost(desk, level)
     if ghost is not None:
         click.echo(f"The reference takes {ghost.seconds:.2f} s.")
 

@@ -13,9 +13,9 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.school.progress import ProgressEvent, ProgressJournal
-    from kit.school.quiz.answers import Choice
-    from kit.school.quiz.items import Bank, Item
-    from kit.school.quiz.quiz_session import Plan, Sitting
+    from kit.school.quiz.answers import AnswerChoice
+    from kit.school.quiz.items import QuestionBank, QuizItem
+    from kit.school.quiz.quiz_session import QuestionPlan, QuizSession
     from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
@@ -71,18 +71,18 @@ def command(
 
     try:
         with _progress(workspace) as journal:
-            sitting = _sitting(journal, bank, plan, again)
-            if sitting.item is None:
-                _print_finished(sitting)
+            session = _sitting(journal, bank, plan, again)
+            if session.item is None:
+                _print_finished(session)
             elif terminal.plain.value:
-                ask_plainly(sitting)
+                ask_plainly(session)
             else:
-                _ask_on_screen(sitting, terminal)
+                _ask_on_screen(session, terminal)
     except ProgressError as error:
         options.fail(str(error))
 
 
-def _bank() -> Bank:
+def _bank() -> QuestionBank:
     from kit.school.quiz.reading import read_bank
     from kit.world.problems import WorldError
 
@@ -92,14 +92,14 @@ def _bank() -> Bank:
         options.fail(str(error))
 
 
-def _plan(bank: Bank, lesson: str | None, today: bool) -> Plan:
+def _plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
     from kit.school.quiz.items import UnknownLesson
-    from kit.school.quiz.quiz_session import Today, of_lesson, the_twelve
+    from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, quiz_plan
 
     try:
         if today:
-            return Today(bank)
-        return the_twelve(bank) if lesson is None else of_lesson(bank, bank.find_lesson(lesson))
+            return PracticePlan(bank)
+        return quiz_plan(bank) if lesson is None else lesson_plan(bank, bank.find_lesson(lesson))
     except UnknownLesson as error:
         options.fail(str(error))
 
@@ -117,18 +117,18 @@ def _progress(workspace: Path | None) -> ProgressJournal:
     return journal
 
 
-def _sitting(journal: ProgressJournal, bank: Bank, plan: Plan, again: bool) -> Sitting:
-    from kit.school.quiz.quiz_session import Sitting, student_seed
+def _sitting(journal: ProgressJournal, bank: QuestionBank, plan: QuestionPlan, again: bool) -> QuizSession:
+    from kit.school.quiz.quiz_session import QuizSession, student_seed
 
-    return Sitting(journal, bank, plan, seed=student_seed(journal), anew=again)
+    return QuizSession(journal, bank, plan, seed=student_seed(journal), restart=again)
 
 
-def _print_scores(bank: Bank, workspace: Path | None) -> None:
+def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
     from kit.school.progress import FILE, ProgressError
-    from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
-    from kit.school.quiz.schedule import schedule_of
+    from kit.school.quiz.schedule import build_schedule
 
     events: list[ProgressEvent] = []
     try:
@@ -137,34 +137,34 @@ def _print_scores(bank: Bank, workspace: Path | None) -> None:
                 events = journal.events()
     except ProgressError as error:
         options.fail(str(error))
-    for line in scores_lines(bank, answers_of(events), schedule_of(bank, events, local_now())):
+    for line in scores_lines(bank, answers_from_events(events), build_schedule(bank, events, local_now())):
         click.echo(line)
 
 
-def _print_finished(sitting: Sitting) -> None:
+def _print_finished(session: QuizSession) -> None:
     """There is nothing to ask: how it came out, and what one can do."""
-    from kit.school.quiz.quiz_session import InRounds
-    from kit.school.quiz.quiz_text import again_line, closing_lines, schedule_lines, today_line
+    from kit.school.quiz.quiz_session import RoundPlan
+    from kit.school.quiz.quiz_text import closing_lines, restart_line, schedule_lines, today_line
 
-    if isinstance(sitting.plan, InRounds):
-        for line in (*closing_lines(sitting), again_line(sitting.plan)):
+    if isinstance(session.plan, RoundPlan):
+        for line in (*closing_lines(session), restart_line(session.plan)):
             click.echo(line)
         return
-    schedule = sitting.schedule()
+    schedule = session.schedule()
     click.echo(today_line(schedule))
-    if schedule.standings:
+    if schedule.topics:
         click.echo("")
         for line in schedule_lines(schedule):
             click.echo(line)
 
 
-def _ask_on_screen(sitting: Sitting, terminal: TerminalDecision) -> NoReturn:
+def _ask_on_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
     from kit.tui.screens.quiz import QuizScreen
 
     app = KitApp(terminal)
-    app.begin(QuizScreen(sitting))
+    app.begin(QuizScreen(session))
     app.run()
     raise SystemExit(app.return_code or 0)
 
@@ -172,34 +172,34 @@ def _ask_on_screen(sitting: Sitting, terminal: TerminalDecision) -> NoReturn:
 # Line by line
 
 
-def ask_plainly(sitting: Sitting) -> None:
+def ask_plainly(session: QuizSession) -> None:
     """Asks what the sitting has ahead, by lines of standard input, until all is asked, ``q``, or its end."""
     from kit.school.quiz.quiz_text import closing_lines, today_line
 
-    click.echo(f"{sitting.plan.title}: {sitting.total} questions.")
-    if sitting.number > 1:
-        click.echo(f"You go on at question {sitting.number}.")
+    click.echo(f"{session.plan.title}: {session.question_count} questions.")
+    if session.question_number > 1:
+        click.echo(f"You go on at question {session.question_number}.")
     click.echo("Answer with 1, 2 or 3; ? is not sure; Enter alone leaves it blank; q leaves.")
     try:
-        while (item := sitting.item) is not None:
-            _ask(sitting, item)
+        while (item := session.item) is not None:
+            _ask(session, item)
         click.echo("")
-        for line in closing_lines(sitting):
+        for line in closing_lines(session):
             click.echo(line)
     except (_Left, KeyboardInterrupt):
         click.echo("")
         click.echo(
-            f"{sitting.number - 1} of {sitting.total} answered. `{sitting.plan.command}` goes on here. "
-            + today_line(sitting.schedule())
+            f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` goes on here. "
+            + today_line(session.schedule())
         )
 
 
-def _ask(sitting: Sitting, item: Item) -> None:
-    from kit.school.quiz.quiz_text import feedback, verdict, ways_on, wrapped
+def _ask(session: QuizSession, item: QuizItem) -> None:
+    from kit.school.quiz.quiz_text import feedback_text, follow_up_lines, verdict_text, wrap_text
 
     click.echo("")
-    click.echo(f"Question {sitting.number} of {sitting.total}, {item.topic.label}")
-    for line in wrapped(item.question, WIDTH):
+    click.echo(f"Question {session.question_number} of {session.question_count}, {item.topic.label}")
+    for line in wrap_text(item.question, WIDTH):
         click.echo(line)
     if item.picture:
         click.echo("")
@@ -207,23 +207,23 @@ def _ask(sitting: Sitting, item: Item) -> None:
             click.echo(f"    {row}".rstrip())
         click.echo("")
     for number, option in enumerate(item.options, 1):
-        first, *rest = wrapped(option.text, WIDTH, "     ")
+        first, *rest = wrap_text(option.text, WIDTH, "     ")
         click.echo(f"  {number}  {first.strip()}")
         for line in rest:
             click.echo(line)
     click.echo("  ?  I am not sure")
     choice = _choice()
-    sitting.answer(choice, None if choice.option is None else _confidence())
-    click.echo(verdict(item, choice))
-    for line in (*wrapped(feedback(item, choice), WIDTH), *ways_on(item, WIDTH)):
+    session.answer(choice, None if choice.option is None else _confidence())
+    click.echo(verdict_text(item, choice))
+    for line in (*wrap_text(feedback_text(item, choice), WIDTH), *follow_up_lines(item, WIDTH)):
         click.echo(line)
 
 
-def _choice() -> Choice:
-    from kit.school.quiz.answers import BLANK, NOT_SURE, Choice
-    from kit.school.quiz.items import OPTIONS
+def _choice() -> AnswerChoice:
+    from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
+    from kit.school.quiz.items import OPTION_COUNT
 
-    choices = {str(index + 1): Choice(index) for index in range(OPTIONS)}
+    choices = {str(index + 1): AnswerChoice(index) for index in range(OPTION_COUNT)}
     choices |= dict.fromkeys(NOT_SURE_WORDS, NOT_SURE)
     asked_once = False
     while True:
@@ -241,15 +241,15 @@ def _choice() -> Choice:
 
 
 def _confidence() -> int | None:
-    from kit.school.quiz.quiz_text import SURE_CHOICES, SURE_QUESTION
+    from kit.school.quiz.quiz_text import CONFIDENCE_CHOICES, CONFIDENCE_QUESTION
 
-    words = ", ".join(f"{number} {text}" for number, text in SURE_CHOICES)
-    click.echo(f"{SURE_QUESTION} {words}")
+    words = ", ".join(f"{number} {text}" for number, text in CONFIDENCE_CHOICES)
+    click.echo(f"{CONFIDENCE_QUESTION} {words}")
     while True:
         said = _line()
         if not said:
             return None
-        number = next((number for number, _ in SURE_CHOICES if said == str(number)), None)
+        number = next((number for number, _ in CONFIDENCE_CHOICES if said == str(number)), None)
         if number is not None:
             return number
         click.echo("Say 1, 2, 3 or 4; Enter alone leaves it open; q leaves.")

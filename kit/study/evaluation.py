@@ -15,11 +15,11 @@ import numpy as np
 from kit.kernels.arrays import Float64Array
 from kit.school.report.chapters.setting import Setting
 from kit.school.report.class_data import ClassData
-from kit.school.report.class_report import set_up
-from kit.school.report.expertise import WAYS
-from kit.school.report.inference import summary
-from kit.school.report.measures import Measure, Quiz
-from kit.school.survey.questions import Phase, Purpose
+from kit.school.report.class_report import prepare_report
+from kit.school.report.expertise import DIVISION_METHODS
+from kit.school.report.inference import summary_statistics
+from kit.school.report.measures import AnswerSheet, StudentMeasure
+from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 from kit.study.evaluation_data import EvaluationData, PrintedTable
 
 TableRows = dict[str, tuple[float, ...]]
@@ -47,14 +47,14 @@ def setting_of(study: EvaluationData) -> Setting:
         names,
         study.ratings,
         study.quiz,
-        later=study.quiz.nobody(),
-        bank=Quiz((), {}),
+        later_quiz=study.quiz.without_replies(),
+        bank=AnswerSheet((), {}),
         work=tuple({} for _ in names),
-        remarks=(),
-        counted=(),
-        cautions=(),
+        free_text_answers=(),
+        option_counts=(),
+        warnings=(),
     )
-    return set_up(data)
+    return prepare_report(data)
 
 
 def recompute_tables(study: EvaluationData) -> Mapping[str, TableRows]:
@@ -96,7 +96,7 @@ def _score_table(setting: Setting) -> TableRows:
     assert setting.score is not None
     found = {each.id: each.experts.members for each in setting.divisions}
     return {
-        str(place): (float(setting.score[i]), *(float(found[way][i]) for way in WAYS))
+        str(place): (float(setting.score[i]), *(float(found[way][i]) for way in DIVISION_METHODS))
         for place, i in enumerate(score_order(setting), 1)
     }
 
@@ -109,7 +109,7 @@ def _division_table(setting: Setting) -> TableRows:
     for each in setting.divisions:
         numbers: list[float] = []
         for group in each.groups:
-            found = summary(setting.score[group.members])
+            found = summary_statistics(setting.score[group.members])
             numbers += [found.n, found.mean, found.sd]
         grid[names[each.id]] = tuple(numbers)
     return grid
@@ -119,7 +119,7 @@ def _mean_and_sd_rows(setting: Setting, measures: Sequence[Float64Array]) -> Tab
     """M and SD of each group, a column for each measure."""
     grid: TableRows = {}
     for group in setting.groups:
-        found = [summary(values[group.members]) for values in measures]
+        found = [summary_statistics(values[group.members]) for values in measures]
         grid[f"{group.name} M"] = tuple(each.mean for each in found)
         grid[f"{group.name} SD"] = tuple(each.sd for each in found)
     return grid
@@ -129,7 +129,7 @@ def _outcome_table(topic: str) -> Callable[[Setting], TableRows]:
     """Tables 5.6 and 5.7."""
 
     def table(setting: Setting) -> TableRows:
-        measures = setting.data.ratings.of_topic(Purpose.OUTCOME, Phase.AFTER, topic)
+        measures = setting.data.ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
         return _mean_and_sd_rows(setting, [each.values for each in measures])
 
     return table
@@ -139,7 +139,7 @@ def _question_table(setting: Setting) -> TableRows:
     """Table 5.8."""
     quiz = setting.data.quiz
     return {
-        item.id: tuple(float(quiz.right(item)[group.members].mean()) for group in setting.groups)
+        item.id: tuple(float(quiz.correctness(item)[group.members].mean()) for group in setting.groups)
         for item in quiz.items
     }
 
@@ -148,17 +148,17 @@ def _quiz_topic_table(setting: Setting) -> TableRows:
     """Table 5.9."""
     quiz = setting.data.quiz
     return _mean_and_sd_rows(
-        setting, [*(quiz.share(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
+        setting, [*(quiz.share_right(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
     )
 
 
 def _text_table(setting: Setting) -> TableRows:
     """The numbers of the running text of 5.3.1 to 5.3.4."""
     ratings = setting.data.ratings
-    prior = _by_topic(ratings.by_topic(Purpose.EXPERIENCE, Phase.BEFORE))
-    gained = _by_topic(ratings.by_topic(Purpose.GAINED, Phase.AFTER))
-    hard = _by_topic(ratings.by_topic(Purpose.DIFFICULTY, Phase.AFTER))
-    told = _by_topic(ratings.by_topic(Purpose.EXPLANATION, Phase.AFTER))
+    prior = _by_topic(ratings.by_topic(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
+    gained = _by_topic(ratings.by_topic(QuestionPurpose.GAINED, SurveyPhase.AFTER))
+    hard = _by_topic(ratings.by_topic(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
+    told = _by_topic(ratings.by_topic(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(told)}
     assert setting.score is not None
@@ -174,10 +174,14 @@ def _text_table(setting: Setting) -> TableRows:
     }
     for what, group in ((w, g) for w in ("gained", "difficulty", "explanation") for g in setting.groups):
         rows[f"{what}, {group.name}"] = of[what][group.members]
-    return {name: (found.mean, found.sd) for name, values in rows.items() for found in [summary(values)]}
+    return {
+        name: (found.mean, found.sd)
+        for name, values in rows.items()
+        for found in [summary_statistics(values)]
+    }
 
 
-def _by_topic(measures: Sequence[Measure]) -> dict[str, Float64Array]:
+def _by_topic(measures: Sequence[StudentMeasure]) -> dict[str, Float64Array]:
     return {each.id: each.values for each in measures}
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 from kit.plain_text import quoted
-from kit.school.quiz.answers import Outcome
-from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
-from kit.school.survey.questions import HIGHEST, LOWEST, Phase, Purpose, Question
+from kit.school.quiz.answers import AnswerOutcome
+from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
+from kit.school.survey.questions import HIGHEST, LOWEST, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
@@ -26,7 +26,7 @@ BLANK_ANSWER: Final = "-"
 
 _TOPIC_TITLES: Final[Mapping[str, str]] = {"ros2": "ROS 2", "flatland": "Flatland", "rl": "RL"}
 _GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
-_PURPOSES: Final = {each.value: each for each in Purpose}
+_PURPOSES: Final = {each.value: each for each in QuestionPurpose}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +63,8 @@ class EvaluationData:
     """All that is known of the evaluation."""
 
     subjects: int
-    ratings: Ratings
-    quiz: Quiz
+    ratings: ClassRatings
+    quiz: AnswerSheet
     printed: tuple[PrintedTable, ...]
     slips: tuple[Misprint, ...]
 
@@ -88,15 +88,15 @@ def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:
     return study
 
 
-def _read_ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
-    questions: list[Question] = []
-    values: dict[tuple[Phase, str], Float64Array] = {}
+def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
+    questions: list[SurveyQuestion] = []
+    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
     for section in sections:
-        purpose = section.choice("purpose", _PURPOSES) or Purpose.WORDS
+        purpose = section.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS
         if not section.flag("counted", True):
-            purpose = Purpose.BACKGROUND
-        phase = Phase.BEFORE if purpose is Purpose.EXPERIENCE else Phase.AFTER
-        made = Question(
+            purpose = QuestionPurpose.BACKGROUND
+        phase = SurveyPhase.BEFORE if purpose is QuestionPurpose.EXPERIENCE else SurveyPhase.AFTER
+        made = SurveyQuestion(
             f"q{section.integer('n', minimum=1)}",
             section.name("text"),
             purpose,
@@ -107,23 +107,25 @@ def _read_ratings(sections: tuple[Section, ...], subjects: int) -> Ratings:
         answers = _read_answers(section, subjects, HIGHEST)
         values[phase, made.id] = np.array([np.nan if each is None else float(each) for each in answers])
         section.finish()
-    return Ratings(tuple(questions), values)
+    return ClassRatings(tuple(questions), values)
 
 
-def _read_quiz(sections: tuple[Section, ...], subjects: int) -> Quiz:
-    items: list[Item] = []
-    replies: dict[str, tuple[Reply | None, ...]] = {}
+def _read_quiz(sections: tuple[Section, ...], subjects: int) -> AnswerSheet:
+    items: list[ReportItem] = []
+    replies: dict[str, tuple[ItemReply | None, ...]] = {}
     for section in sections:
         topic = section.name("topic")
-        item = Item(f"{_TOPIC_TITLES.get(topic, topic)} {section.name('question')}", topic)
+        item = ReportItem(f"{_TOPIC_TITLES.get(topic, topic)} {section.name('question')}", topic)
         keys = {int(word) for word in section.name("keys").split() if word.isdigit()}
         items.append(item)
         replies[item.id] = tuple(
-            BLANK if each is None else Reply(Outcome.RIGHT if each in keys else Outcome.WRONG, each - 1)
+            BLANK
+            if each is None
+            else ItemReply(AnswerOutcome.RIGHT if each in keys else AnswerOutcome.WRONG, each - 1)
             for each in _read_answers(section, subjects, 4)
         )
         section.finish()
-    return Quiz(tuple(items), replies)
+    return AnswerSheet(tuple(items), replies)
 
 
 def _read_answers(section: Section, subjects: int, highest: int) -> list[int | None]:

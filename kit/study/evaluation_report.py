@@ -7,15 +7,25 @@ from typing import Final
 
 import numpy as np
 
-from kit.school.quiz.answers import Outcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.setting import Setting
-from kit.school.report.class_report import chapters
-from kit.school.report.document import Block, Caution, Cell, Chapter, Column, Report, Style, Table, Text
-from kit.school.report.inference import summary
-from kit.school.report.items import analyse
+from kit.school.report.class_report import build_chapters
+from kit.school.report.document import (
+    CellStyle,
+    ClassReport,
+    ReportBlock,
+    ReportChapter,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    TableCell,
+    TableColumn,
+)
+from kit.school.report.inference import summary_statistics
+from kit.school.report.items import analyse_item
 from kit.school.report.normality import shapiro_wilk
-from kit.school.survey.questions import Purpose
+from kit.school.survey.questions import QuestionPurpose
 from kit.study.evaluation import (
     PrintDifference,
     TableRows,
@@ -34,11 +44,11 @@ STACKED_COLUMNS: Final = 4
 """Columns from which print and ours stand one below the other."""
 
 
-def evaluation_report(study: EvaluationData, *, whole: bool = False) -> Report:
+def evaluation_report(study: EvaluationData, *, whole: bool = False) -> ClassReport:
     """``whole``: also every chapter that a class gets, from the dissertation's raw answers."""
     setting = setting_of(study)
-    more = chapters(setting) if whole else ()
-    return Report(
+    more = build_chapters(setting) if whole else ()
+    return ClassReport(
         "The dissertation's evaluation, from its raw answers (appendix B.3)",
         (
             _comparison_chapter(study, setting),
@@ -49,29 +59,29 @@ def evaluation_report(study: EvaluationData, *, whole: bool = False) -> Report:
     )
 
 
-def _comparison_chapter(study: EvaluationData, setting: Setting) -> Chapter:
+def _comparison_chapter(study: EvaluationData, setting: Setting) -> ReportChapter:
     ours = recompute_tables(study)
-    blocks: list[Block] = [
-        Text(
+    blocks: list[ReportBlock] = [
+        ReportText(
             "Each table as printed, and as the raw answers give it. SD is of the sample (n - 1); a blank of the quiz "
             "counts as not right; both as the dissertation has it."
         )
     ]
     wrong = print_differences(study)
     blocks += [_comparison_table(table, ours[table.id], wrong, setting) for table in study.printed]
-    return Chapter("printed", "Printed and computed", tuple(blocks))
+    return ReportChapter("printed", "Printed and computed", tuple(blocks))
 
 
 def _comparison_table(
     table: PrintedTable, ours: TableRows, wrong: Sequence[PrintDifference], setting: Setting
-) -> Table:
+) -> ReportTable:
     name = f"Table {table.id}" if table.id != "text" else "Text"
     identity = f"table-{table.id.replace('.', '-')}"
     title = f"{name}. {table.title}"
     letters = table.id == GROUP_TABLE
     found = {(each.row, each.column) for each in wrong if each.table == table.id}
 
-    def cells(row: tuple[float, ...]) -> Iterator[Cell]:
+    def cells(row: tuple[float, ...]) -> Iterator[TableCell]:
         for value, column in zip(row, table.columns, strict=True):
             if letters and column != table.columns[0]:
                 yield GROUP_LETTERS[int(value)]
@@ -83,7 +93,7 @@ def _comparison_table(
         return f"differs: {', '.join(slips)}" if slips else "same"
 
     columns = tuple(
-        Column(column, Style.TEXT if letters and i else Style.NUMBER)
+        TableColumn(column, CellStyle.TEXT if letters and i else CellStyle.NUMBER)
         for i, column in enumerate(table.columns)
     )
     if len(columns) >= STACKED_COLUMNS and not letters:
@@ -96,9 +106,14 @@ def _comparison_table(
                 (row, "ours", *cells(ours[row]), verdict(row)),
             )
         ]
-        heads = (Column("", Style.TEXT), Column("", Style.TEXT), *columns, Column("", Style.TEXT))
-        return Table(identity, title, heads, tuple(rows), grouped=True)
-    bar = Column("|", Style.TEXT)
+        heads = (
+            TableColumn("", CellStyle.TEXT),
+            TableColumn("", CellStyle.TEXT),
+            *columns,
+            TableColumn("", CellStyle.TEXT),
+        )
+        return ReportTable(identity, title, heads, tuple(rows), grouped=True)
+    bar = TableColumn("|", CellStyle.TEXT)
     rows = [
         (row, *cells(printed), "|", *cells(ours[row]), verdict(row)) for row, printed in table.rows.items()
     ]
@@ -106,61 +121,70 @@ def _comparison_table(
     if letters:
         order = score_order(setting)
         note += f" Users 1 to {len(order)} are the subjects {', '.join(str(i + 1) for i in order)}."
-    heads = (Column("user" if letters else "", Style.TEXT), *columns, bar, *columns, Column("", Style.TEXT))
-    return Table(identity, title, heads, tuple(rows), note)
+    heads = (
+        TableColumn("user" if letters else "", CellStyle.TEXT),
+        *columns,
+        bar,
+        *columns,
+        TableColumn("", CellStyle.TEXT),
+    )
+    return ReportTable(identity, title, heads, tuple(rows), note)
 
 
-def _misprint_chapter(study: EvaluationData) -> Chapter:
+def _misprint_chapter(study: EvaluationData) -> ReportChapter:
     total = sum(len(row) for table in study.printed for row in table.rows.values())
     wrong, unknown = print_differences(study), unexplained_differences(study)
-    blocks: list[Block] = [
-        Text(
+    blocks: list[ReportBlock] = [
+        ReportText(
             f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
         )
     ]
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for slip in study.slips:
         cells = [each for each in wrong if each.table == slip.table]
         rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
     blocks.append(
-        Table(
+        ReportTable(
             "slips",
             "Known slips",
             (
-                Column("where", Style.TEXT),
-                Column("row", Style.TEXT),
-                Column("column", Style.TEXT),
-                Column("printed"),
-                Column("ours"),
+                TableColumn("where", CellStyle.TEXT),
+                TableColumn("row", CellStyle.TEXT),
+                TableColumn("column", CellStyle.TEXT),
+                TableColumn("printed"),
+                TableColumn("ours"),
             ),
             tuple(rows),
         )
     )
     blocks += [
-        Text(f"{'Table ' if slip.table != 'text' else ''}{slip.table}: {slip.why}") for slip in study.slips
+        ReportText(f"{'ReportTable ' if slip.table != 'text' else ''}{slip.table}: {slip.why}")
+        for slip in study.slips
     ]
     blocks += [
-        Caution(
+        ReportWarning(
             f"{_named(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
         )
         for each in unknown
     ]
     two_keys = [
         each.item.id
-        for each in (analyse(study.quiz, item) for item in study.quiz.items)
-        if len(each.keys) > 1
+        for each in (analyse_item(study.quiz, item) for item in study.quiz.items)
+        if len(each.right_options) > 1
     ]
     if two_keys:
         blocks.append(
-            Caution(f"{', '.join(two_keys)}: two answers counted as right, so the question is ambiguous.")
+            ReportWarning(
+                f"{', '.join(two_keys)}: two answers counted as right, so the question is ambiguous."
+            )
         )
     blocks.append(
-        Text(
+        ReportText(
             "The degrees and the answers of yes or no (tables B.3 and B.4) are missing in the source: that eleven of "
             "twelve used the prepared machine, and that one had problems, cannot be checked."
         )
     )
-    return Chapter("slips", "Where the print is wrong", tuple(blocks))
+    return ReportChapter("slips", "Where the print is wrong", tuple(blocks))
 
 
 def _places(wrong: Sequence[PrintDifference]) -> str:
@@ -174,53 +198,58 @@ def _named(each: PrintDifference) -> str:
     return "text" if each.table == "text" else f"table {each.table}"
 
 
-def _limits_chapter(study: EvaluationData, setting: Setting) -> Chapter:
+def _limits_chapter(study: EvaluationData, setting: Setting) -> ReportChapter:
     """What a reader of the dissertation has to know and it does not say."""
     first = people.experience(setting)
     weights = (
-        [each for each in first.blocks if isinstance(each, Table) and each.id == "weights"] if first else []
+        [each for each in first.blocks if isinstance(each, ReportTable) and each.id == "weights"]
+        if first
+        else []
     )
-    cautions = [each for each in first.blocks if isinstance(each, Caution)] if first else []
+    cautions = [each for each in first.blocks if isinstance(each, ReportWarning)] if first else []
     robust, together, questions = (
         relations.robustness(setting),
         relations.relations(setting),
         quiz.items(setting),
     )
-    blocks: list[Block] = [*weights, *cautions]
+    blocks: list[ReportBlock] = [*weights, *cautions]
     if robust is not None:
         blocks += robust.blocks
     if together is not None:
-        blocks += [each for each in together.blocks if isinstance(each, Table | Text)]
+        blocks += [each for each in together.blocks if isinstance(each, ReportTable | ReportText)]
     if questions is not None:
-        blocks += [each for each in questions.blocks if not isinstance(each, Caution)]
+        blocks += [each for each in questions.blocks if not isinstance(each, ReportWarning)]
     blocks += [_normality_text(study), _blank_text(study), _layers_text(study)]
-    return Chapter("bearing", "What these numbers bear", tuple(blocks))
+    return ReportChapter("bearing", "What these numbers bear", tuple(blocks))
 
 
-def _normality_text(study: EvaluationData) -> Text:
+def _normality_text(study: EvaluationData) -> ReportText:
     w, p = shapiro_wilk(study.quiz.score)
-    return Text(
+    return ReportText(
         f"The dissertation takes the quiz scores for normally distributed. Shapiro and Wilk's W = {w:.2f}, "
         f"p = {p:.2f}: with {study.subjects} subjects that is not ruled out, and not shown. A standard normal "
         "distribution, which it names, has mean 0 and SD 1."
     )
 
 
-def _blank_text(study: EvaluationData) -> Text:
-    blanks = study.quiz.count(Outcome.BLANK)
+def _blank_text(study: EvaluationData) -> ReportText:
+    blanks = study.quiz.outcome_counts(AnswerOutcome.BLANK)
     most = int(np.argmax(blanks))
-    return Text(
+    return ReportText(
         f"{int(blanks.sum())} of {len(blanks) * len(study.quiz.items)} answers of the quiz are blank, "
         f"{int(blanks[most])} of them subject {most + 1}'s, and count as wrong."
     )
 
 
-def _layers_text(study: EvaluationData) -> Text:
+def _layers_text(study: EvaluationData) -> ReportText:
     question = next(each for each in study.ratings.questions if each.topic == "layers")
     phase = question.phases[0]
-    found = summary(study.ratings.values[phase, question.id])
-    hardest = max(summary(each.values).mean for each in study.ratings.measures(Purpose.DIFFICULTY, phase))
+    found = summary_statistics(study.ratings.values[phase, question.id])
+    hardest = max(
+        summary_statistics(each.values).mean
+        for each in study.ratings.measures(QuestionPurpose.DIFFICULTY, phase)
+    )
     more = f", more than any topic that is shown ({hardest:.1f} at most)" if found.mean > hardest else ""
-    return Text(
+    return ReportText(
         f"The method for the fewest layers, which no table shows, was rated {found.mean:.1f} of 7 hard{more}; n = {found.n}."
     )

@@ -90,10 +90,10 @@ class StudentStore:
     def _due(self) -> int | None:
         from kit.school.quiz.quiz_session import local_now
         from kit.school.quiz.reading import read_bank
-        from kit.school.quiz.schedule import schedule_of
+        from kit.school.quiz.schedule import build_schedule
         from kit.world.problems import WorldError
 
         try:
-            return len(schedule_of(read_bank(), self.progress().events(), local_now()).queue)
+            return len(build_schedule(read_bank(), self.progress().events(), local_now()).queue)
         except (WorldError, FileNotFoundError):
             return None

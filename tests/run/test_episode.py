@@ -34,8 +34,8 @@ from kit.run.episode import (
 from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.scenario import find_place, place_in_file
 from kit.run.session import Session
-from kit.school.game.levels import Level
-from kit.school.game.race import race
+from kit.school.game.levels import GameLevel
+from kit.school.game.race import race_controller
 from kit.world.catalogue import all_maps
 
 ROOT = Path(__file__).parent.parent.parent
@@ -75,8 +75,8 @@ def given(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return seen
 
 
-def level_on(map_name: str, case: str, par: float = 1.0) -> Level:
-    return Level("test", "Test", map_name, case, par, "", (), 0)
+def level_on(map_name: str, case: str, par: float = 1.0) -> GameLevel:
+    return GameLevel("test", "Test", map_name, case, par, "", (), 0)
 
 
 def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
@@ -101,7 +101,7 @@ def test_a_controller_gets_the_same_arguments_everywhere(
     file.write_text(DRIVER)
     with Session(place) as session:
         session.drive_with(find_controller(str(file)))
-    race(level_on(map_name, case), find_controller("random_walk"))
+    race_controller(level_on(map_name, case), find_controller("random_walk"))
     run_episode(EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False), file, limits=DESK, level=DESK_LEVEL)
     task = EnvironmentTask("Env", place, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
     with pytest.raises(GuestError):
@@ -185,7 +185,9 @@ def test_the_same_metrics_and_end_everywhere(
 
     case = trial.place.case
     assert case is not None
-    finish, recording = race(level_on(map_name, case.name, seconds / 6), find_controller(str(file)))
+    finish, recording = race_controller(
+        level_on(map_name, case.name, seconds / 6), find_controller(str(file))
+    )
     assert finish.failure is None
     assert finish.reached == (end is EndReason.REACHED)
     assert finish.seconds == own.metrics.time_s

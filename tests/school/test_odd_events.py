@@ -9,17 +9,17 @@ from itertools import count
 
 import pytest
 
-from kit.school.game.levels import Level, all_levels
-from kit.school.game.player_progress import standings
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.player_progress import level_progress
 from kit.school.lessons.lesson_progress import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import answers_of
-from kit.school.quiz.items import Bank
+from kit.school.quiz.answers import answers_from_events
+from kit.school.quiz.items import QuestionBank
 from kit.school.quiz.reading import read_bank
-from kit.school.quiz.schedule import schedule_of
-from kit.school.report.work import work_of
-from kit.school.survey.form_session import Answers
+from kit.school.quiz.schedule import build_schedule
+from kit.school.report.work import student_work
+from kit.school.survey.form_session import FormAnswers
 from kit.school.survey.reading import read_form
 
 ODD = {
@@ -37,17 +37,19 @@ ODD = {
 
 
 @pytest.fixture(scope="module")
-def bank() -> Bank:
+def bank() -> QuestionBank:
     return read_bank()
 
 
 @pytest.fixture(scope="module")
-def levels() -> tuple[Level, ...]:
+def levels() -> tuple[GameLevel, ...]:
     return all_levels()
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_what_nobody_could_have_done_is_passed_over(bank: Bank, levels: tuple[Level, ...], name: str) -> None:
+def test_what_nobody_could_have_done_is_passed_over(
+    bank: QuestionBank, levels: tuple[GameLevel, ...], name: str
+) -> None:
     odd = ODD[name]
     numbers = count()
     item = bank.items[0].id
@@ -77,10 +79,10 @@ def test_what_nobody_could_have_done_is_passed_over(bank: Bank, levels: tuple[Le
     lesson = lesson_progress_from_events(find_lesson("1"), events)
     assert not lesson.is_completed
     assert all(0.0 <= share <= 1.0 for share in lesson.best_shares.values())
-    assert work_of(events)["01-drive"].passed == 0
-    for level in standings(levels, events):
-        assert all(0.0 < seconds < math.inf for seconds in level.best.values())
-    answers_of(events)
-    schedule_of(bank, events, datetime(2026, 1, 9, tzinfo=UTC))
-    Answers.of(read_form(), events)
+    assert student_work(events)["01-drive"].passed_count == 0
+    for level in level_progress(levels, events):
+        assert all(0.0 < seconds < math.inf for seconds in level.best_times.values())
+    answers_from_events(events)
+    build_schedule(bank, events, datetime(2026, 1, 9, tzinfo=UTC))
+    FormAnswers.from_events(read_form(), events)
     assert events[-1].text("value") in ("", "x")

@@ -12,20 +12,20 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.quiz.answers import Outcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.setting import Setting
 from kit.school.report.inference import (
     correlation,
     correlation_test,
     difference_test,
+    fit_polynomial,
     rank_correlation,
-    trend,
 )
-from kit.school.report.items import analyse, kr20
-from kit.school.report.measures import Ratings
+from kit.school.report.items import analyse_item, kr20
+from kit.school.report.measures import ClassRatings
 from kit.school.report.normality import shapiro_wilk
-from kit.school.report.robustness import of_difference
+from kit.school.report.robustness import difference_sensitivity
 from kit.study.evaluation import (
     TableRows,
     print_differences,
@@ -96,7 +96,7 @@ def test_one_cell_explains_table_5_6(subject: int) -> None:
         key: np.where(np.arange(12) == subject - 1, 4.0, row) if key[1] == "q21" else row
         for key, row in study().ratings.values.items()
     }
-    changed = replace(study(), ratings=Ratings(study().ratings.questions, values))
+    changed = replace(study(), ratings=ClassRatings(study().ratings.questions, values))
     left = [each for each in print_differences(changed) if each.table == "5.6"]
     assert (not left) == (subject in (3, 4))
 
@@ -106,7 +106,7 @@ def test_users_are_these_subjects() -> None:
 
 
 def test_what_is_doubtful_about_the_divisions() -> None:
-    found = {each.id: each.cautions for each in setting().divisions}
+    found = {each.id: each.warnings for each in setting().divisions}
     assert found["mean"] == ()
     assert ["0.05 apart" in each for each in found["half"]] == [True]
     assert ["only 2 experts" in each for each in found["scale"]] == [True]
@@ -115,7 +115,7 @@ def test_what_is_doubtful_about_the_divisions() -> None:
 def test_quiz_totals_and_blanks() -> None:
     quiz = study().quiz
     assert (quiz.score * 12).round().tolist() == [9, 5, 2, 6, 4, 7, 10, 7, 0, 10, 8, 9]
-    blanks = quiz.count(Outcome.BLANK)
+    blanks = quiz.outcome_counts(AnswerOutcome.BLANK)
     assert (blanks.sum(), blanks[8]) == (19, 10)
     assert kr20(quiz) == pytest.approx(0.81, abs=0.005)
     assert shapiro_wilk(quiz.score)[1] == pytest.approx(0.33, abs=0.005)
@@ -131,24 +131,24 @@ def test_quiz_totals_and_blanks() -> None:
     ],
 )
 def test_who_fell_for_what(item: str, chosen: dict[int, int], blank: int) -> None:
-    found = {each.item.id: each for each in (analyse(study().quiz, one) for one in study().quiz.items)}
-    assert found[item].chosen == chosen
-    assert found[item].outcomes[Outcome.BLANK] == blank
-    assert found["Flatland Q1"].with_rest == pytest.approx(0.07, abs=0.005)
-    assert [name for name, each in found.items() if len(each.keys) > 1] == ["ROS 2 Q2"]
+    found = {each.item.id: each for each in (analyse_item(study().quiz, one) for one in study().quiz.items)}
+    assert found[item].choice_counts == chosen
+    assert found[item].outcomes[AnswerOutcome.BLANK] == blank
+    assert found["Flatland Q1"].rest_correlation == pytest.approx(0.07, abs=0.005)
+    assert [name for name, each in found.items() if len(each.right_options) > 1] == ["ROS 2 Q2"]
 
 
 def test_the_headline_rests_on_subject_9() -> None:
     division = setting().division
     assert division is not None
-    found = of_difference(study().quiz.score, division, seed=0)
+    found = difference_sensitivity(study().quiz.score, division, seed=0)
     assert found is not None
     assert found.value == pytest.approx(0.345, abs=0.0005)
-    assert (found.chance.arrangements, found.chance.exact) == (792, True)
-    assert found.chance.p == pytest.approx(0.019, abs=0.0005)
-    assert [each.student + 1 for each in found.turning] == [9]
-    assert found.turning[0].value == pytest.approx(0.262, abs=0.0005)
-    assert found.turning[0].chance.p == pytest.approx(0.064, abs=0.0005)
+    assert (found.test.arrangements, found.test.is_exact) == (792, True)
+    assert found.test.p_value == pytest.approx(0.019, abs=0.0005)
+    assert [each.student + 1 for each in found.decisive] == [9]
+    assert found.decisive[0].value == pytest.approx(0.262, abs=0.0005)
+    assert found.decisive[0].test.p_value == pytest.approx(0.064, abs=0.0005)
 
 
 @pytest.mark.parametrize(
@@ -164,14 +164,14 @@ def test_the_headline_rests_on_subject_9() -> None:
 def test_what_goes_together(a: str, b: str, r: float) -> None:
     known = relations.quantities(setting())
     assert correlation(known[a].values, known[b].values) == pytest.approx(r, abs=0.005)
-    p = correlation_test(known[a].values, known[b].values, np.random.default_rng(0)).p
+    p = correlation_test(known[a].values, known[b].values, np.random.default_rng(0)).p_value
     assert (p < 0.05) == (abs(r) > 0.5)
 
 
 def test_rank_correlation_and_the_parabola() -> None:
     known = relations.quantities(setting())
     assert rank_correlation(known["score"].values, known["quiz"].values) == pytest.approx(0.70, abs=0.005)
-    curve = trend(known["prior"].values, known["gained"].values, 2)
+    curve = fit_polynomial(known["prior"].values, known["gained"].values, 2)
     assert curve is not None
     assert -curve[1] / (2 * curve[0]) == pytest.approx(3.2, abs=0.05)
 
@@ -182,7 +182,7 @@ def test_no_difference_of_outcomes_is_more_than_chance() -> None:
     experts, beginners = (each.members for each in division.groups[::-1])
     for number in (*range(18, 22), *range(34, 37)):
         values = next(row for (_, name), row in study().ratings.values.items() if name == f"q{number}")
-        assert difference_test(values[experts], values[beginners], np.random.default_rng(0)).p > 0.3
+        assert difference_test(values[experts], values[beginners], np.random.default_rng(0)).p_value > 0.3
 
 
 def test_the_report_names_every_slip() -> None:

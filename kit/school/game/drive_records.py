@@ -7,55 +7,57 @@ from pathlib import Path
 
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
-from kit.school.game.ghosts import keep
-from kit.school.game.levels import Level, all_levels
-from kit.school.game.player_progress import improves, standings
-from kit.school.game.race import Driver, Finish
+from kit.school.game.ghosts import save_ghost
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.player_progress import is_best_drive, level_progress
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace
 
 
 @dataclass(frozen=True, slots=True)
-class Noted:
+class DriveRecord:
     """What a drive earned."""
 
     stars: tuple[bool, bool, bool]
     """Of this drive: finished, safe, under par."""
     is_best: bool
-    kept: Path | None
+    recording: Path | None
     """The recording, where it was kept as the driver's best."""
 
 
-def note(
+def record_drive(
     journal: ProgressJournal,
     workspace: Workspace,
-    level: Level,
-    driver: Driver,
-    finish: Finish,
+    level: GameLevel,
+    driver: DriverKind,
+    finish: RaceFinish,
     recording: Recording,
-) -> Noted:
+) -> DriveRecord:
     """Notes a drive. A recording that cannot be written costs the ghost, not the stars. Raises ProgressError."""
-    (before,) = standings([level], journal.events(EventKind.FINISH))
-    is_best = improves(before, driver, finish)
+    (before,) = level_progress([level], journal.events(EventKind.FINISH))
+    is_best = is_best_drive(before, driver, finish)
     kept = None
     if is_best:
         try:
-            kept = keep(workspace, level, driver.value, recording)
+            kept = save_ghost(workspace, level, driver.value, recording)
         except OSError:
             kept = None
     journal.add(EventKind.FINISH, level.id, finish.as_event(driver, None if kept is None else kept.name))
-    _tell_the_hall(journal)
-    return Noted(finish.stars(level.par), is_best, kept)
+    _update_leaderboard(journal)
+    return DriveRecord(finish.stars(level.par), is_best, kept)
 
 
-def _tell_the_hall(journal: ProgressJournal) -> None:
+def _update_leaderboard(journal: ProgressJournal) -> None:
     """Brings the entry in the hall of fame up to date, where the player is in it."""
-    folder = leaderboard.hall()
+    folder = leaderboard.leaderboard_folder()
     if not leaderboard.has_joined(folder):
         return
-    mine = next((each.name for each in leaderboard.entries(folder) if each.is_mine), "")
+    mine = next((each.name for each in leaderboard.read_entries(folder) if each.is_mine), "")
     name = mine or journal.student_name or "somebody"
     try:
-        leaderboard.publish(folder, name, standings(all_levels(), journal.events(EventKind.FINISH)))
-    except leaderboard.FameError:
+        leaderboard.publish_entry(
+            folder, name, level_progress(all_levels(), journal.events(EventKind.FINISH))
+        )
+    except leaderboard.LeaderboardError:
         return  # the drive counts without it

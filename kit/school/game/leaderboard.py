@@ -17,104 +17,110 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from kit.school.game.player_progress import LevelStanding
-from kit.school.game.race import Driver
+from kit.school.game.player_progress import LevelProgress
+from kit.school.game.race import DriverKind
 from kit.workspace import write_atomically
 
-PLACE: Final = "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
-VARIABLE: Final = "KIT_HALL"
-LARGEST: Final = 256 * 1024
-LONGEST_NAME: Final = 40
+DEFAULT_FOLDER: Final = (
+    "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
+)
+FOLDER_VARIABLE: Final = "KIT_HALL"
+MAX_FILE_SIZE: Final = 256 * 1024
+MAX_NAME_LENGTH: Final = 40
 
 
-class FameError(Exception):
+class LeaderboardError(Exception):
     """The hall cannot be used; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LeaderboardEntry:
     """The best time of one user on one level, by who drove."""
 
     name: str
     level: str
-    driver: Driver
+    driver: DriverKind
     seconds: float
     stars: int
     is_mine: bool
 
 
-def hall() -> Path:
+def leaderboard_folder() -> Path:
     """Where it stands: ``$KIT_HALL``, or a folder that all users of the machine can write to."""
-    return Path(os.environ.get(VARIABLE) or PLACE)
+    return Path(os.environ.get(FOLDER_VARIABLE) or DEFAULT_FOLDER)
 
 
 def has_joined(folder: Path) -> bool:
     """Whether this user is in it, by a file of their own: anybody can write one of that name before them."""
     try:
-        return _own(folder).lstat().st_uid == os.getuid()
+        return _own_file(folder).lstat().st_uid == os.getuid()
     except OSError:
         return False
 
 
-def publish(folder: Path, name: str, standings: Sequence[LevelStanding]) -> None:
+def publish_entry(folder: Path, name: str, standings: Sequence[LevelProgress]) -> None:
     """Enters this user, or brings the entry up to date. Raises FameError."""
     levels = {
         each.level.id: {
-            "stars": each.count,
-            "best": {driver.value: time for driver, time in each.best.items()},
+            "stars": each.star_count,
+            "best": {driver.value: time for driver, time in each.best_times.items()},
         }
         for each in standings
-        if each.drives
+        if each.drive_count
     }
     try:
         if not folder.exists():
             folder.mkdir(parents=True, exist_ok=True)
             folder.chmod(0o1777)  # everybody may add a file, nobody take away another's
         _check_folder(folder)
-        write_atomically(_own(folder), json.dumps({"name": name[:LONGEST_NAME], "levels": levels}).encode())
+        write_atomically(
+            _own_file(folder), json.dumps({"name": name[:MAX_NAME_LENGTH], "levels": levels}).encode()
+        )
     except OSError as error:
-        raise FameError(f"{folder}: the hall of fame cannot be written to ({error.strerror}).") from None
+        raise LeaderboardError(
+            f"{folder}: the hall of fame cannot be written to ({error.strerror})."
+        ) from None
 
 
-def leave(folder: Path) -> None:
+def remove_own_entry(folder: Path) -> None:
     """Takes this user out. Raises FameError."""
     try:
-        _own(folder).unlink(missing_ok=True)
+        _own_file(folder).unlink(missing_ok=True)
     except OSError as error:
-        raise FameError(f"{folder}: {error.strerror}.") from None
+        raise LeaderboardError(f"{folder}: {error.strerror}.") from None
 
 
-def entries(folder: Path) -> list[Entry]:
+def read_entries(folder: Path) -> list[LeaderboardEntry]:
     """Everybody's, the quickest first. Files that are wrong, or another's than they say, are passed over."""
-    found: list[Entry] = []
+    found: list[LeaderboardEntry] = []
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
             with suppress(
                 OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
             ):
-                found.extend(_entries(file))
+                found.extend(_read_file(file))
     return sorted(found, key=lambda each: (each.level, each.seconds, each.name))
 
 
-def _entries(file: Path) -> Iterator[Entry]:
+def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
     handle = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(handle, "rb") as opened:
         status = os.fstat(handle)
         if (
             not stat.S_ISREG(status.st_mode)
             or file.name != f"{status.st_uid}.json"
-            or status.st_size > LARGEST
+            or status.st_size > MAX_FILE_SIZE
         ):
             return
-        content: Mapping[str, Any] = json.loads(opened.read(LARGEST))
+        content: Mapping[str, Any] = json.loads(opened.read(MAX_FILE_SIZE))
     name = " ".join("".join(sign for sign in str(content["name"]) if sign.isprintable()).split())[
-        :LONGEST_NAME
+        :MAX_NAME_LENGTH
     ]
     made = [
-        Entry(
+        LeaderboardEntry(
             name or f"user {status.st_uid}",
             str(level),
-            Driver(driver),
+            DriverKind(driver),
             float(seconds),
             int(each["stars"]),
             status.st_uid == os.getuid(),
@@ -125,7 +131,7 @@ def _entries(file: Path) -> Iterator[Entry]:
     yield from (entry for entry in made if 0 < entry.seconds < float("inf"))
 
 
-def _own(folder: Path) -> Path:
+def _own_file(folder: Path) -> Path:
     return folder / f"{os.getuid()}.json"
 
 
@@ -133,6 +139,6 @@ def _check_folder(folder: Path) -> None:
     """A folder that a stranger owns, and in which they could exchange files, is not trusted with ours."""
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode):
-        raise FameError(f"{folder}: is no folder.")
+        raise LeaderboardError(f"{folder}: is no folder.")
     if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
-        raise FameError(f"{folder}: anybody may take away files there; `chmod +t` mends that.")
+        raise LeaderboardError(f"{folder}: anybody may take away files there; `chmod +t` mends that.")

@@ -16,7 +16,7 @@ from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation as At
 from kit.world.yaml_section import Section
 
-FILE: Final = "levels.yaml"
+LEVELS_FILE: Final = "levels.yaml"
 
 
 class UnknownLevel(LookupError):
@@ -24,30 +24,30 @@ class UnknownLevel(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class GameLevel:
     """One level."""
 
     id: str
     title: str
-    place: str
+    map_name: str
     """A map of the kit."""
     case: str
     par: float
     """s"""
     hint: str
-    after: tuple[str, ...]
+    opened_by: tuple[str, ...]
     """Levels any of which, once finished, opens this one; empty: it is open."""
     row: int
     """On the map of levels: how many levels come before it at least."""
 
-    def find(self) -> Place:
+    def find_scenario(self) -> Place:
         """Where it is driven. Raises LookupError and WorldError."""
-        return find_place(self.place, self.case, None)
+        return find_place(self.map_name, self.case, None)
 
 
-def all_levels(folder: Path | None = None) -> tuple[Level, ...]:
+def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     """Every level in order. Raises WorldError with all mistakes of the file."""
-    file = (lessons_folder() if folder is None else folder) / FILE
+    file = (lessons_folder() if folder is None else folder) / LEVELS_FILE
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
     problems.raise_if_any()
@@ -58,7 +58,7 @@ def all_levels(folder: Path | None = None) -> tuple[Level, ...]:
     return levels
 
 
-def find_level(name: str, levels: tuple[Level, ...] | None = None) -> Level:
+def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:
     """A level by its id or its number from 1. Raises UnknownLevel."""
     levels = all_levels() if levels is None else levels
     for number, level in enumerate(levels, 1):
@@ -68,7 +68,7 @@ def find_level(name: str, levels: tuple[Level, ...] | None = None) -> Level:
     raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
 
 
-def _levels(section: Section) -> Iterator[Level]:
+def _levels(section: Section) -> Iterator[GameLevel]:
     rows: dict[str, int] = {}
     for each in section.sections("levels", at_least=1):
         identity = each.name("id")
@@ -83,19 +83,19 @@ def _levels(section: Section) -> Iterator[Level]:
         if identity in rows:
             each.error(f"a level {quoted(identity)} exists already", "id")
         rows[identity] = row
-        level = Level(
+        level = GameLevel(
             id=identity,
             title=each.name("title"),
-            place=each.name("place"),
+            map_name=each.name("place"),
             case=each.name("case"),
             par=each.number("par", above=0, maximum=3600),
             hint=each.text("hint"),
-            after=after,
+            opened_by=after,
             row=row,
         )
         each.finish()
         try:
-            level.find()
+            level.find_scenario()
         except (LookupError, WorldError) as error:
             each.error(str(error), "place")
             continue

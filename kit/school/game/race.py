@@ -21,22 +21,22 @@ from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Place
 from kit.run.session import Session
-from kit.school.game.levels import Level
-from kit.school.game.reference_driver import Guide
+from kit.school.game.levels import GameLevel
+from kit.school.game.reference_driver import ReferenceDriver
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
 
-LONGEST: Final = 6.0
+TIME_LIMIT_PARS: Final = 6.0
 """A drive ends when it has taken so many times the level's par."""
 LISTEN_EVERY: Final = 10
 """Ticks after which the program's output is read."""
-FASTEST: Final = 1.05
+MAX_SPEED: Final = 1.05
 """m/s that the robot may be driven at: it could be told more, but no such robot would do it."""
-STRIDE: Final = 0.5
+RESET_DISTANCE: Final = 0.5
 """m: farther in one step is no driving, but being sent home after a bump."""
-ALLOWED: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
+ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
 """What the world may be told during a race; models are moved home, and nowhere else."""
 SEED: Final = 1
 """Of every race: the same luck for all."""
@@ -44,7 +44,7 @@ PAIR_DRIVER: Final = "abreast"
 """The kit's controller that drives two as one."""
 
 
-class Driver(StrEnum):
+class DriverKind(StrEnum):
     """Who drove."""
 
     KEYS = "keys"
@@ -53,7 +53,7 @@ class Driver(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finish:
+class RaceFinish:
     """How a drive ended."""
 
     reached: bool
@@ -70,7 +70,7 @@ class Finish:
         """Finished, finished safely (nothing touched), finished under par."""
         return self.reached, self.reached and self.bumps == 0, self.reached and self.seconds <= par
 
-    def as_event(self, driver: Driver, recording: str | None) -> dict[str, Any]:
+    def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
         """What the journal keeps."""
         return {
             "driver": driver.value,
@@ -81,27 +81,27 @@ class Finish:
         }
 
 
-class Judge(Observer):
+class RaceReferee(Observer):
     """Watches a runner's ticks: when all who drive have reached the target, and how often they touched something."""
 
     def __init__(self, place: Place) -> None:
         self._place = place
         self._last_tick = -1
-        self._begin()
+        self._reset()
 
-    def _begin(self) -> None:
+    def _reset(self) -> None:
         self._metrics = MetricsRecorder.for_scenario(self._place)
         self._seconds = 0.0
         self._foul = ""
-        self._at: dict[str, tuple[float, float]] = {}
+        self._positions: dict[str, tuple[float, float]] = {}
 
     @property
-    def finish(self) -> Finish:
+    def finish(self) -> RaceFinish:
         """As of the last tick."""
         reached_s = self._metrics.all_reached_s
         seconds = self._seconds if reached_s is None else reached_s
         has_reached = reached_s is not None and not self._foul
-        return Finish(has_reached, seconds, self._metrics.total_bumps, foul=self._foul)
+        return RaceFinish(has_reached, seconds, self._metrics.total_bumps, foul=self._foul)
 
     @property
     def when_finished(self) -> EndCondition:
@@ -110,15 +110,15 @@ class Judge(Observer):
 
     def on_service(self, service: str, *arguments: Any) -> None:
         """Whoever changes the world does not race in it."""
-        if service in ALLOWED[1:] or self._metrics.all_reached_s is not None:
+        if service in ALLOWED_SERVICES[1:] or self._metrics.all_reached_s is not None:
             return
         homes = dict(zip(self._place.partners, self._place.starts, strict=True))
-        if service != ALLOWED[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
+        if service != ALLOWED_SERVICES[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
             self._foul = f"the world was changed during the race ({service})"
 
     def on_step(self, simulation: Simulation) -> None:
         if simulation.tick <= self._last_tick:  # it was reset: a new drive
-            self._begin()
+            self._reset()
         self._last_tick = simulation.tick
         self._seconds = simulation.time_ns / 1e9
         if self._metrics.all_reached_s is not None:
@@ -126,24 +126,26 @@ class Judge(Observer):
         self._metrics.on_step(simulation)
         for name in self._place.partners:
             pose = simulation.pose(name)
-            before = self._at.get(name, (pose.x, pose.y))
+            before = self._positions.get(name, (pose.x, pose.y))
             stride = math.hypot(pose.x - before[0], pose.y - before[1])
-            self._at[name] = pose.x, pose.y
-            if FASTEST * simulation.step_size < stride < STRIDE:
-                self._foul = f"it drove faster than {FASTEST:g} m/s, which this robot cannot"
+            self._positions[name] = pose.x, pose.y
+            if MAX_SPEED * simulation.step_size < stride < RESET_DISTANCE:
+                self._foul = f"it drove faster than {MAX_SPEED:g} m/s, which this robot cannot"
 
 
-def reference(level: Level) -> tuple[Finish, Recording]:
+def drive_reference(level: GameLevel) -> tuple[RaceFinish, Recording]:
     """The drive to be measured against: the guide's for one robot, the kit's own controller's for two."""
-    place = level.find()
+    place = level.find_scenario()
     if len(place.partners) > 1:
-        return race(level, find_controller(PAIR_DRIVER))
-    return _run(level, place, lambda session: session.runner.participants.append(Guide(session)))
+        return race_controller(level, find_controller(PAIR_DRIVER))
+    return _run_race(
+        level, place, lambda session: session.runner.participants.append(ReferenceDriver(session))
+    )
 
 
-def race(
-    level: Level, controller: ControllerFile, *, on_second: Callable[[float], None] | None = None
-) -> tuple[Finish, Recording]:
+def race_controller(
+    level: GameLevel, controller: ControllerFile, *, on_second: Callable[[float], None] | None = None
+) -> tuple[RaceFinish, Recording]:
     """A program drives the level, as fast as it goes."""
 
     def sit(session: Session) -> None:
@@ -153,12 +155,12 @@ def race(
     # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
     is_stranger = controller not in kit_controllers()
     cage = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
-    return _run(level, level.find(), sit, on_second, cage)
+    return _run_race(level, level.find_scenario(), sit, on_second, cage)
 
 
 def race_agent(
-    level: Level, policy: Policy, *, on_second: Callable[[float], None] | None = None
-) -> tuple[Finish, Recording]:
+    level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
+) -> tuple[RaceFinish, Recording]:
     """A trained policy drives the level, as the ROS 2 node it would be on a robot. Raises PolicyError."""
     from kit.learning.policies.policy_node import format_policy_node
 
@@ -166,32 +168,32 @@ def race_agent(
     with TemporaryDirectory(prefix="agent-") as folder:
         file = Path(folder, "agent.py")
         file.write_text(source)
-        return race(level, find_controller(str(file)), on_second=on_second)
+        return race_controller(level, find_controller(str(file)), on_second=on_second)
 
 
-def judged(level: Level, recording: Recording) -> Finish:
+def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
     """How a recorded drive of the level ended: it is run again, to the bit. ValueError if it is of another level."""
-    place = level.find()
+    place = level.find_scenario()
     if (recording.place, recording.case) != (place.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(place, seed=recording.seed, step_size=recording.step_size) as session:
-        judge = Judge(place)
+        judge = RaceReferee(place)
         session.runner.observers.append(judge)
         session.play_back(recording)
         run_until(session.runner, ticks=recording.ticks, ends=(judge.when_finished,))
         return judge.finish
 
 
-def _run(
-    level: Level,
+def _run_race(
+    level: GameLevel,
     place: Place,
     sit: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
     cage: Confinement = DESK_LEVEL,
-) -> tuple[Finish, Recording]:
+) -> tuple[RaceFinish, Recording]:
     with Session(place, seed=SEED, level=cage) as session:
         simulation = session.runner.simulation
-        judge, recorder = Judge(place), Recorder(place.name, level.case, simulation)
+        judge, recorder = RaceReferee(place), Recorder(place.name, level.case, simulation)
         session.runner.observers += [judge, recorder]
         sit(session)
         step = simulation.step_size
@@ -204,7 +206,7 @@ def _run(
 
         run_until(
             session.runner,
-            ticks=math.ceil(LONGEST * level.par / step),
+            ticks=math.ceil(TIME_LIMIT_PARS * level.par / step),
             ends=(when_failed(session), judge.when_finished),
             before_tick=listen,
         )

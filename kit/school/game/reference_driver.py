@@ -17,27 +17,27 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.scenario import Place
 from kit.run.session import Session
 
-SPEED: Final = 0.5
+MAX_SPEED: Final = 0.5
 """m/s"""
-TURN: Final = 1.57
+MAX_TURN_RATE: Final = 1.57
 """rad/s"""
-AHEAD: Final = 0.2
+LOOKAHEAD: Final = 0.2
 """m along the way: how far ahead it aims."""
-CLEAR: Final = 0.35
+WALL_CLEARANCE: Final = 0.35
 """m: it keeps so far from walls where there is room; nearer, a metre counts for up to ``DEAREST``."""
-DEAREST: Final = 12.0
-ASIDE: Final = 0.5
+MAX_WALL_COST: Final = 12.0
+TURN_IN_PLACE_ANGLE: Final = 0.5
 """rad: farther to the side than this it turns in place first."""
-EVERY: Final = 5
+CONTROL_TICKS: Final = 5
 """Ticks between two decisions."""
 
 
-class Aim(NamedTuple):
+class AimPoint(NamedTuple):
     x: float
     y: float
 
 
-class Guide:
+class ReferenceDriver:
     """Drives the robot of a session to its target. It is told the world; students' programs are not."""
 
     def __init__(self, session: Session) -> None:
@@ -47,13 +47,15 @@ class Guide:
             raise ValueError(f"{place.title}: nothing says from where to where")
         self._session = session
         self._robot = place.robot
-        self._table: DistanceField = compute_distance_field(_ground(place), place.case.target, CLEAR, DEAREST)
-        self._target = Aim(*place.case.target)
+        self._distance_field: DistanceField = compute_distance_field(
+            _batch_map(place), place.case.target, WALL_CLEARANCE, MAX_WALL_COST
+        )
+        self._target = AimPoint(*place.case.target)
 
     def exchange(self) -> bool:
         """Tells the wheels what to do, a few times a second."""
         session = self._session
-        if session.runner.simulation.tick % EVERY:
+        if session.runner.simulation.tick % CONTROL_TICKS:
             return False
         command = self._command()
         for topic in session.command_topics(self._robot):
@@ -62,24 +64,24 @@ class Guide:
 
     def _command(self) -> Twist:
         pose = self._session.runner.simulation.pose(self._robot)
-        aim = self._aim(pose.x, pose.y)
+        aim = self._aim_point(pose.x, pose.y)
         aside = wrap_angle(math.atan2(aim.y - pose.y, aim.x - pose.x) - pose.theta)
-        turn = max(-TURN, min(TURN, 4.0 * aside))
-        if abs(aside) > ASIDE:
-            return Twist(angular=Vector3(z=math.copysign(TURN, aside)))
-        slow = max(0.3, 1.0 - abs(aside) / ASIDE)
-        return Twist(linear=Vector3(x=SPEED * slow), angular=Vector3(z=turn))
+        turn = max(-MAX_TURN_RATE, min(MAX_TURN_RATE, 4.0 * aside))
+        if abs(aside) > TURN_IN_PLACE_ANGLE:
+            return Twist(angular=Vector3(z=math.copysign(MAX_TURN_RATE, aside)))
+        slow = max(0.3, 1.0 - abs(aside) / TURN_IN_PLACE_ANGLE)
+        return Twist(linear=Vector3(x=MAX_SPEED * slow), angular=Vector3(z=turn))
 
-    def _aim(self, x: float, y: float) -> Aim:
+    def _aim_point(self, x: float, y: float) -> AimPoint:
         """The point of the shortest way that lies a little ahead."""
-        rows, columns = self._table.values.shape
-        corner = self._table.corner
+        rows, columns = self._distance_field.values.shape
+        corner = self._distance_field.corner
         column = min(max(round((x - corner[0]) / CELL), 0), columns - 1)
         row = min(max(round((y - corner[1]) / CELL), 0), rows - 1)
         gone = 0.0
-        while gone < AHEAD:
+        while gone < LOOKAHEAD:
             beside = [
-                (float(self._table.values[r, c]), r, c)
+                (float(self._distance_field.values[r, c]), r, c)
                 for r in range(max(0, row - 1), min(rows, row + 2))
                 for c in range(max(0, column - 1), min(columns, column + 2))
             ]
@@ -88,8 +90,8 @@ class Guide:
                 return self._target
             gone += CELL * math.hypot(r - row, c - column)
             row, column = r, c
-        return Aim(corner[0] + CELL * column, corner[1] + CELL * row)
+        return AimPoint(corner[0] + CELL * column, corner[1] + CELL * row)
 
 
-def _ground(place: Place) -> BatchMap:
+def _batch_map(place: Place) -> BatchMap:
     return batch_map_of_world(place.world, place.name, (place.robot,))

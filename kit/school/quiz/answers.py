@@ -9,7 +9,7 @@ from enum import Enum, StrEnum
 from typing import Any, Final
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.items import OPTIONS, Item
+from kit.school.quiz.items import OPTION_COUNT, QuizItem
 
 
 class Occasion(StrEnum):
@@ -20,7 +20,7 @@ class Occasion(StrEnum):
     SPACED = "spaced"
 
 
-class Outcome(Enum):
+class AnswerOutcome(Enum):
     """What came of it. Blank, not sure and wrong are three things: they call for three remedies."""
 
     RIGHT = "right"
@@ -30,49 +30,56 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class AnswerChoice:
     """One of the options, from 0; or none, with a word why."""
 
     option: int | None
     not_sure: bool = False
 
-    def outcome(self, item: Item) -> Outcome:
+    def outcome(self, item: QuizItem) -> AnswerOutcome:
         if self.option is None:
-            return Outcome.NOT_SURE if self.not_sure else Outcome.BLANK
-        return Outcome.RIGHT if self.option == item.right else Outcome.WRONG
+            return AnswerOutcome.NOT_SURE if self.not_sure else AnswerOutcome.BLANK
+        return AnswerOutcome.RIGHT if self.option == item.right_option else AnswerOutcome.WRONG
 
 
-NOT_SURE: Final = Choice(None, not_sure=True)
-BLANK: Final = Choice(None)
+NOT_SURE: Final = AnswerChoice(None, not_sure=True)
+BLANK: Final = AnswerChoice(None)
 
-SURENESS: Final[Mapping[int, str]] = {1: "a guess", 2: "rather unsure", 3: "fairly sure", 4: "certain"}
+CONFIDENCE_LABELS: Final[Mapping[int, str]] = {
+    1: "a guess",
+    2: "rather unsure",
+    3: "fairly sure",
+    4: "certain",
+}
 """The answers to "how sure are you?"."""
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class QuizAnswer:
     """One answer of the journal."""
 
     item: str
     time: datetime
-    outcome: Outcome
+    outcome: AnswerOutcome
     confidence: int | None
     occasion: Occasion
 
 
-def content_of(item: Item, choice: Choice, confidence: int | None, occasion: Occasion) -> dict[str, Any]:
+def event_content(
+    item: QuizItem, choice: AnswerChoice, confidence: int | None, occasion: Occasion
+) -> dict[str, Any]:
     """What the journal keeps of an answer. Who chose nothing is not sure of anything."""
     return {
         "chosen": choice.option,
         "not_sure": choice.not_sure,
-        "right": choice.outcome(item) is Outcome.RIGHT,
+        "right": choice.outcome(item) is AnswerOutcome.RIGHT,
         "confidence": None if choice.option is None else confidence,
         "occasion": occasion.value,
         "topic": item.topic.value,
     }
 
 
-def answer_of(event: ProgressEvent) -> Answer | None:
+def answer_from_event(event: ProgressEvent) -> QuizAnswer | None:
     """The answer that an event tells of; None if it is another kind of event, or cannot be understood."""
     if event.kind is not EventKind.ANSWER:
         return None
@@ -83,20 +90,20 @@ def answer_of(event: ProgressEvent) -> Answer | None:
     except ValueError:
         return None
     if chosen is None:
-        outcome = Outcome.NOT_SURE if content.get("not_sure") is True else Outcome.BLANK
-    elif chosen in range(OPTIONS):
-        outcome = Outcome.RIGHT if content.get("right") is True else Outcome.WRONG
+        outcome = AnswerOutcome.NOT_SURE if content.get("not_sure") is True else AnswerOutcome.BLANK
+    elif chosen in range(OPTION_COUNT):
+        outcome = AnswerOutcome.RIGHT if content.get("right") is True else AnswerOutcome.WRONG
     else:
         return None
-    return Answer(
+    return QuizAnswer(
         event.subject,
         event.time,
         outcome,
-        confidence if isinstance(confidence, int) and confidence in SURENESS else None,
+        confidence if isinstance(confidence, int) and confidence in CONFIDENCE_LABELS else None,
         occasion,
     )
 
 
-def answers_of(events: Iterable[ProgressEvent]) -> list[Answer]:
+def answers_from_events(events: Iterable[ProgressEvent]) -> list[QuizAnswer]:
     """All that can be understood, in the order of their time."""
-    return [answer for event in events if (answer := answer_of(event)) is not None]
+    return [answer for event in events if (answer := answer_from_event(event)) is not None]

@@ -10,14 +10,14 @@ from typing import Final
 from kit.plain_text import quoted, suggestion
 from kit.world.records import SourceLocation
 
-OPTIONS: Final = 3
+OPTION_COUNT: Final = 3
 """As many as there are observed misconceptions for; more would be fillers (Rodriguez 2005)."""
 
-IDEAS: Final = 12
+IDEA_COUNT: Final = 12
 """Of the quiz; every one has exactly one item."""
 
 
-class Topic(StrEnum):
+class QuizTopic(StrEnum):
     """What an item is about: what is scored, and what comes back."""
 
     DRIVING = "driving"
@@ -33,52 +33,52 @@ class Topic(StrEnum):
         return _LABELS[self]
 
 
-_LABELS: Final[Mapping[Topic, str]] = {
-    Topic.DRIVING: "driving",
-    Topic.ROS2: "ROS 2",
-    Topic.FLATLAND: "Flatland worlds",
-    Topic.LAYERS: "layers",
-    Topic.RL: "learning",
-    Topic.FIELDS: "potential fields",
+_LABELS: Final[Mapping[QuizTopic, str]] = {
+    QuizTopic.DRIVING: "driving",
+    QuizTopic.ROS2: "ROS 2",
+    QuizTopic.FLATLAND: "Flatland worlds",
+    QuizTopic.LAYERS: "layers",
+    QuizTopic.RL: "learning",
+    QuizTopic.FIELDS: "potential fields",
 }
 
 
 @dataclass(frozen=True, slots=True)
-class Option:
+class AnswerOption:
     """One of the three."""
 
     text: str
     feedback: str
     """For who chose it: where it is wrong, the misconception by name; where it is right, why."""
-    right: bool
+    is_right: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class QuizItem:
     """One question."""
 
     id: str
     lesson: str
     """Whose folder it lies in."""
-    topic: Topic
+    topic: QuizTopic
     idea: int | None
     """1 to 12 for the items of the quiz."""
     question: str
     picture: tuple[str, ...]
     """Rows of ASCII; none: no picture."""
-    options: tuple[Option, ...]
+    options: tuple[AnswerOption, ...]
     see: str
     """The lesson, or LESSON/STEP, to go back to."""
     attempt: str
     """A command that lets one see it; may be empty."""
     derived: str
     """By which derivation of the tests its answer is found anew; empty: it cannot be derived."""
-    place: SourceLocation
+    location: SourceLocation
 
     @property
-    def right(self) -> int:
+    def right_option(self) -> int:
         """The right option's place, from 0."""
-        return next(index for index, option in enumerate(self.options) if option.right)
+        return next(index for index, option in enumerate(self.options) if option.is_right)
 
 
 class UnknownLesson(LookupError):
@@ -86,36 +86,36 @@ class UnknownLesson(LookupError):
 
 
 @dataclass(frozen=True, slots=True)
-class Bank:
+class QuestionBank:
     """All items, lesson by lesson."""
 
-    items: tuple[Item, ...]
+    items: tuple[QuizItem, ...]
 
     @property
     def lessons(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(item.lesson for item in self.items))
 
     @property
-    def twelve(self) -> tuple[Item, ...]:
+    def quiz_items(self) -> tuple[QuizItem, ...]:
         """The quiz: one item for each idea, in the ideas' order."""
         return tuple(sorted((item for item in self.items if item.idea), key=lambda item: item.idea or 0))
 
-    def by_id(self) -> dict[str, Item]:
+    def items_by_id(self) -> dict[str, QuizItem]:
         return {item.id: item for item in self.items}
 
-    def of_lesson(self, lesson: str) -> tuple[Item, ...]:
+    def lesson_items(self, lesson: str) -> tuple[QuizItem, ...]:
         return tuple(item for item in self.items if item.lesson == lesson)
 
-    def of_topic(self, topic: Topic) -> tuple[Item, ...]:
+    def topic_items(self, topic: QuizTopic) -> tuple[QuizItem, ...]:
         return tuple(item for item in self.items if item.topic is topic)
 
-    def find_lesson(self, said: str) -> str:
+    def find_lesson(self, name: str) -> str:
         """The lesson meant by its name, its number, or its name without the number. Raises UnknownLesson."""
         for lesson in self.lessons:
             number, _, name = lesson.partition("-")
-            if said in (lesson, number, number.lstrip("0"), name):
+            if name in (lesson, number, number.lstrip("0"), name):
                 return lesson
-        raise UnknownLesson(f"no lesson {quoted(said)} has questions: {suggestion(said, self.lessons)}")
+        raise UnknownLesson(f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}")
 
 
 def lesson_title(lesson: str) -> str:
@@ -131,5 +131,5 @@ def lesson_command(lesson: str) -> str:
     return f"kit lesson {lesson.partition('-')[0].lstrip('0')}"
 
 
-def bank_of(items: Iterable[Item]) -> Bank:
-    return Bank(tuple(sorted(items, key=lambda item: item.lesson)))
+def build_bank(items: Iterable[QuizItem]) -> QuestionBank:
+    return QuestionBank(tuple(sorted(items, key=lambda item: item.lesson)))

@@ -9,16 +9,23 @@ from datetime import datetime
 from typing import Final, Protocol
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.answers import Answer, Choice, Occasion, Outcome, answers_of, content_of
-from kit.school.quiz.items import Bank, Item, lesson_title
-from kit.school.quiz.rounds import Rounds, rounds_of
-from kit.school.quiz.schedule import Schedule, schedule_of
+from kit.school.quiz.answers import (
+    AnswerChoice,
+    AnswerOutcome,
+    Occasion,
+    QuizAnswer,
+    answers_from_events,
+    event_content,
+)
+from kit.school.quiz.items import QuestionBank, QuizItem, lesson_title
+from kit.school.quiz.rounds import RoundHistory, round_history
+from kit.school.quiz.schedule import PracticeSchedule, build_schedule
 
-SEED: Final = "quiz-seed"
+SEED_SUBJECT: Final = "quiz-seed"
 """What the journal calls the student's own seed, by which questions are put in order."""
 
 
-class Plan(Protocol):
+class QuestionPlan(Protocol):
     """Which questions a sitting asks."""
 
     @property
@@ -31,60 +38,60 @@ class Plan(Protocol):
     @property
     def occasion(self) -> Occasion: ...
 
-    def ahead(
-        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
-    ) -> tuple[int, list[Item]]:
+    def remaining(
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
+    ) -> tuple[int, list[QuizItem]]:
         """How many are done, and what is still to be asked. ``anew``: a finished round begins again."""
 
 
 @dataclass(frozen=True, slots=True)
-class InRounds:
+class RoundPlan:
     """A set of items, gone through round by round."""
 
     title: str
     command: str
     occasion: Occasion
-    items: tuple[Item, ...]
+    items: tuple[QuizItem, ...]
 
-    def ahead(
-        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
-    ) -> tuple[int, list[Item]]:
-        rounds = self.rounds(answers_of(events))
-        if rounds.finished and not rounds.under_way and not anew:
+    def remaining(
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
+    ) -> tuple[int, list[QuizItem]]:
+        history = self.history(answers_from_events(events))
+        if history.finished and not history.current and not restart:
             return len(self.items), []
-        return len(rounds.under_way), rounds.left(seed)
+        return len(history.current), history.remaining(seed)
 
-    def rounds(self, answers: Sequence[Answer]) -> Rounds:
-        return rounds_of(self.items, answers, self.occasion)
+    def history(self, answers: Sequence[QuizAnswer]) -> RoundHistory:
+        return round_history(self.items, answers, self.occasion)
 
 
 @dataclass(frozen=True, slots=True)
-class Today:
+class PracticePlan:
     """What the schedule has for today."""
 
-    bank: Bank
+    bank: QuestionBank
     title: str = "Due today"
     command: str = "kit quiz --today"
     occasion: Occasion = Occasion.SPACED
 
-    def ahead(
-        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, anew: bool
-    ) -> tuple[int, list[Item]]:
-        schedule = schedule_of(self.bank, events, now, seed)
-        return schedule.done, list(schedule.queue)
+    def remaining(
+        self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
+    ) -> tuple[int, list[QuizItem]]:
+        schedule = build_schedule(self.bank, events, now, seed)
+        return schedule.done_today, list(schedule.queue)
 
 
-def the_twelve(bank: Bank) -> InRounds:
+def quiz_plan(bank: QuestionBank) -> RoundPlan:
     """The quiz."""
-    return InRounds("The quiz", "kit quiz", Occasion.QUIZ, bank.twelve)
+    return RoundPlan("The quiz", "kit quiz", Occasion.QUIZ, bank.quiz_items)
 
 
-def of_lesson(bank: Bank, lesson: str) -> InRounds:
+def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
     """A lesson's questions."""
     title = lesson_title(lesson)
     number = lesson.partition("-")[0].lstrip("0")
-    return InRounds(
-        title[0].upper() + title[1:], f"kit quiz {number}", Occasion.LESSON, bank.of_lesson(lesson)
+    return RoundPlan(
+        title[0].upper() + title[1:], f"kit quiz {number}", Occasion.LESSON, bank.lesson_items(lesson)
     )
 
 
@@ -95,71 +102,73 @@ def local_now() -> datetime:
 
 def student_seed(journal: ProgressJournal) -> int:
     """The student's own seed, drawn once and kept in the journal. Raises ProgressError."""
-    for event in journal.events(EventKind.ABOUT, SEED):
+    for event in journal.events(EventKind.ABOUT, SEED_SUBJECT):
         value = event.content.get("value")
         if isinstance(value, int):
             return value
     seed = secrets.randbelow(2**31)
-    journal.add(EventKind.ABOUT, SEED, {"value": seed})
+    journal.add(EventKind.ABOUT, SEED_SUBJECT, {"value": seed})
     return seed
 
 
-class Sitting:
+class QuizSession:
     """Asks what a plan has ahead. ``anew``: also where its round is finished."""
 
     def __init__(
         self,
         journal: ProgressJournal,
-        bank: Bank,
-        plan: Plan,
+        bank: QuestionBank,
+        plan: QuestionPlan,
         *,
         seed: int,
-        anew: bool = False,
+        restart: bool = False,
         clock: Callable[[], datetime] = local_now,
     ) -> None:
         self.bank = bank
         self.plan = plan
-        self._progress = journal
+        self._journal = journal
         self._seed = seed
-        self._anew = anew
+        self._restart = restart
         self._clock = clock
         self._events = journal.events()
-        self.given: list[Answer] = []
+        self.session_answers: list[QuizAnswer] = []
         """The answers of this sitting."""
-        self._look_ahead()
+        self._update_remaining()
 
     @property
-    def item(self) -> Item | None:
+    def item(self) -> QuizItem | None:
         """What is asked now; None: there is nothing more."""
-        return self._left[0] if self._left else None
+        return self._remaining[0] if self._remaining else None
 
     @property
-    def number(self) -> int:
+    def question_number(self) -> int:
         """Of the question that is asked now, from 1."""
-        return self._done + 1
+        return self._done_count + 1
 
     @property
-    def total(self) -> int:
-        return self._done + len(self._left)
+    def question_count(self) -> int:
+        return self._done_count + len(self._remaining)
 
-    def answer(self, choice: Choice, confidence: int | None = None) -> Outcome:
+    def answer(self, choice: AnswerChoice, confidence: int | None = None) -> AnswerOutcome:
         """Notes the answer to ``item`` and goes on. When this returns it is on the disk. Raises ProgressError."""
         item = self.item
         assert item is not None
-        content = content_of(item, choice, confidence, self.plan.occasion)
-        event = self._progress.add(EventKind.ANSWER, item.id, content, now=self._clock())
+        content = event_content(item, choice, confidence, self.plan.occasion)
+        event = self._journal.add(EventKind.ANSWER, item.id, content, now=self._clock())
         self._events.append(event)
-        self.given += answers_of([event])
-        self._anew = False
-        self._look_ahead()
+        self.session_answers += answers_from_events([event])
+        self._restart = False
+        self._update_remaining()
         return choice.outcome(item)
 
-    def answers(self) -> list[Answer]:
+    def all_answers(self) -> list[QuizAnswer]:
         """All answers there are, of every occasion."""
-        return answers_of(self._events)
+        return answers_from_events(self._events)
 
-    def schedule(self) -> Schedule:
-        return schedule_of(self.bank, self._events, self._clock(), self._seed)
+    def schedule(self) -> PracticeSchedule:
+        return build_schedule(self.bank, self._events, self._clock(), self._seed)
 
-    def _look_ahead(self) -> None:
-        self._done, self._left = self.plan.ahead(self._events, self._clock(), self._seed, anew=self._anew)
+    def _update_remaining(self) -> None:
+        self._done_count, self._remaining = self.plan.remaining(
+            self._events, self._clock(), self._seed, restart=self._restart
+        )

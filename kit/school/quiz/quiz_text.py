@@ -7,48 +7,48 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import date
 from typing import Final
 
-from kit.school.quiz.answers import SURENESS, Answer, Choice, Outcome
-from kit.school.quiz.items import Bank, Item, Topic, lesson_command, lesson_title
-from kit.school.quiz.quiz_session import InRounds, Sitting, the_twelve
-from kit.school.quiz.rounds import Rounds
-from kit.school.quiz.schedule import Schedule
+from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
+from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic, lesson_command, lesson_title
+from kit.school.quiz.quiz_session import QuizSession, RoundPlan, quiz_plan
+from kit.school.quiz.rounds import RoundHistory
+from kit.school.quiz.schedule import PracticeSchedule
 from kit.school.quiz.scores import (
-    ENOUGH,
-    WELL_JUDGED,
+    CALIBRATED_GAP,
+    MIN_ANSWERS,
     Calibration,
-    Tally,
-    by_topic,
-    calibration,
-    latest,
-    tally,
+    OutcomeCounts,
+    count_by_topic,
+    count_outcomes,
+    latest_answers,
+    measure_calibration,
 )
 
 BAR: Final = 20
 """Columns of a bar."""
 
-VERDICTS: Final[Mapping[Outcome, str]] = {
-    Outcome.RIGHT: "Right.",
-    Outcome.WRONG: "Not right: option {} is.",
-    Outcome.NOT_SURE: "Good to know, and not counted as wrong. Option {} is right.",
-    Outcome.BLANK: "Left blank. Option {} is right.",
+VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
+    AnswerOutcome.RIGHT: "Right.",
+    AnswerOutcome.WRONG: "Not right: option {} is.",
+    AnswerOutcome.NOT_SURE: "Good to know, and not counted as wrong. Option {} is right.",
+    AnswerOutcome.BLANK: "Left blank. Option {} is right.",
 }
 
-CALIBRATION: Final = "How sure you were, and how often right"
-SURE_QUESTION: Final = "How sure are you?"
-SURE_CHOICES: Final = tuple(SURENESS.items())
+CALIBRATION_HEADING: Final = "How sure you were, and how often right"
+CONFIDENCE_QUESTION: Final = "How sure are you?"
+CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
 
 
-def verdict(item: Item, choice: Choice) -> str:
+def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
     """Right or not, and which is."""
-    return VERDICTS[choice.outcome(item)].format(item.right + 1)
+    return VERDICTS[choice.outcome(item)].format(item.right_option + 1)
 
 
-def feedback(item: Item, choice: Choice) -> str:
+def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
     """What to say to the choice; to none, what is said to the right one."""
-    return item.options[item.right if choice.option is None else choice.option].feedback
+    return item.options[item.right_option if choice.option is None else choice.option].feedback
 
 
-def ways_on(item: Item, width: int) -> list[str]:
+def follow_up_lines(item: QuizItem, width: int) -> list[str]:
     """Where to go from here, the lesson and what to type: in one line where both fit."""
     parts = [f"See {lesson_title(item.see)}: {lesson_command(item.see)}"]
     parts += [f"Try: {item.attempt}"] if item.attempt else []
@@ -56,41 +56,43 @@ def ways_on(item: Item, width: int) -> list[str]:
     return [line] if len(line) <= width else parts
 
 
-def in_days(day: date, today: date) -> str:
+def days_text(day: date, today: date) -> str:
     """When that is."""
     days = (day - today).days
     return "today" if days <= 0 else "tomorrow" if days == 1 else f"in {days} days"
 
 
-def schedule_lines(schedule: Schedule) -> list[str]:
+def schedule_lines(schedule: PracticeSchedule) -> list[str]:
     """The visible schedule: every topic, how many questions today, or when next."""
-    if not schedule.standings:
+    if not schedule.topics:
         return ["Nothing is scheduled yet: a topic comes back from the day after its first question on."]
-    widest = max(len(each.topic.label) for each in schedule.standings)
+    widest = max(len(each.topic.label) for each in schedule.topics)
     lines = []
-    for each in schedule.standings:
-        left = each.left(schedule.today)
-        words = f"{left} due today" if left else f"again {in_days(each.due, schedule.today)}"
+    for each in schedule.topics:
+        left = each.questions_left(schedule.today)
+        words = f"{left} due today" if left else f"again {days_text(each.due, schedule.today)}"
         lines.append(f"{each.topic.label:<{widest}}  {words}")
-    if schedule.days:
-        count = len(schedule.days)
+    if schedule.practice_days:
+        count = len(schedule.practice_days)
         lines.append(f"Days with a practice finished: {count}. Each day counts once.")
     return lines
 
 
-def today_line(schedule: Schedule) -> str:
+def today_line(schedule: PracticeSchedule) -> str:
     """What is due, in one line."""
-    due = [(each.topic.label, left) for each in schedule.standings if (left := each.left(schedule.today))]
+    due = [
+        (each.topic.label, left) for each in schedule.topics if (left := each.questions_left(schedule.today))
+    ]
     if due:
         return "Due today: " + ", ".join(f"{left} from {title}" for title, left in due) + "."
-    if schedule.next_day is not None:
-        return f"Nothing is due today. Next: {in_days(schedule.next_day, schedule.today)}."
+    if schedule.next_due is not None:
+        return f"Nothing is due today. Next: {days_text(schedule.next_due, schedule.today)}."
     return "Nothing is scheduled yet: `kit quiz` begins."
 
 
-def tally_line(counts: Tally) -> str:
+def tally_line(counts: OutcomeCounts) -> str:
     """A result in words: what did not happen is left out."""
-    parts = [f"{counts.right} of {counts.items} right"]
+    parts = [f"{counts.right} of {counts.total} right"]
     for count, words in (
         (counts.wrong, "wrong"),
         (counts.not_sure, "not sure"),
@@ -102,13 +104,13 @@ def tally_line(counts: Tally) -> str:
     return ", ".join(parts)
 
 
-def topic_table(scores: Mapping[Topic, Tally]) -> list[str]:
+def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> list[str]:
     """One row a topic."""
     head = f"{'':<16} {'items':>5} {'right':>6} {'wrong':>6} {'not sure':>9} {'blank':>6} {'not asked':>10}"
     return [
         head,
         *(
-            f"{topic.label:<16} {t.items:>5} {t.right:>6} {t.wrong:>6} {t.not_sure:>9} {t.blank:>6} {t.not_asked:>10}"
+            f"{topic.label:<16} {t.total:>5} {t.right:>6} {t.wrong:>6} {t.not_sure:>9} {t.blank:>6} {t.not_asked:>10}"
             for topic, t in scores.items()
         ),
     ]
@@ -123,82 +125,88 @@ def calibration_lines(found: Calibration) -> list[str]:
         share = level.right / level.answers if level.answers else 0.0
         bar = "#" * round(BAR * share)
         result = f"{level.right} of {level.answers}" if level.answers else "-"
-        lines.append(f"{SURENESS[level.confidence]:<14} {result:>9}  {bar}".rstrip())
-    return [*lines, _judged(found)]
+        lines.append(f"{CONFIDENCE_LABELS[level.confidence]:<14} {result:>9}  {bar}".rstrip())
+    return [*lines, _calibration_summary(found)]
 
 
-def _judged(found: Calibration) -> str:
-    if found.answers < ENOUGH:
-        return f"After {ENOUGH} such answers this says how well you judge yourself."
-    figures = f"so sure means {found.claimed:.0%}, and {found.reached:.0%} were right"
-    gap = found.claimed - found.reached
-    if abs(gap) < WELL_JUDGED:
+def _calibration_summary(found: Calibration) -> str:
+    if found.answers < MIN_ANSWERS:
+        return f"After {MIN_ANSWERS} such answers this says how well you judge yourself."
+    figures = f"so sure means {found.expected_share:.0%}, and {found.actual_share:.0%} were right"
+    gap = found.expected_share - found.actual_share
+    if abs(gap) < CALIBRATED_GAP:
         return f"You judge yourself well: {figures}."
     return (
         f"You were surer than right: {figures}." if gap > 0 else f"You know more than you trust: {figures}."
     )
 
 
-def round_lines(rounds: Rounds) -> list[str]:
+def round_lines(history: RoundHistory) -> list[str]:
     """How the last round came out, and the one before all others."""
-    lines = [tally_line(tally(rounds.items, rounds.last))]
-    if len(rounds.finished) > 1:
-        lines.append(f"The first time: {tally_line(tally(rounds.items, rounds.finished[0]))}.")
+    lines = [tally_line(count_outcomes(history.items, history.last))]
+    if len(history.finished) > 1:
+        lines.append(f"The first time: {tally_line(count_outcomes(history.items, history.finished[0]))}.")
     return lines
 
 
-def closing_lines(sitting: Sitting) -> list[str]:
+def closing_lines(session: QuizSession) -> list[str]:
     """What is said at the end of a sitting: its result by topic, how sure one was, what comes next."""
-    plan = sitting.plan
-    answers = sitting.answers()
+    plan = session.plan
+    answers = session.all_answers()
     lines: list[str] = []
-    if isinstance(plan, InRounds):
-        rounds = plan.rounds(answers)
-        scores = by_topic(plan.items, rounds.last)
-        lines += [f"{plan.title}: {round_lines(rounds)[0]}.", *round_lines(rounds)[1:]]
-        answered: Iterable[Answer] = rounds.last.values()
+    if isinstance(plan, RoundPlan):
+        history = plan.history(answers)
+        scores = count_by_topic(plan.items, history.last)
+        lines += [f"{plan.title}: {round_lines(history)[0]}.", *round_lines(history)[1:]]
+        answered: Iterable[QuizAnswer] = history.last.values()
     else:
-        items = _items(sitting.bank, sitting.given)
-        scores = by_topic(items, latest(sitting.given))
-        lines.append(f"Practised: {tally_line(tally(items, latest(sitting.given)))}." if items else "")
-        answered = sitting.given
+        items = _items(session.bank, session.session_answers)
+        scores = count_by_topic(items, latest_answers(session.session_answers))
+        lines.append(
+            f"Practised: {tally_line(count_outcomes(items, latest_answers(session.session_answers)))}."
+            if items
+            else ""
+        )
+        answered = session.session_answers
     if len(scores) > 1:
         lines += ["", *topic_table(scores)]
-    lines += ["", f"{CALIBRATION}:", *calibration_lines(calibration(answered))]
-    lines += ["", today_line(sitting.schedule())]
+    lines += ["", f"{CALIBRATION_HEADING}:", *calibration_lines(measure_calibration(answered))]
+    lines += ["", today_line(session.schedule())]
     return [line for index, line in enumerate(lines) if line or index]
 
 
-def again_line(plan: InRounds) -> str:
+def restart_line(plan: RoundPlan) -> str:
     """How to go through a finished round once more."""
     return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} anew."
 
 
-def scores_lines(bank: Bank, answers: Sequence[Answer], schedule: Schedule) -> Iterator[str]:
+def scores_lines(
+    bank: QuestionBank, answers: Sequence[QuizAnswer], schedule: PracticeSchedule
+) -> Iterator[str]:
     """Everything there is to know of the answers so far."""
-    quiz = the_twelve(bank).rounds(answers)
+    quiz = quiz_plan(bank).history(answers)
     yield "The quiz of twelve"
     if quiz.last:
         yield from (f"  {line}" for line in round_lines(quiz))
-        yield from (f"  {line}" for line in topic_table(by_topic(quiz.items, quiz.last)))
+        yield from (f"  {line}" for line in topic_table(count_by_topic(quiz.items, quiz.last)))
     else:
         yield "  not begun; `kit quiz` asks it"
     yield ""
     yield "All questions, by the latest answer to each"
-    yield from (f"  {line}" for line in topic_table(by_topic(bank.items, latest(answers))))
+    yield from (f"  {line}" for line in topic_table(count_by_topic(bank.items, latest_answers(answers))))
     yield ""
-    yield CALIBRATION
-    yield from (f"  {line}" for line in calibration_lines(calibration(answers)))
+    yield CALIBRATION_HEADING
+    yield from (f"  {line}" for line in calibration_lines(measure_calibration(answers)))
     yield ""
     yield "What comes back when"
     yield from (f"  {line}" for line in schedule_lines(schedule))
 
 
-def wrapped(text: str, width: int, indent: str = "") -> list[str]:
+def wrap_text(text: str, width: int, indent: str = "") -> list[str]:
     """The text in lines, each after the indent."""
     return textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent) or [indent]
 
 
-def _items(bank: Bank, answers: Iterable[Answer]) -> list[Item]:
-    known = bank.by_id()
-    return [known[name] for name in latest(answers) if name in known]
+def _items(bank: QuestionBank, answers: Iterable[QuizAnswer]) -> list[QuizItem]:
+    known = bank.items_by_id()
+    return [known[name] for name in latest_answers(answers) if name in known]

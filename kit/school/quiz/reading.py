@@ -9,35 +9,43 @@ from typing import Final
 
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import lessons_folder
-from kit.school.quiz.items import IDEAS, OPTIONS, Bank, Item, Option, Topic, bank_of
+from kit.school.quiz.items import (
+    IDEA_COUNT,
+    OPTION_COUNT,
+    AnswerOption,
+    QuestionBank,
+    QuizItem,
+    QuizTopic,
+    build_bank,
+)
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-SHEET: Final = "quiz.yaml"
-WIDEST: Final = 74
+QUIZ_FILE: Final = "quiz.yaml"
+MAX_PICTURE_WIDTH: Final = 74
 """Columns of a picture, which are shown as they are."""
-TALLEST: Final = 8
+MAX_PICTURE_HEIGHT: Final = 8
 """Rows of a picture: question, options and feedback share the screen with it."""
 
 _ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
-def read_bank(folder: Path | None = None) -> Bank:
+def read_bank(folder: Path | None = None) -> QuestionBank:
     """Every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
     folder = lessons_folder() if folder is None else folder
-    sheets = sorted(folder.glob(f"[0-9]*-*/{SHEET}"))
+    sheets = sorted(folder.glob(f"[0-9]*-*/{QUIZ_FILE}"))
     lessons = [sheet.parent.name for sheet in sheets]
     problems = ProblemCollector()
-    items = [item for sheet in sheets for item in _sheet(sheet, lessons, problems)]
+    items = [item for sheet in sheets for item in _read_file(sheet, lessons, problems)]
     _check_unique(items, problems)
     problems.raise_if_any()
-    return bank_of(items)
+    return build_bank(items)
 
 
-def _sheet(sheet: Path, lessons: Collection[str], problems: ProblemCollector) -> list[Item]:
+def _read_file(sheet: Path, lessons: Collection[str], problems: ProblemCollector) -> list[QuizItem]:
     documents = WorldDocuments(AllowedRoot.of_folder(sheet.parent), {}, problems)
     section = documents.section(sheet, SourceLocation(sheet))
     if section is None:
@@ -47,21 +55,21 @@ def _sheet(sheet: Path, lessons: Collection[str], problems: ProblemCollector) ->
     return items
 
 
-def _items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[Item]:
-    topics = {topic.value: topic for topic in Topic}
+def _items(section: Section, lesson: str, lessons: Collection[str]) -> Iterator[QuizItem]:
+    topics = {topic.value: topic for topic in QuizTopic}
     for each in section.sections("items", at_least=1):
-        item = Item(
+        item = QuizItem(
             id=_id(each),
             lesson=lesson,
-            topic=each.choice("topic", topics) or Topic.DRIVING,
-            idea=each.integer("idea", minimum=1, maximum=IDEAS) if each.has("idea") else None,
+            topic=each.choice("topic", topics) or QuizTopic.DRIVING,
+            idea=each.integer("idea", minimum=1, maximum=IDEA_COUNT) if each.has("idea") else None,
             question=each.text("question").strip(),
             picture=_picture(each),
             options=_options(each),
             see=_see(each, lesson, lessons),
             attempt=_attempt(each),
             derived=each.name("derived") if each.has("derived") else "",
-            place=each.location,
+            location=each.location,
         )
         each.finish()
         yield item
@@ -76,19 +84,24 @@ def _id(section: Section) -> str:
 
 def _picture(section: Section) -> tuple[str, ...]:
     rows = tuple(row.rstrip() for row in section.text("picture", "").rstrip().splitlines())
-    if len(rows) > TALLEST or any(len(row) > WIDEST for row in rows):
-        section.error(f"{quoted('picture')} must fit {WIDEST} columns and {TALLEST} rows", "picture")
+    if len(rows) > MAX_PICTURE_HEIGHT or any(len(row) > MAX_PICTURE_WIDTH for row in rows):
+        section.error(
+            f"{quoted('picture')} must fit {MAX_PICTURE_WIDTH} columns and {MAX_PICTURE_HEIGHT} rows",
+            "picture",
+        )
     if not all(row.isascii() for row in rows):
         section.error(f"{quoted('picture')} is drawn in ASCII: some terminals have nothing else", "picture")
     return rows
 
 
-def _options(section: Section) -> tuple[Option, ...]:
+def _options(section: Section) -> tuple[AnswerOption, ...]:
     options = []
-    for each in section.sections("options", length=OPTIONS):
-        options.append(Option(each.name("text"), each.text("feedback").strip(), each.flag("right", False)))
+    for each in section.sections("options", length=OPTION_COUNT):
+        options.append(
+            AnswerOption(each.name("text"), each.text("feedback").strip(), each.flag("right", False))
+        )
         each.finish()
-    if options and sum(option.right for option in options) != 1:
+    if options and sum(option.is_right for option in options) != 1:
         section.error("exactly one option must say right: true", "options")
     if len({option.text.casefold() for option in options}) < len(options):
         section.error("two options say the same", "options")
@@ -112,8 +125,8 @@ def _attempt(section: Section) -> str:
     return command
 
 
-def _check_unique(items: list[Item], problems: ProblemCollector) -> None:
-    seen: dict[str | int, Item] = {}
+def _check_unique(items: list[QuizItem], problems: ProblemCollector) -> None:
+    seen: dict[str | int, QuizItem] = {}
     for item in items:
         for key, words in (
             (item.id, f"an item {quoted(item.id)}"),
@@ -122,5 +135,5 @@ def _check_unique(items: list[Item], problems: ProblemCollector) -> None:
             if not key:
                 continue
             if key in seen:
-                problems.add(item.place, f"{words} stands in {seen[key].place} already")
+                problems.add(item.location, f"{words} stands in {seen[key].location} already")
             seen.setdefault(key, item)

@@ -5,35 +5,37 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from kit.school.quiz.answers import Answer, Occasion
-from kit.school.quiz.items import Item
+from kit.school.quiz.answers import Occasion, QuizAnswer
+from kit.school.quiz.items import QuizItem
 from kit.school.quiz.schedule import shuffled
 
-Round = dict[str, Answer]
+Round = dict[str, QuizAnswer]
 """The first answer to each item."""
 
 
 @dataclass(frozen=True, slots=True)
-class Rounds:
+class RoundHistory:
     """How often a set of items was gone through, and how far one is."""
 
-    items: tuple[Item, ...]
+    items: tuple[QuizItem, ...]
     finished: tuple[Round, ...]
-    under_way: Round
+    current: Round
     """Empty: none is."""
 
     @property
     def last(self) -> Round:
         """The one under way, else the last one finished."""
-        return self.under_way or (self.finished[-1] if self.finished else {})
+        return self.current or (self.finished[-1] if self.finished else {})
 
-    def left(self, seed: int) -> list[Item]:
+    def remaining(self, seed: int) -> list[QuizItem]:
         """What the round under way, or a new one, has still to ask, in its order."""
         order = shuffled(self.items, seed, len(self.finished))
-        return [item for item in order if item.id not in self.under_way]
+        return [item for item in order if item.id not in self.current]
 
 
-def rounds_of(items: Sequence[Item], answers: Iterable[Answer], occasion: Occasion) -> Rounds:
+def round_history(
+    items: Sequence[QuizItem], answers: Iterable[QuizAnswer], occasion: Occasion
+) -> RoundHistory:
     """What the answers given on that occasion make of these items."""
     wanted = {item.id for item in items}
     finished: list[Round] = []
@@ -45,4 +47,4 @@ def rounds_of(items: Sequence[Item], answers: Iterable[Answer], occasion: Occasi
         if len(current) == len(wanted):
             finished.append(current)
             current = {}
-    return Rounds(tuple(items), tuple(finished), current)
+    return RoundHistory(tuple(items), tuple(finished), current)

@@ -15,56 +15,56 @@ from datetime import date, datetime, timedelta
 from typing import Final
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import Answer, Occasion, Outcome, answer_of
-from kit.school.quiz.items import Bank, Item, Topic
+from kit.school.quiz.answers import AnswerOutcome, Occasion, QuizAnswer, answer_from_event
+from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 
-GAPS: Final = (1, 3, 7, 21)
+GAP_DAYS: Final = (1, 3, 7, 21)
 """Days from one practice to the next."""
-PRACTICE: Final = 4
+PRACTICE_SIZE: Final = 4
 """Questions of one practice; fewer where fewer have been met."""
-GOOD: Final = 0.75
+PASSING_SHARE: Final = 0.75
 """The share of right answers from which on the next gap is a longer one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class TopicSchedule:
     """Where a topic stands."""
 
-    topic: Topic
+    topic: QuizTopic
     due: date
-    gap: int
+    gap_days: int
     """Days between the last practice, or the first answer, and ``due``."""
-    asked: tuple[str, ...]
+    asked_items: tuple[str, ...]
     """Items of the practice under way."""
-    size: int
+    practice_size: int
     """Questions of one practice."""
 
-    def left(self, today: date) -> int:
+    def questions_left(self, today: date) -> int:
         """Questions to be asked today."""
-        return max(0, self.size - len(self.asked)) if self.due <= today else 0
+        return max(0, self.practice_size - len(self.asked_items)) if self.due <= today else 0
 
 
 @dataclass(frozen=True, slots=True)
-class Schedule:
+class PracticeSchedule:
     """All topics that have begun, the one due first in front."""
 
     today: date
-    standings: tuple[Standing, ...]
-    queue: tuple[Item, ...]
+    topics: tuple[TopicSchedule, ...]
+    queue: tuple[QuizItem, ...]
     """What is to be asked today, in this order: topics take turns."""
-    done: int
+    done_today: int
     """Questions of the schedule answered today."""
-    days: tuple[date, ...]
+    practice_days: tuple[date, ...]
     """Days on which a practice was finished: each counts once, however much was done."""
 
     @property
-    def next_day(self) -> date | None:
+    def next_due(self) -> date | None:
         """When something is due again, after today."""
-        return min((each.due for each in self.standings if each.due > self.today), default=None)
+        return min((each.due for each in self.topics if each.due > self.today), default=None)
 
 
 @dataclass
-class _Track:
+class _TopicState:
     """A topic while the journal is gone through."""
 
     due: date
@@ -73,87 +73,95 @@ class _Track:
     """Items of the practice under way, and which were right."""
 
 
-class _Fold:
+class _ScheduleBuilder:
     """Goes through the journal once."""
 
-    def __init__(self, bank: Bank, now: datetime) -> None:
+    def __init__(self, bank: QuestionBank, now: datetime) -> None:
         self._bank = bank
-        self._items = bank.by_id()
+        self._items = bank.items_by_id()
         self._zone = now.tzinfo
         self._today = now.date()
         self._lessons: set[str] = set()
-        self.last: dict[str, Answer] = {}
-        self.tracks: dict[Topic, _Track] = {}
-        self.days: set[date] = set()
-        self.done = 0
+        self.last_answers: dict[str, QuizAnswer] = {}
+        self.topic_states: dict[QuizTopic, _TopicState] = {}
+        self.practice_days: set[date] = set()
+        self.done_today = 0
 
-    def take(self, event: ProgressEvent) -> None:
+    def add_event(self, event: ProgressEvent) -> None:
         if event.kind in (EventKind.STEP, EventKind.ATTEMPT):
             self._lessons.add(event.subject.partition("/")[0])
-        answer = answer_of(event)
+        answer = answer_from_event(event)
         item = None if answer is None else self._items.get(answer.item)
         if answer is None or item is None:
             return
         day = answer.time.astimezone(self._zone).date()
         if answer.occasion is Occasion.LESSON:
             self._lessons.add(item.lesson)
-        self.last[item.id] = answer
-        self.done += answer.occasion is Occasion.SPACED and day == self._today
-        track = self.tracks.setdefault(item.topic, _Track(day + timedelta(GAPS[0])))
+        self.last_answers[item.id] = answer
+        self.done_today += answer.occasion is Occasion.SPACED and day == self._today
+        track = self.topic_states.setdefault(item.topic, _TopicState(day + timedelta(GAP_DAYS[0])))
         if answer.occasion is Occasion.SPACED and day >= track.due:
-            self._practise(track, item, answer, day)
+            self._add_practice_answer(track, item, answer, day)
 
-    def _practise(self, track: _Track, item: Item, answer: Answer, day: date) -> None:
-        track.asked.setdefault(item.id, answer.outcome is Outcome.RIGHT)
-        if len(track.asked) < self.size(item.topic):
+    def _add_practice_answer(self, track: _TopicState, item: QuizItem, answer: QuizAnswer, day: date) -> None:
+        track.asked.setdefault(item.id, answer.outcome is AnswerOutcome.RIGHT)
+        if len(track.asked) < self.practice_size(item.topic):
             return
-        good = sum(track.asked.values()) >= GOOD * len(track.asked)
-        track.step = min(track.step + 1, len(GAPS) - 1) if good else 0
-        track.due, track.asked = day + timedelta(GAPS[track.step]), {}
-        self.days.add(day)
+        good = sum(track.asked.values()) >= PASSING_SHARE * len(track.asked)
+        track.step = min(track.step + 1, len(GAP_DAYS) - 1) if good else 0
+        track.due, track.asked = day + timedelta(GAP_DAYS[track.step]), {}
+        self.practice_days.add(day)
 
-    def met(self, topic: Topic) -> list[Item]:
+    def known_items(self, topic: QuizTopic) -> list[QuizItem]:
         """What may be asked."""
         return [
             item
-            for item in self._bank.of_topic(topic)
-            if item.id in self.last or item.lesson in self._lessons
+            for item in self._bank.topic_items(topic)
+            if item.id in self.last_answers or item.lesson in self._lessons
         ]
 
-    def size(self, topic: Topic) -> int:
-        return min(PRACTICE, len(self.met(topic)))
+    def practice_size(self, topic: QuizTopic) -> int:
+        return min(PRACTICE_SIZE, len(self.known_items(topic)))
 
 
-def schedule_of(bank: Bank, events: Iterable[ProgressEvent], now: datetime, seed: int = 0) -> Schedule:
+def build_schedule(
+    bank: QuestionBank, events: Iterable[ProgressEvent], now: datetime, seed: int = 0
+) -> PracticeSchedule:
     """The schedule that the journal makes, as of ``now`` (with its time zone). ``seed``: the student's."""
-    fold = _Fold(bank, now)
+    builder = _ScheduleBuilder(bank, now)
     for event in events:
-        fold.take(event)
-    standings = [
-        Standing(topic, track.due, GAPS[track.step], tuple(track.asked), fold.size(topic))
-        for topic, track in fold.tracks.items()
+        builder.add_event(event)
+    topics = [
+        TopicSchedule(
+            topic, track.due, GAP_DAYS[track.step], tuple(track.asked), builder.practice_size(topic)
+        )
+        for topic, track in builder.topic_states.items()
     ]
-    standings.sort(key=lambda each: (each.due, list(Topic).index(each.topic)))
-    return Schedule(
+    topics.sort(key=lambda each: (each.due, list(QuizTopic).index(each.topic)))
+    return PracticeSchedule(
         now.date(),
-        tuple(standings),
-        tuple(_queue(fold, standings, now.date(), seed)),
-        fold.done,
-        tuple(sorted(fold.days)),
+        tuple(topics),
+        tuple(_queue(builder, topics, now.date(), seed)),
+        builder.done_today,
+        tuple(sorted(builder.practice_days)),
     )
 
 
-def shuffled(items: Sequence[Item], seed: int, *circumstances: object) -> list[Item]:
+def shuffled(items: Sequence[QuizItem], seed: int, *circumstances: object) -> list[QuizItem]:
     """The items in an order that is the same for the same student and circumstances, whichever others there are."""
     return sorted(items, key=lambda item: random.Random(f"{seed} {circumstances} {item.id}").random())
 
 
-def _queue(fold: _Fold, standings: Sequence[Standing], today: date, seed: int) -> list[Item]:
+def _queue(
+    builder: _ScheduleBuilder, schedules: Sequence[TopicSchedule], today: date, seed: int
+) -> list[QuizItem]:
     """Interleaved: always of the topic of which the fewest have been asked in its practice."""
     waiting = {
-        each.topic: _order(fold, each, seed)[: each.left(today)] for each in standings if each.left(today)
+        each.topic: _ordered_items(builder, each, seed)[: each.questions_left(today)]
+        for each in schedules
+        if each.questions_left(today)
     }
-    asked = {each.topic: len(each.asked) for each in standings}
+    asked = {each.topic: len(each.asked_items) for each in schedules}
     queue = []
     while topics := [topic for topic, items in waiting.items() if items]:
         topic = min(topics, key=asked.__getitem__)
@@ -162,14 +170,14 @@ def _queue(fold: _Fold, standings: Sequence[Standing], today: date, seed: int) -
     return queue
 
 
-def _order(fold: _Fold, standing: Standing, seed: int) -> list[Item]:
+def _ordered_items(builder: _ScheduleBuilder, schedule: TopicSchedule, seed: int) -> list[QuizItem]:
     """First what was not known the last time, then what was never asked, then what was asked longest ago."""
-    items = [item for item in fold.met(standing.topic) if item.id not in standing.asked]
+    items = [item for item in builder.known_items(schedule.topic) if item.id not in schedule.asked_items]
 
-    def urgency(item: Item) -> tuple[int, float]:
-        last = fold.last.get(item.id)
+    def urgency(item: QuizItem) -> tuple[int, float]:
+        last = builder.last_answers.get(item.id)
         if last is None:
             return 1, 0.0
-        return (2 if last.outcome is Outcome.RIGHT else 0), last.time.timestamp()
+        return (2 if last.outcome is AnswerOutcome.RIGHT else 0), last.time.timestamp()
 
-    return sorted(shuffled(items, seed, standing.due), key=urgency)
+    return sorted(shuffled(items, seed, schedule.due), key=urgency)

@@ -11,24 +11,24 @@ from typing import Any
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.document import (
-    Bars,
-    Block,
-    Caution,
-    Cell,
+    BarChart,
+    ClassReport,
     Histogram,
-    Plot,
-    Report,
-    Said,
-    Scatter,
-    Table,
-    Text,
+    Quote,
+    ReportBlock,
+    ReportPlot,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    ScatterPlot,
+    TableCell,
 )
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """With these a spreadsheet takes a text for something to compute, which a student's name must not become."""
 
 
-def as_csv(table: Table) -> str:
+def as_csv(table: ReportTable) -> str:
     """The table's numbers in full; an interval takes two columns."""
     spans = [
         any(isinstance(row[i], ConfidenceInterval) for row in table.rows) for i in range(len(table.columns))
@@ -47,7 +47,7 @@ def as_csv(table: Table) -> str:
     return out.getvalue()
 
 
-def _parts(cell: Cell, *, span: bool) -> Iterator[str]:
+def _parts(cell: TableCell, *, span: bool) -> Iterator[str]:
     if isinstance(cell, ConfidenceInterval):
         yield from (_plain(cell.low), _plain(cell.high))
     else:
@@ -62,7 +62,7 @@ def _plain(cell: str | float | None) -> str:
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
 
 
-def as_json(report: Report) -> str:
+def as_json(report: ClassReport) -> str:
     """Everything, with null where nothing can be said."""
     content = {
         "title": report.title,
@@ -74,9 +74,9 @@ def as_json(report: Report) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _block(block: Block) -> dict[str, Any]:
+def _block(block: ReportBlock) -> dict[str, Any]:
     match block:
-        case Table():
+        case ReportTable():
             return {
                 "table": block.id,
                 "title": block.title,
@@ -84,26 +84,26 @@ def _block(block: Block) -> dict[str, Any]:
                 "rows": [[_value(cell) for cell in row] for row in block.rows],
                 "note": block.note,
             }
-        case Text():
+        case ReportText():
             return {"text": block.text}
-        case Caution():
+        case ReportWarning():
             return {"warning": block.text}
-        case Said():
-            return {"said": block.text, "by": block.who}
+        case Quote():
+            return {"said": block.text, "by": block.student}
         case _:
             return _plot(block)
 
 
-def _plot(plot: Plot) -> dict[str, Any]:
+def _plot(plot: ReportPlot) -> dict[str, Any]:
     match plot:
-        case Bars():
+        case BarChart():
             rows = [
                 {"label": label, "values": [_value(each) for each in values]} for label, values in plot.rows
             ]
             return {"bars": plot.id, "title": plot.title, "groups": plot.groups, "rows": rows}
         case Histogram():
             return {"histogram": plot.id, "title": plot.title, "edges": plot.edges, "counts": plot.counts}
-        case Scatter():
+        case ScatterPlot():
             return {
                 "scatter": plot.id,
                 "title": plot.title,
@@ -114,7 +114,7 @@ def _plot(plot: Plot) -> dict[str, Any]:
             }
 
 
-def _value(cell: Cell) -> Any:
+def _value(cell: TableCell) -> Any:
     if isinstance(cell, ConfidenceInterval):
         return [_value(cell.low), _value(cell.high)]
     return None if isinstance(cell, float) and not math.isfinite(cell) else cell

@@ -9,14 +9,14 @@ from typing import Final
 from kit.school.report.as_svg import as_svg
 from kit.school.report.as_text import clean
 from kit.school.report.document import (
-    Block,
-    Caution,
-    Report,
-    Said,
-    Style,
-    Table,
-    Text,
-    written,
+    CellStyle,
+    ClassReport,
+    Quote,
+    ReportBlock,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    format_cell,
 )
 
 _STYLE: Final = """
@@ -32,12 +32,12 @@ nav a { margin-right: 1rem; }
 """
 
 
-def as_html(report: Report) -> str:
+def as_html(report: ClassReport) -> str:
     """The whole page."""
     return "\n".join(_page(report)) + "\n"
 
 
-def _page(report: Report) -> Iterator[str]:
+def _page(report: ClassReport) -> Iterator[str]:
     title = _safe(report.title)
     yield "<!DOCTYPE html>"
     yield '<html lang="en"><head><meta charset="utf-8">'
@@ -55,22 +55,22 @@ def _page(report: Report) -> Iterator[str]:
     yield "</body></html>"
 
 
-def _block(block: Block) -> Iterator[str]:
+def _block(block: ReportBlock) -> Iterator[str]:
     match block:
-        case Table():
+        case ReportTable():
             yield from _table(block)
-        case Text():
+        case ReportText():
             yield f"<p>{_safe(block.text)}</p>"
-        case Caution():
+        case ReportWarning():
             yield f'<p class="caution">Note: {_safe(block.text)}</p>'
-        case Said():
-            yield f"<p>{_safe(block.who)}:</p><blockquote>{_safe(block.text)}</blockquote>"
+        case Quote():
+            yield f"<p>{_safe(block.student)}:</p><blockquote>{_safe(block.text)}</blockquote>"
         case _:
             yield as_svg(block).rstrip()
 
 
-def _table(table: Table) -> Iterator[str]:
-    kinds = ["" if column.style is Style.TEXT else ' class="number"' for column in table.columns]
+def _table(table: ReportTable) -> Iterator[str]:
+    kinds = ["" if column.style is CellStyle.TEXT else ' class="number"' for column in table.columns]
     yield f"<table><caption>{_safe(table.title)}</caption><thead><tr>"
     yield "".join(
         f'<th scope="col"{kind}>{_safe(column.title)}</th>'
@@ -78,9 +78,9 @@ def _table(table: Table) -> Iterator[str]:
     )
     yield "</tr></thead><tbody>"
     for number, row in enumerate(table.rows):
-        shown = (row[0] if table.shows_first(number) else "", *row[1:])
+        shown = (row[0] if table.shows_first_cell(number) else "", *row[1:])
         cells = (
-            f"<td{kind}>{_safe(written(cell, column))}</td>"
+            f"<td{kind}>{_safe(format_cell(cell, column))}</td>"
             for kind, cell, column in zip(kinds, shown, table.columns, strict=True)
         )
         yield f"<tr>{''.join(cells)}</tr>"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import Final
 
-from kit.school.report.document import Bars, Histogram, Plot, Scatter
+from kit.school.report.document import BarChart, Histogram, ReportPlot, ScatterPlot
 
 WIDTH: Final = 640
 MARGIN: Final = 16
@@ -23,14 +23,14 @@ _FONT: Final = 'font-family="sans-serif" font-size="12" fill="#222222" stroke="n
 Scale = Callable[[float], float]
 
 
-def as_svg(plot: Plot) -> str:
+def as_svg(plot: ReportPlot) -> str:
     """The whole file; inside an HTML page it can stand as it is."""
     match plot:
-        case Bars():
+        case BarChart():
             body, height = _bars(plot)
         case Histogram():
             body, height = _histogram(plot)
-        case Scatter():
+        case ScatterPlot():
             body, height = _scatter(plot)
     size = f'viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}"'
     parts = (
@@ -61,7 +61,7 @@ def _top(title: str) -> float:
     return MARGIN + LINE * (len(_lines(title)) + 0.8)
 
 
-def _bars(bars: Bars) -> tuple[list[str], int]:
+def _bars(bars: BarChart) -> tuple[list[str], int]:
     thick, apart = 14, 10
     left, right = 232, WIDTH - 60
     top = _top(bars.title) + LINE
@@ -110,7 +110,7 @@ def _histogram(histogram: Histogram) -> tuple[list[str], int]:
     return body, round(bottom + 2 * LINE)
 
 
-def _scatter(scatter: Scatter) -> tuple[list[str], int]:
+def _scatter(scatter: ScatterPlot) -> tuple[list[str], int]:
     left, right = 72.0, WIDTH - 2.0 * MARGIN
     top = _top(scatter.title) + LINE
     bottom = top + 300

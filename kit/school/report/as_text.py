@@ -12,18 +12,18 @@ import numpy as np
 
 from kit.plain_text import is_printable
 from kit.school.report.document import (
-    Bars,
-    Block,
-    Caution,
-    Column,
+    BarChart,
+    CellStyle,
+    ClassReport,
     Histogram,
-    Report,
-    Said,
-    Scatter,
-    Style,
-    Table,
-    Text,
-    written,
+    Quote,
+    ReportBlock,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    ScatterPlot,
+    TableColumn,
+    format_cell,
 )
 
 WIDTH: Final = 79
@@ -50,7 +50,7 @@ BLOCKS: Final = Glyphs(bars=("█", "▒", "░"), point="o", line="·")
 ASCII: Final = Glyphs(bars=("#", "=", "-"), point="o", line=".")
 
 
-def rows_of(report: Report, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+def rows_of(report: ClassReport, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
     """The whole report, line by line."""
     yield from wrap(clean(report.title), WIDTH)
     for chapter in report.chapters:
@@ -59,28 +59,28 @@ def rows_of(report: Report, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
         yield title
         yield "=" * min(len(title), WIDTH)
         for block in chapter.blocks:
-            if not isinstance(block, Said):
+            if not isinstance(block, Quote):
                 yield ""
             yield from block_rows(block, glyphs)
 
 
-def block_rows(block: Block, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+def block_rows(block: ReportBlock, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
     """One table, plot, text, warning or word of a student."""
     match block:
-        case Table():
+        case ReportTable():
             yield from table_rows(block)
-        case Bars():
+        case BarChart():
             yield from _bars(block, glyphs)
         case Histogram():
             yield from _histogram(block, glyphs)
-        case Scatter():
+        case ScatterPlot():
             yield from _scatter(block, glyphs)
-        case Text():
+        case ReportText():
             yield from wrap(clean(block.text), WIDTH)
-        case Caution():
+        case ReportWarning():
             yield from wrap(clean(block.text), WIDTH, initial_indent="! ", subsequent_indent="  ")
-        case Said():
-            head = f"  {clean(block.who)}: "
+        case Quote():
+            head = f"  {clean(block.student)}: "
             yield from wrap(clean(block.text), WIDTH, initial_indent=head, subsequent_indent=" " * 6)
 
 
@@ -89,11 +89,11 @@ def clean(text: str) -> str:
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 
 
-def table_rows(table: Table) -> Iterator[str]:
+def table_rows(table: ReportTable) -> Iterator[str]:
     """Its title, heads, cells and note. Words that do not fit their column go on below."""
     yield from wrap(clean(table.title), WIDTH)
     cells = [
-        [_short(clean(written(cell, column))) for cell, column in zip(row, table.columns, strict=True)]
+        [_short(clean(format_cell(cell, column))) for cell, column in zip(row, table.columns, strict=True)]
         for row in table.rows
     ]
     heads = [column.title for column in table.columns]
@@ -114,9 +114,9 @@ def _short(text: str) -> str:
     return text if len(text) <= LONGEST_CELL else text[: LONGEST_CELL - 3] + "..."
 
 
-def _together(table: Table, cells: list[list[str]]) -> Iterator[list[list[str]]]:
+def _together(table: ReportTable, cells: list[list[str]]) -> Iterator[list[list[str]]]:
     """The rows in groups; without groups each for itself."""
-    starts = [i for i in range(len(cells)) if not table.grouped or table.shows_first(i)]
+    starts = [i for i in range(len(cells)) if not table.grouped or table.shows_first_cell(i)]
     for start, end in zip(starts, [*starts[1:], len(cells)], strict=True):
         yield cells[start:end]
 
@@ -129,12 +129,12 @@ def _flow(rows: list[list[str]], width: int) -> None:
         row[0] = " ".join(words[number:]) if last else "".join(words[number : number + 1])
 
 
-def _widths(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> list[int]:
+def _widths(rows: Sequence[Sequence[str]], columns: Sequence[TableColumn]) -> list[int]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(columns))]
     over = sum(widths) + len(GAP) * (len(widths) - 1) - WIDTH
     while over > 0:
         texts = [
-            i for i, column in enumerate(columns) if column.style is Style.TEXT and widths[i] > LEAST_TEXT
+            i for i, column in enumerate(columns) if column.style is CellStyle.TEXT and widths[i] > LEAST_TEXT
         ]
         if not texts:
             break
@@ -144,17 +144,17 @@ def _widths(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> list[in
     return widths
 
 
-def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column]) -> Iterator[str]:
+def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TableColumn]) -> Iterator[str]:
     parts = [wrap(cell, width) or [""] for cell, width in zip(cells, widths, strict=True)]
     for level in range(max(map(len, parts))):
         words = (part[level] if level < len(part) else "" for part in parts)
         yield GAP.join(
-            f"{word:<{width}}" if column.style is Style.TEXT else f"{word:>{width}}"
+            f"{word:<{width}}" if column.style is CellStyle.TEXT else f"{word:>{width}}"
             for word, width, column in zip(words, widths, columns, strict=True)
         ).rstrip()
 
 
-def _bars(bars: Bars, glyphs: Glyphs) -> Iterator[str]:
+def _bars(bars: BarChart, glyphs: Glyphs) -> Iterator[str]:
     yield from wrap(clean(bars.title), WIDTH)
     groups = max(map(len, bars.groups))
     labels = min(max((len(label) for label, _ in bars.rows), default=0), WIDTH - BAR - groups - 11)
@@ -187,7 +187,7 @@ def _histogram(histogram: Histogram, glyphs: Glyphs) -> Iterator[str]:
         yield f"{label:>{width}} |{glyphs.bars[0] * round(count / unit * scale)} {count}"
 
 
-def _scatter(scatter: Scatter, glyphs: Glyphs) -> Iterator[str]:
+def _scatter(scatter: ScatterPlot, glyphs: Glyphs) -> Iterator[str]:
     yield from wrap(clean(scatter.title), WIDTH)
     columns, rows = SCATTER
     (left, right), (low, high) = scatter.x_range, scatter.y_range

@@ -9,20 +9,20 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 from kit.school.progress import ProgressEvent
-from kit.school.quiz.answers import Occasion, answer_of
-from kit.school.report.measures import BLANK, Item, Quiz, Ratings, Reply
-from kit.school.report.students import Roll, Student
-from kit.school.report.work import Work, work_of
-from kit.school.survey.form_session import Answers
-from kit.school.survey.questions import Form, Phase, Question, Shape
+from kit.school.quiz.answers import Occasion, answer_from_event
+from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
+from kit.school.report.students import ClassRoster, Student
+from kit.school.report.work import StudentWork, student_work
+from kit.school.survey.form_session import FormAnswers
+from kit.school.survey.questions import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
 
 
 @dataclass(frozen=True, slots=True)
-class Remark:
+class FreeTextAnswer:
     """What somebody wrote."""
 
-    question: Question
-    who: str
+    question: SurveyQuestion
+    student: str
     text: str
 
 
@@ -31,74 +31,82 @@ class ClassData:
     """A class as numbers. All arrays are in the order of ``names``."""
 
     names: tuple[str, ...]
-    ratings: Ratings
-    quiz: Quiz
+    ratings: ClassRatings
+    quiz: AnswerSheet
     """First answers of who took the quiz."""
-    later: Quiz
+    later_quiz: AnswerSheet
     """The newest answers to the same items, from any occasion; None where there is none but the first."""
-    bank: Quiz
+    bank: AnswerSheet
     """First answers to the items that only lessons and repetition ask; None where one was not asked."""
-    work: tuple[Work, ...]
-    remarks: tuple[Remark, ...]
-    counted: tuple[tuple[Question, Phase, Mapping[str, int]], ...]
+    work: tuple[StudentWork, ...]
+    free_text_answers: tuple[FreeTextAnswer, ...]
+    option_counts: tuple[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]], ...]
     """Questions of yes or no and of choice: how often each answer came."""
-    cautions: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
-def gather(roll: Roll, form: Form, known: Mapping[str, Item] | None = None) -> ClassData:
+def build_class_data(
+    roster: ClassRoster, form: SurveyForm, known: Mapping[str, ReportItem] | None = None
+) -> ClassData:
     """``known``: items of the quiz with their texts, in the order in which they are to be shown."""
     known = known or {}
-    names = tuple(each.label for each in roll.students)
-    answers = [Answers.of(form, each.events) for each in roll.students]
-    cautions = list(roll.cautions)
-    cautions += _odd(roll.students, answers)
-    sheets = [_Sheet(each.events) for each in roll.students]
-    cautions += _strange(roll.students, sheets, known)
-    quiz, later, bank = _quizzes(sheets, known)
+    names = tuple(each.label for each in roster.students)
+    answers = [FormAnswers.from_events(form, each.events) for each in roster.students]
+    cautions = list(roster.warnings)
+    cautions += _invalid_answer_warnings(roster.students, answers)
+    sheets = [_StudentAnswers(each.events) for each in roster.students]
+    cautions += _unknown_item_warnings(roster.students, sheets, known)
+    quiz, later, bank = _answer_sheets(sheets, known)
     return ClassData(
         names,
         _ratings(form, answers),
         quiz,
         later,
         bank,
-        tuple(work_of(each.events) for each in roll.students),
-        tuple(_remarks(form, names, answers)),
-        tuple(_counted(form, answers)),
+        tuple(student_work(each.events) for each in roster.students),
+        tuple(_free_text_answers(form, names, answers)),
+        tuple(_option_counts(form, answers)),
         tuple(cautions),
     )
 
 
-def _ratings(form: Form, answers: Sequence[Answers]) -> Ratings:
-    values: dict[tuple[Phase, str], Float64Array] = {}
+def _ratings(form: SurveyForm, answers: Sequence[FormAnswers]) -> ClassRatings:
+    values: dict[tuple[SurveyPhase, str], Float64Array] = {}
     for question in form.questions:
-        if question.shape is Shape.SCALE:
+        if question.shape is AnswerShape.SCALE:
             for phase in question.phases:
                 given = [each.value(question.id, phase) for each in answers]
                 values[phase, question.id] = np.array(
                     [float(each) if isinstance(each, int) else np.nan for each in given]
                 )
-    return Ratings(form.questions, values)
+    return ClassRatings(form.questions, values)
 
 
-def _remarks(form: Form, names: Sequence[str], answers: Sequence[Answers]) -> list[Remark]:
+def _free_text_answers(
+    form: SurveyForm, names: Sequence[str], answers: Sequence[FormAnswers]
+) -> list[FreeTextAnswer]:
     return [
-        Remark(question, name, value)
+        FreeTextAnswer(question, name, value)
         for question in form.questions
-        if question.shape is Shape.TEXT
+        if question.shape is AnswerShape.TEXT
         for phase in question.phases
         for name, given in zip(names, answers, strict=True)
         if isinstance(value := given.value(question.id, phase), str) and value.strip()
     ]
 
 
-def _counted(form: Form, answers: Sequence[Answers]) -> list[tuple[Question, Phase, Mapping[str, int]]]:
-    found: list[tuple[Question, Phase, Mapping[str, int]]] = []
+def _option_counts(
+    form: SurveyForm, answers: Sequence[FormAnswers]
+) -> list[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]]]:
+    found: list[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]]] = []
     for question in form.questions:
-        options = question.options if question.shape is Shape.CHOICE else ("yes", "no")
-        if question.shape not in (Shape.CHOICE, Shape.YES_NO):
+        options = question.options if question.shape is AnswerShape.CHOICE else ("yes", "no")
+        if question.shape not in (AnswerShape.CHOICE, AnswerShape.YES_NO):
             continue
         for phase in question.phases:
-            asked = [each.value(question.id, phase) for each in answers if each.has(question.id, phase)]
+            asked = [
+                each.value(question.id, phase) for each in answers if each.is_answered(question.id, phase)
+            ]
             words = [
                 "blank" if v is None else v if isinstance(v, str) else "yes" if v else "no" for v in asked
             ]
@@ -107,23 +115,23 @@ def _counted(form: Form, answers: Sequence[Answers]) -> list[tuple[Question, Pha
     return found
 
 
-class _Sheet:
+class _StudentAnswers:
     """One student's answers, sorted: in the quiz, first of all, and the newest of those given after the quiz."""
 
     def __init__(self, events: Sequence[ProgressEvent]) -> None:
-        self.quiz: dict[str, Reply] = {}
-        self.first: dict[str, Reply] = {}
-        self.again: dict[str, Reply] = {}
+        self.quiz: dict[str, ItemReply] = {}
+        self.first: dict[str, ItemReply] = {}
+        self.again: dict[str, ItemReply] = {}
         self.topics: dict[str, str] = {}
         for event in events:
             try:
-                answer = answer_of(event)
+                answer = answer_from_event(event)
             except TypeError:  # a list, say, where a number belongs
                 answer = None
             if answer is None:
                 continue
             chosen = event.content.get("chosen")
-            reply = Reply(answer.outcome, chosen if isinstance(chosen, int) else None)
+            reply = ItemReply(answer.outcome, chosen if isinstance(chosen, int) else None)
             topic = event.content.get("topic")
             self.topics[answer.item] = topic if isinstance(topic, str) else "other"
             self.first.setdefault(answer.item, reply)
@@ -133,10 +141,10 @@ class _Sheet:
                 self.quiz[answer.item] = reply
 
 
-def _odd(students: Sequence[Student], answers: Sequence[Answers]) -> Iterator[str]:
+def _invalid_answer_warnings(students: Sequence[Student], answers: Sequence[FormAnswers]) -> Iterator[str]:
     """Answers of the form that cannot be. By file, so that nobody learns which student is which."""
     for file, odd in sorted(
-        (each.files[0], given.odd) for each, given in zip(students, answers, strict=True)
+        (each.files[0], given.invalid_questions) for each, given in zip(students, answers, strict=True)
     ):
         if odd:
             yield (
@@ -145,8 +153,8 @@ def _odd(students: Sequence[Student], answers: Sequence[Answers]) -> Iterator[st
             )
 
 
-def _strange(
-    students: Sequence[Student], sheets: Sequence[_Sheet], known: Mapping[str, Item]
+def _unknown_item_warnings(
+    students: Sequence[Student], sheets: Sequence[_StudentAnswers], known: Mapping[str, ReportItem]
 ) -> Iterator[str]:
     """Answers to questions that this kit does not have, so that nobody else could give any."""
     if not known:
@@ -165,7 +173,9 @@ def _strange(
         )
 
 
-def _quizzes(sheets: Sequence[_Sheet], known: Mapping[str, Item]) -> tuple[Quiz, Quiz, Quiz]:
+def _answer_sheets(
+    sheets: Sequence[_StudentAnswers], known: Mapping[str, ReportItem]
+) -> tuple[AnswerSheet, AnswerSheet, AnswerSheet]:
     """The quiz by first answers, the same items by newest ones, and the rest of the bank."""
     found = {name: topic for sheet in sheets for name, topic in sheet.topics.items()}
     answered = {name for sheet in sheets for name in sheet.quiz}
@@ -173,14 +183,16 @@ def _quizzes(sheets: Sequence[_Sheet], known: Mapping[str, Item]) -> tuple[Quiz,
         items = [item for name, item in known.items() if name in found]
         asked = tuple(item for item in items if item.in_quiz and item.id in answered)
     else:
-        items = [Item(name, topic) for name, topic in sorted(found.items(), key=lambda pair: pair[::-1])]
+        items = [
+            ReportItem(name, topic) for name, topic in sorted(found.items(), key=lambda pair: pair[::-1])
+        ]
         asked = tuple(item for item in items if item.id in answered)
     rest = tuple(item for item in items if item not in asked)
     return (
         # Who took the quiz at all had every item before them: what they did not reach is blank.
-        Quiz(
+        AnswerSheet(
             asked, {i.id: tuple(s.quiz.get(i.id, BLANK) if s.quiz else None for s in sheets) for i in asked}
         ),
-        Quiz(asked, {i.id: tuple(s.again.get(i.id) for s in sheets) for i in asked}),
-        Quiz(rest, {i.id: tuple(s.first.get(i.id) for s in sheets) for i in rest}),
+        AnswerSheet(asked, {i.id: tuple(s.again.get(i.id) for s in sheets) for i in asked}),
+        AnswerSheet(rest, {i.id: tuple(s.first.get(i.id) for s in sheets) for i in rest}),
     )

@@ -7,11 +7,11 @@ from enum import StrEnum
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
-Cell = str | int | float | ConfidenceInterval | None
+TableCell = str | int | float | ConfidenceInterval | None
 """None, and a number that is not one: nothing can be said there."""
 
 
-class Style(StrEnum):
+class CellStyle(StrEnum):
     """How a column's cells are written."""
 
     TEXT = "text"
@@ -21,31 +21,31 @@ class Style(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class TableColumn:
     title: str
-    style: Style = Style.NUMBER
+    style: CellStyle = CellStyle.NUMBER
     decimals: int = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ReportTable:
     id: str
     """For file names: letters, digits, hyphens."""
     title: str
-    columns: tuple[Column, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    columns: tuple[TableColumn, ...]
+    rows: tuple[tuple[TableCell, ...], ...]
     note: str = ""
     """What a reader has to know, below the table."""
     grouped: bool = False
     """Rows that begin alike belong together: people see what they share once, machines on every row."""
 
-    def shows_first(self, number: int) -> bool:
+    def shows_first_cell(self, number: int) -> bool:
         """Whether people see the first cell of this row."""
         return not self.grouped or not number or self.rows[number][0] != self.rows[number - 1][0]
 
 
 @dataclass(frozen=True, slots=True)
-class Bars:
+class BarChart:
     """For each row one bar a group."""
 
     id: str
@@ -68,7 +68,7 @@ class Histogram:
 
 
 @dataclass(frozen=True, slots=True)
-class Scatter:
+class ScatterPlot:
     id: str
     title: str
     x: str
@@ -82,61 +82,63 @@ class Scatter:
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class ReportText:
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Caution:
+class ReportWarning:
     """What a reader must not overlook."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class Quote:
     """What people wrote, unchanged."""
 
-    who: str
+    student: str
     text: str
 
 
-Plot = Bars | Histogram | Scatter
-Block = Table | Plot | Text | Caution | Said
+ReportPlot = BarChart | Histogram | ScatterPlot
+ReportBlock = ReportTable | ReportPlot | ReportText | ReportWarning | Quote
 
 
 @dataclass(frozen=True, slots=True)
-class Chapter:
+class ReportChapter:
     id: str
     title: str
-    blocks: tuple[Block, ...]
+    blocks: tuple[ReportBlock, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class ClassReport:
     title: str
-    chapters: tuple[Chapter, ...]
+    chapters: tuple[ReportChapter, ...]
 
     @property
-    def tables(self) -> tuple[Table, ...]:
-        return tuple(each for chapter in self.chapters for each in chapter.blocks if isinstance(each, Table))
+    def tables(self) -> tuple[ReportTable, ...]:
+        return tuple(
+            each for chapter in self.chapters for each in chapter.blocks if isinstance(each, ReportTable)
+        )
 
     @property
-    def plots(self) -> tuple[Plot, ...]:
+    def plots(self) -> tuple[ReportPlot, ...]:
         return tuple(
             each
             for chapter in self.chapters
             for each in chapter.blocks
-            if isinstance(each, Bars | Histogram | Scatter)
+            if isinstance(each, BarChart | Histogram | ScatterPlot)
         )
 
 
-def chance_text(p: float) -> str:
+def p_value_text(p: float) -> str:
     """A p value in a sentence."""
     return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
 
 
-def written(cell: Cell, column: Column) -> str:
+def format_cell(cell: TableCell, column: TableColumn) -> str:
     """A cell as people read it."""
     if isinstance(cell, ConfidenceInterval):
         if cell.low != cell.low:
@@ -145,7 +147,7 @@ def written(cell: Cell, column: Column) -> str:
     if cell is None or cell != cell:
         return "-"
     if isinstance(cell, float):
-        if column.style is Style.CHANCE:
+        if column.style is CellStyle.CHANCE:
             return "< 0.001" if cell < 0.001 else f"{cell:.3f}"
         shown = f"{cell:.{column.decimals}f}"
         return shown.lstrip("-") if float(shown) == 0 else shown

@@ -10,20 +10,20 @@ from typing import Final
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float64Array
-from kit.school.report.inference import present
-from kit.school.report.measures import Group, Measure
+from kit.school.report.inference import non_blank
+from kit.school.report.measures import StudentGroup, StudentMeasure
 
 TOPICS: Final = ("robotics", "ros1", "ros2", "simulators", "flatland", "rl")
 """What Algorithm 4 asks for, each rated 1 to 7 for the time before the lessons."""
 
 HALF_OF_SCALE: Final = 3.5
-NARROW: Final = 0.1
+MIN_GAP: Final = 0.1
 """A gap between the groups that is smaller than this is no division of people but of rounding."""
-SMALL: Final = 5
+MIN_GROUP_SIZE: Final = 5
 """A group of fewer says little of anybody else."""
 
 
-def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Float64Array | None:
+def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str]) -> Float64Array | None:
     """(n,) each student's score; NaN for who left one of the six topics blank. None where nobody rated one.
 
     ``topics``: of each measure, by its id.
@@ -34,10 +34,12 @@ def scores(prior: Sequence[Measure], topics: Mapping[str, str]) -> Float64Array 
     ros = np.where(
         np.isnan(found["ros1"]) | np.isnan(found["ros2"]), np.nan, np.maximum(found["ros1"], found["ros2"])
     )
-    return np.asarray(_score({**{topic: found[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64)
+    return np.asarray(
+        _expertise_score({**{topic: found[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64
+    )
 
 
-def _score(of: Mapping[str, Float64Array]) -> Float64Array:
+def _expertise_score(of: Mapping[str, Float64Array]) -> Float64Array:
     """Algorithm 4; ``ros`` is the greater of ROS 1's and ROS 2's rating."""
     overall = sum((of[topic] for topic in TOPICS), np.zeros(())) / len(TOPICS)
     robotics_ros = (of["ros"] + of["robotics"]) / 2
@@ -53,89 +55,92 @@ def effective_weights() -> tuple[tuple[str, float], ...]:
     """
     inputs = (*TOPICS, "ros")
     found = [
-        (name, float(_score({other: np.array(float(other == name)) for other in inputs}))) for name in inputs
+        (name, float(_expertise_score({other: np.array(float(other == name)) for other in inputs})))
+        for name in inputs
     ]
     return tuple(sorted(found, key=lambda each: -each[1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Division:
+class ClassDivision:
     """A class in two."""
 
     id: str
     title: str
-    beginners: Group
-    experts: Group
-    cut: float
+    beginners: StudentGroup
+    experts: StudentGroup
+    cut_score: float
     """Scores below it are beginners'."""
-    cautions: tuple[str, ...]
+    warnings: tuple[str, ...]
 
     @property
-    def groups(self) -> tuple[Group, Group]:
+    def groups(self) -> tuple[StudentGroup, StudentGroup]:
         return self.beginners, self.experts
 
 
-def divide(score: Float64Array, way: str) -> Division | None:
+def divide_class(score: Float64Array, method: str) -> ClassDivision | None:
     """The class divided in one of the ``WAYS``; None where fewer than two students have a score, or one group
     would be empty."""
-    if len(present(score)) < 2:
+    if len(non_blank(score)) < 2:
         return None
-    title, find = WAYS[way]
+    title, find = DIVISION_METHODS[method]
     cut, experts = find(score)
     beginners = ~np.isnan(score) & ~experts
     if not experts.any() or not beginners.any():
         return None
-    return Division(
-        way,
+    return ClassDivision(
+        method,
         title,
-        Group("beginners", beginners),
-        Group("experts", experts),
+        StudentGroup("beginners", beginners),
+        StudentGroup("experts", experts),
         cut,
-        tuple(_cautions(score, beginners, experts)),
+        tuple(_division_warnings(score, beginners, experts)),
     )
 
 
-def _at(cut: float, score: Float64Array) -> tuple[float, BoolArray]:
+def _split_at(cut: float, score: Float64Array) -> tuple[float, BoolArray]:
     return cut, np.nan_to_num(score, nan=-np.inf) >= cut
 
 
-def _at_half_of_scale(score: Float64Array) -> tuple[float, BoolArray]:
-    return _at(HALF_OF_SCALE, score)
+def _split_at_half_of_scale(score: Float64Array) -> tuple[float, BoolArray]:
+    return _split_at(HALF_OF_SCALE, score)
 
 
-def _at_mean(score: Float64Array) -> tuple[float, BoolArray]:
-    return _at(float(present(score).mean()), score)
+def _split_at_mean(score: Float64Array) -> tuple[float, BoolArray]:
+    return _split_at(float(non_blank(score).mean()), score)
 
 
-def _into_halves(score: Float64Array) -> tuple[float, BoolArray]:
+def _split_into_halves(score: Float64Array) -> tuple[float, BoolArray]:
     """The upper half are experts; with an odd number the one in the middle is a beginner. Of equal scores the
     students who come first in the class are experts."""
     order = np.argsort(-np.nan_to_num(score, nan=-np.inf), kind="stable")
-    chosen = order[: len(present(score)) // 2]
+    chosen = order[: len(non_blank(score)) // 2]
     experts = np.zeros(len(score), dtype=np.bool_)
     experts[chosen] = True
     return float(score[chosen].min()), experts
 
 
-WAYS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[float, BoolArray]]]]] = MappingProxyType(
-    {
-        "scale": ("at 3.5, half of the scale", _at_half_of_scale),
-        "half": ("into two halves", _into_halves),
-        "mean": ("at the mean score", _at_mean),
-    }
+DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[float, BoolArray]]]]] = (
+    MappingProxyType(
+        {
+            "scale": ("at 3.5, half of the scale", _split_at_half_of_scale),
+            "half": ("into two halves", _split_into_halves),
+            "mean": ("at the mean score", _split_at_mean),
+        }
+    )
 )
 """By the word the user knows them by; the dissertation used ``mean``."""
 
 
-def _cautions(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:
+def _division_warnings(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:
     found = []
     gap = float(score[experts].min() - score[beginners].max())
     if gap <= 1e-9:
         found.append("it cuts through a tie: students with the same score are on both sides")
-    elif gap < NARROW:
+    elif gap < MIN_GAP:
         found.append(f"the best beginner and the least expert are only {gap:.2f} apart")
     for name, members in (("beginners", beginners), ("experts", experts)):
         count = int(members.sum())
-        if count < SMALL:
+        if count < MIN_GROUP_SIZE:
             found.append(f"only {count} {name[:-1] if count == 1 else name}")
     return found

@@ -19,25 +19,25 @@ import numpy as np
 from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
-SHUFFLES: Final = 20_000
+SHUFFLE_COUNT: Final = 20_000
 """How many random rearrangements stand for all of them where all are too many."""
-MOST_SPLITS: Final = 200_000
-MOST_ORDERS: Final = 8
+MAX_SPLITS: Final = 200_000
+MAX_PERMUTED: Final = 8
 """Numbers of which every order is looked at: 8! = 40,320."""
-FINEST: Final = 2520
+MAX_DENOMINATOR: Final = 2520
 """The least common multiple of 1 to 10: means of up to ten whole numbers are multiples of one over it."""
-MOST_COUNTED: Final = 400
+MAX_COUNTED: Final = 400
 """Numbers up to which splits are counted instead of shuffled; beyond, a float could not hold the counts."""
 
-MOST_WORK: Final = 5e7
+MAX_ADDITIONS: Final = 5e7
 """Additions for counting one test's splits."""
-AT_ONCE: Final = 2_000_000
+SHUFFLE_CHUNK: Final = 2_000_000
 """Numbers in memory while shuffling."""
 
-_SAME: Final = 1e-9
+_TOLERANCE: Final = 1e-9
 
 
-class Summary(NamedTuple):
+class SummaryStatistics(NamedTuple):
     """A group's numbers in short; NaN where there are too few to tell."""
 
     n: int
@@ -48,36 +48,36 @@ class Summary(NamedTuple):
     """Of the mean, 95 percent, by Student's t."""
 
 
-class Chance(NamedTuple):
+class PermutationTestResult(NamedTuple):
     """How often chance alone would show as much."""
 
-    p: float
+    p_value: float
     """Two-sided; NaN where nothing can be compared."""
     arrangements: int
     """Looked at."""
-    exact: bool
+    is_exact: bool
     """Whether those were all."""
 
 
-NO_TEST: Final = Chance(math.nan, 0, exact=True)
+NO_TEST: Final = PermutationTestResult(math.nan, 0, is_exact=True)
 
 
-def present(values: Float64Array) -> Float64Array:
+def non_blank(values: Float64Array) -> Float64Array:
     """Without the blanks, which are NaN."""
     kept: Float64Array = values[~np.isnan(values)]
     return kept
 
 
-def summary(values: Float64Array) -> Summary:
+def summary_statistics(values: Float64Array) -> SummaryStatistics:
     """Of the values that are there."""
-    kept = present(values)
+    kept = non_blank(values)
     n = len(kept)
     mean = float(kept.mean()) if n else math.nan
     if n < 2:
-        return Summary(n, mean, math.nan, ConfidenceInterval(math.nan, math.nan))
+        return SummaryStatistics(n, mean, math.nan, ConfidenceInterval(math.nan, math.nan))
     sd = float(kept.std(ddof=1))
     half = t_quantile(0.975, n - 1) * sd / math.sqrt(n)
-    return Summary(n, mean, sd, ConfidenceInterval(mean - half, mean + half))
+    return SummaryStatistics(n, mean, sd, ConfidenceInterval(mean - half, mean + half))
 
 
 def t_quantile(share: float, freedom: int) -> float:
@@ -85,25 +85,25 @@ def t_quantile(share: float, freedom: int) -> float:
     if not (0.5 <= share < 1 and freedom >= 1):
         raise ValueError(f"no quantile {share:g} of Student's t with {freedom} degrees of freedom")
     low, high = 0.0, 1.0
-    while t_share(high, freedom) < share:
+    while t_cdf(high, freedom) < share:
         high *= 2
     for _ in range(50):
         middle = (low + high) / 2
-        low, high = (middle, high) if t_share(middle, freedom) < share else (low, middle)
+        low, high = (middle, high) if t_cdf(middle, freedom) < share else (low, middle)
     return (low + high) / 2
 
 
-def t_share(t: float, freedom: int) -> float:
+def t_cdf(t: float, freedom: int) -> float:
     """The share of Student's t distribution below ``t`` >= 0."""
-    return 1 - 0.5 * _beta_share(freedom / (freedom + t * t), freedom / 2, 0.5)
+    return 1 - 0.5 * _regularised_beta(freedom / (freedom + t * t), freedom / 2, 0.5)
 
 
-def _beta_share(x: float, a: float, b: float) -> float:
+def _regularised_beta(x: float, a: float, b: float) -> float:
     """The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun 26.5.8)."""
     if x <= 0 or x >= 1:
         return float(x >= 1)
     if x > (a + 1) / (a + b + 2):
-        return 1 - _beta_share(1 - x, b, a)
+        return 1 - _regularised_beta(1 - x, b, a)
     front = math.exp(
         math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x)
     )
@@ -120,59 +120,65 @@ def _beta_share(x: float, a: float, b: float) -> float:
 
 
 def difference_test(
-    first: Float64Array, second: Float64Array, rng: np.random.Generator, shuffles: int = SHUFFLES
-) -> Chance:
+    first: Float64Array, second: Float64Array, rng: np.random.Generator, shuffles: int = SHUFFLE_COUNT
+) -> PermutationTestResult:
     """Whether two groups' means differ by more than a division by chance makes likely.
 
     Every division of the pooled values into groups of these sizes is counted: by sums where the values are multiples
     of one small fraction, as ratings and scores are; else one by one; with very many, at random from ``rng``.
     """
-    first, second = present(first), present(second)
+    first, second = non_blank(first), non_blank(second)
     k, pooled = len(first), np.concatenate((first, second))
     if not k or not len(second):
         return NO_TEST
     expected = pooled.sum() * k / len(pooled)
-    seen = abs(first.sum() - expected) - _SAME * max(1.0, float(np.abs(pooled).sum()))
+    seen = abs(first.sum() - expected) - _TOLERANCE * max(1.0, float(np.abs(pooled).sum()))
     whole = _as_integers(pooled)
-    if whole is not None and _countable(whole, k):
+    if whole is not None and _can_count(whole, k):
         sums, counts = _subset_sums(whole, k)
         unit = float(pooled.sum()) / whole.sum() if whole.sum() else 0.0
         far = np.abs(sums * unit - expected) >= seen
-        return Chance(float(counts[far].sum() / counts.sum()), math.comb(len(pooled), k), exact=True)
-    if math.comb(len(pooled), k) <= MOST_SPLITS:
+        return PermutationTestResult(
+            float(counts[far].sum() / counts.sum()), math.comb(len(pooled), k), is_exact=True
+        )
+    if math.comb(len(pooled), k) <= MAX_SPLITS:
         splits = np.array([pooled[list(chosen)].sum() for chosen in combinations(range(len(pooled)), k)])
-        return Chance(float(np.mean(np.abs(splits - expected) >= seen)), len(splits), exact=True)
+        return PermutationTestResult(
+            float(np.mean(np.abs(splits - expected) >= seen)), len(splits), is_exact=True
+        )
     weights = np.zeros(len(pooled))
     weights[:k] = 1
-    return _by_chance(np.abs(_shuffled(pooled, weights, rng, shuffles) - expected) >= seen)
+    return _sampled_result(np.abs(_shuffled_sums(pooled, weights, rng, shuffles) - expected) >= seen)
 
 
-def paired_test(differences: Float64Array, rng: np.random.Generator) -> Chance:
+def paired_test(differences: Float64Array, rng: np.random.Generator) -> PermutationTestResult:
     """Whether differences within pairs are farther from 0 on the whole than with signs drawn by chance."""
-    there = present(differences)
+    there = non_blank(differences)
     if not len(there):
         return NO_TEST
     sizes, total = np.abs(there), float(np.abs(there).sum())
-    seen = abs(float(there.sum())) - _SAME * max(1.0, total)
-    whole = _as_integers(sizes) if len(there) <= MOST_COUNTED else None
+    seen = abs(float(there.sum())) - _TOLERANCE * max(1.0, total)
+    whole = _as_integers(sizes) if len(there) <= MAX_COUNTED else None
     if whole is not None:
         counts = np.zeros(int(whole.sum()) + 1)
         counts[0] = 1
         for number in whole.astype(np.int64):
             counts[number:] += counts[: len(counts) - number].copy()
         sums = (2 * np.arange(len(counts)) / whole.sum() - 1) * total
-        return Chance(float(counts[np.abs(sums) >= seen].sum() / counts.sum()), 2 ** len(there), exact=True)
+        return PermutationTestResult(
+            float(counts[np.abs(sums) >= seen].sum() / counts.sum()), 2 ** len(there), is_exact=True
+        )
     if not total:
-        return Chance(1.0, 2 ** len(there), exact=True)
-    signs = rng.choice((-1.0, 1.0), size=(SHUFFLES, len(there)))
-    return _by_chance(np.abs(signs @ sizes) >= seen)
+        return PermutationTestResult(1.0, 2 ** len(there), is_exact=True)
+    signs = rng.choice((-1.0, 1.0), size=(SHUFFLE_COUNT, len(there)))
+    return _sampled_result(np.abs(signs @ sizes) >= seen)
 
 
-def _shuffled(
+def _shuffled_sums(
     values: Float64Array, weights: Float64Array, rng: np.random.Generator, times: int
 ) -> Float64Array:
     """(times,) the weighted sum of the values in so many random orders."""
-    rows = max(1, AT_ONCE // len(values))
+    rows = max(1, SHUFFLE_CHUNK // len(values))
     parts = [
         rng.permuted(np.tile(values, (min(rows, times - start), 1)), axis=1) @ weights
         for start in range(0, times, rows)
@@ -180,21 +186,23 @@ def _shuffled(
     return np.concatenate(parts)
 
 
-def _countable(whole: Float64Array, k: int) -> bool:
+def _can_count(whole: Float64Array, k: int) -> bool:
     """Whether the sums of all splits can be counted in a moment, within what a float holds."""
     small = min(k, len(whole) - k)
     unit = max(1, int(np.gcd.reduce(whole.astype(np.int64))))
-    return len(whole) <= MOST_COUNTED and len(whole) * small * small * float(whole.max()) / unit <= MOST_WORK
+    return (
+        len(whole) <= MAX_COUNTED and len(whole) * small * small * float(whole.max()) / unit <= MAX_ADDITIONS
+    )
 
 
 def _as_integers(values: Float64Array) -> Float64Array | None:
     """The values as whole multiples of their common fraction; None if they have none of a small denominator."""
-    fractions = [Fraction(float(value)).limit_denominator(FINEST) for value in values]
+    fractions = [Fraction(float(value)).limit_denominator(MAX_DENOMINATOR) for value in values]
     unit = math.lcm(*(each.denominator for each in fractions))
-    if unit > FINEST:
+    if unit > MAX_DENOMINATOR:
         return None
     whole = np.array([float(each * unit) for each in fractions])
-    close = bool(np.all(np.abs(whole / unit - values) < _SAME))
+    close = bool(np.all(np.abs(whole / unit - values) < _TOLERANCE))
     return whole if close and whole.sum() and np.all(whole >= 0) and whole.sum() < 1_000_000 else None
 
 
@@ -218,17 +226,17 @@ def _subset_sums(whole: Float64Array, k: int) -> tuple[Float64Array, Float64Arra
 
 def correlation(x: Float64Array, y: Float64Array) -> float:
     """Pearson's r of the pairs in which neither is blank; NaN where one does not vary."""
-    x, y = _pairs(x, y)
+    x, y = _complete_pairs(x, y)
     if len(x) < 3:
         return math.nan
     x, y = x - x.mean(), y - y.mean()
     scale = math.sqrt(float(x @ x) * float(y @ y))
-    return float(x @ y) / scale if scale > _SAME else math.nan
+    return float(x @ y) / scale if scale > _TOLERANCE else math.nan
 
 
 def rank_correlation(x: Float64Array, y: Float64Array) -> float:
     """Spearman's rho."""
-    x, y = _pairs(x, y)
+    x, y = _complete_pairs(x, y)
     return correlation(ranks(x), ranks(y)) if len(x) else math.nan
 
 
@@ -243,42 +251,42 @@ def correlation_test(
     x: Float64Array,
     y: Float64Array,
     rng: np.random.Generator,
-    shuffles: int = SHUFFLES,
-) -> Chance:
+    shuffles: int = SHUFFLE_COUNT,
+) -> PermutationTestResult:
     """Whether two quantities go together (Pearson's r) more than in a random order of one of them."""
-    x, y = _pairs(x, y)
+    x, y = _complete_pairs(x, y)
     r = correlation(x, y)
     if math.isnan(r):
         return NO_TEST
     x, y = x - x.mean(), y - y.mean()
-    seen = abs(r) * math.sqrt(float(x @ x) * float(y @ y)) * (1 - _SAME)
-    if len(y) <= MOST_ORDERS:
+    seen = abs(r) * math.sqrt(float(x @ x) * float(y @ y)) * (1 - _TOLERANCE)
+    if len(y) <= MAX_PERMUTED:
         orders = np.array(list(permutations(y)))
-        return Chance(float(np.mean(np.abs(orders @ x) >= seen)), len(orders), exact=True)
-    return _by_chance(np.abs(_shuffled(y, x, rng, shuffles)) >= seen)
+        return PermutationTestResult(float(np.mean(np.abs(orders @ x) >= seen)), len(orders), is_exact=True)
+    return _sampled_result(np.abs(_shuffled_sums(y, x, rng, shuffles)) >= seen)
 
 
 def correlation_interval(r: float, n: int) -> ConfidenceInterval:
     """95 percent, by Fisher's z (Metron 1, 1921); NaN below four pairs."""
     if n < 4 or math.isnan(r):
         return ConfidenceInterval(math.nan, math.nan)
-    if abs(r) >= 1 - _SAME:
+    if abs(r) >= 1 - _TOLERANCE:
         return ConfidenceInterval(r, r)
     half = NormalDist().inv_cdf(0.975) / math.sqrt(n - 3)
     return ConfidenceInterval(math.tanh(math.atanh(r) - half), math.tanh(math.atanh(r) + half))
 
 
-def trend(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:
+def fit_polynomial(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:
     """The polynomial of least squares, highest power first; None for too few different places."""
-    x, y = _pairs(x, y)
+    x, y = _complete_pairs(x, y)
     return np.polyfit(x, y, degree) if len(np.unique(x)) > degree else None
 
 
-def _pairs(x: Float64Array, y: Float64Array) -> tuple[Float64Array, Float64Array]:
+def _complete_pairs(x: Float64Array, y: Float64Array) -> tuple[Float64Array, Float64Array]:
     kept = ~(np.isnan(x) | np.isnan(y))
     return x[kept], y[kept]
 
 
-def _by_chance(far: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Chance:
+def _sampled_result(far: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> PermutationTestResult:
     """What was seen counts as one of the arrangements, so that no p is zero (Phipson and Smyth, 2010)."""
-    return Chance(float((far.sum() + 1) / (len(far) + 1)), len(far), exact=False)
+    return PermutationTestResult(float((far.sum() + 1) / (len(far) + 1)), len(far), is_exact=False)

@@ -13,76 +13,85 @@ from typing import Final
 
 from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.school.quiz.answers import Outcome
-from kit.school.report.inference import correlation, present
-from kit.school.report.measures import Item, Quiz
+from kit.school.quiz.answers import AnswerOutcome
+from kit.school.report.inference import correlation, non_blank
+from kit.school.report.measures import AnswerSheet, ReportItem
 
-LOOSE: Final = 0.15
+MIN_REST_CORRELATION: Final = 0.15
 """An item that goes with the rest of the quiz less than this tells little of what the rest asks."""
-HARD: Final = 0.2
-EASY: Final = 0.95
+MIN_DIFFICULTY: Final = 0.2
+MAX_DIFFICULTY: Final = 0.95
 
 
 @dataclass(frozen=True, slots=True)
 class ItemAnalysis:
     """One item as this class answered it."""
 
-    item: Item
+    item: ReportItem
     n: int
     """Who took the quiz."""
-    outcomes: dict[Outcome, int]
-    chosen: dict[int, int]
+    outcomes: dict[AnswerOutcome, int]
+    choice_counts: dict[int, int]
     """How many chose each option, by its number from 0."""
-    keys: frozenset[int]
+    right_options: frozenset[int]
     """The options that were counted as right."""
     difficulty: float
     """The share who answered rightly; NaN where nobody took it."""
     interval: ConfidenceInterval
     """Of that share, 95 percent, by Wilson."""
-    with_rest: float
+    rest_correlation: float
     """Correlation with the rest of the quiz; NaN where one of them does not vary."""
 
     @property
-    def cautions(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """What a teacher should look at."""
-        right = sum(self.chosen.get(key, 0) for key in self.keys)
-        lures = [option + 1 for option, n in self.chosen.items() if option not in self.keys and n > right]
+        right = sum(self.choice_counts.get(key, 0) for key in self.right_options)
+        lures = [
+            option + 1
+            for option, n in self.choice_counts.items()
+            if option not in self.right_options and n > right
+        ]
         checks = (
-            (len(self.keys) > 1, f"{len(self.keys)} different options counted as right"),
+            (len(self.right_options) > 1, f"{len(self.right_options)} different options counted as right"),
             (
                 bool(lures),
                 f"option{'s' * (len(lures) > 1)} {', '.join(map(str, sorted(lures)))} drew more than the right one",
             ),
-            (self.difficulty < HARD, f"only {self.difficulty:.0%} had it right"),
-            (self.difficulty > EASY, "nearly everybody had it right: it tells nobody apart"),
-            (self.with_rest < LOOSE, f"goes with the rest by r = {round(self.with_rest, 2) + 0.0:.2f} only"),
+            (self.difficulty < MIN_DIFFICULTY, f"only {self.difficulty:.0%} had it right"),
+            (self.difficulty > MAX_DIFFICULTY, "nearly everybody had it right: it tells nobody apart"),
+            (
+                self.rest_correlation < MIN_REST_CORRELATION,
+                f"goes with the rest by r = {round(self.rest_correlation, 2) + 0.0:.2f} only",
+            ),
         )
         return tuple(text for holds, text in checks if holds)
 
 
-def analyse(quiz: Quiz, item: Item) -> ItemAnalysis:
+def analyse_item(quiz: AnswerSheet, item: ReportItem) -> ItemAnalysis:
     """The item among the others of the quiz."""
     replies = [each for each in quiz.replies[item.id] if each is not None]
-    right = quiz.right(item)
+    right = quiz.correctness(item)
     rest = [other for other in quiz.items if other != item]
-    hits = sum(each.outcome is Outcome.RIGHT for each in replies)
+    hits = sum(each.outcome is AnswerOutcome.RIGHT for each in replies)
     return ItemAnalysis(
         item,
         n=len(replies),
-        outcomes={outcome: sum(each.outcome is outcome for each in replies) for outcome in Outcome},
-        chosen=dict(sorted(Counter(each.chosen for each in replies if each.chosen is not None).items())),
-        keys=frozenset(
-            each.chosen for each in replies if each.outcome is Outcome.RIGHT and each.chosen is not None
+        outcomes={outcome: sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome},
+        choice_counts=dict(
+            sorted(Counter(each.chosen for each in replies if each.chosen is not None).items())
+        ),
+        right_options=frozenset(
+            each.chosen for each in replies if each.outcome is AnswerOutcome.RIGHT and each.chosen is not None
         ),
         difficulty=hits / len(replies) if replies else math.nan,
         interval=wilson_interval(hits, len(replies)),
-        with_rest=correlation(right, quiz.share(rest)) if rest else math.nan,
+        rest_correlation=correlation(right, quiz.share_right(rest)) if rest else math.nan,
     )
 
 
-def kr20(quiz: Quiz) -> float:
+def kr20(quiz: AnswerSheet) -> float:
     """How consistent the quiz is in itself, at most 1; NaN below two items or where all scored the same."""
-    columns = [present(quiz.right(item)) for item in quiz.items]
+    columns = [non_blank(quiz.correctness(item)) for item in quiz.items]
     k = len(columns)
     if k < 2 or len(columns[0]) < 2:
         return math.nan

@@ -8,25 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float64Array
-from kit.school.quiz.answers import Outcome
-from kit.school.report.inference import present
-from kit.school.survey.questions import Phase, Purpose, Question
+from kit.school.quiz.answers import AnswerOutcome
+from kit.school.report.inference import non_blank
+from kit.school.survey.questions import QuestionPurpose, SurveyPhase, SurveyQuestion
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class ItemReply:
     """One student's answer to one item. Only RIGHT counts as right; wrong, not sure and blank are told apart."""
 
-    outcome: Outcome
+    outcome: AnswerOutcome
     chosen: int | None = None
     """The option's number from 0."""
 
 
-BLANK = Reply(Outcome.BLANK)
+BLANK = ItemReply(AnswerOutcome.BLANK)
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class ReportItem:
     """A question of the quiz."""
 
     id: str
@@ -38,61 +38,63 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Quiz:
+class AnswerSheet:
     """Items, and each student's reply to each: the class's answer sheet."""
 
-    items: tuple[Item, ...]
-    replies: Mapping[str, tuple[Reply | None, ...]]
+    items: tuple[ReportItem, ...]
+    replies: Mapping[str, tuple[ItemReply | None, ...]]
     """By item, in the order of the students; None: this student did not take the quiz."""
 
-    def right(self, item: Item) -> Float64Array:
+    def correctness(self, item: ReportItem) -> Float64Array:
         """(n,) 1 for right, 0 for anything else, NaN for who did not take the quiz."""
         return np.array(
             [
-                np.nan if each is None else float(each.outcome is Outcome.RIGHT)
+                np.nan if each is None else float(each.outcome is AnswerOutcome.RIGHT)
                 for each in self.replies[item.id]
             ]
         )
 
-    def share(self, items: Sequence[Item]) -> Float64Array:
+    def share_right(self, items: Sequence[ReportItem]) -> Float64Array:
         """(n,) of these items answered rightly."""
-        return row_means([self.right(item) for item in items])
+        return row_means([self.correctness(item) for item in items])
 
     @property
     def score(self) -> Float64Array:
         """(n,) of all items."""
-        return self.share(self.items)
+        return self.share_right(self.items)
 
     @property
     def topics(self) -> tuple[str, ...]:
         """In the order in which they first come."""
         return tuple(dict.fromkeys(item.topic for item in self.items))
 
-    def of_topic(self, topic: str) -> tuple[Item, ...]:
+    def of_topic(self, topic: str) -> tuple[ReportItem, ...]:
         return tuple(item for item in self.items if item.topic == topic)
 
-    def nobody(self) -> Quiz:
+    def without_replies(self) -> AnswerSheet:
         """The same items, taken by nobody."""
-        return Quiz(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
+        return AnswerSheet(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
 
-    def count(self, outcome: Outcome) -> Float64Array:
+    def outcome_counts(self, outcome: AnswerOutcome) -> Float64Array:
         """(n,) items with that outcome, by student."""
         taken = [self.replies[item.id] for item in self.items]
         return np.array(
             [
-                np.nan if any(row[i] is None for row in taken) else sum(_is(row[i], outcome) for row in taken)
+                np.nan
+                if any(row[i] is None for row in taken)
+                else sum(_has_outcome(row[i], outcome) for row in taken)
                 for i in range(len(taken[0]) if taken else 0)
             ],
             dtype=np.float64,
         )
 
 
-def _is(reply: Reply | None, outcome: Outcome) -> bool:
+def _has_outcome(reply: ItemReply | None, outcome: AnswerOutcome) -> bool:
     return reply is not None and reply.outcome is outcome
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Measure:
+class StudentMeasure:
     """One quantity, of each student."""
 
     id: str
@@ -102,43 +104,45 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True)
-class Ratings:
+class ClassRatings:
     """The answers on scales of a class."""
 
-    questions: tuple[Question, ...]
-    values: Mapping[tuple[Phase, str], Float64Array]
+    questions: tuple[SurveyQuestion, ...]
+    values: Mapping[tuple[SurveyPhase, str], Float64Array]
     """By phase and question: (n,) of 1 to 7, NaN where blank."""
 
-    def measures(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
+    def measures(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
         """One for each question that anybody answered then."""
         return tuple(
-            Measure(each.id, each.text, values)
+            StudentMeasure(each.id, each.text, values)
             for each in self.questions
             if each.purpose is purpose
             and (values := self.values.get((phase, each.id))) is not None
-            and len(present(values))
+            and len(non_blank(values))
         )
 
-    def by_topic(self, purpose: Purpose, phase: Phase) -> tuple[Measure, ...]:
+    def by_topic(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
         """For each topic, each student's mean over its questions."""
         topics: dict[str, list[Float64Array]] = {}
         for measure in self.measures(purpose, phase):
             topics.setdefault(self._topic(measure), []).append(measure.values)
-        return tuple(Measure(topic, topic, row_means(rows)) for topic, rows in topics.items())
+        return tuple(StudentMeasure(topic, topic, row_means(rows)) for topic, rows in topics.items())
 
-    def of_topic(self, purpose: Purpose, phase: Phase, topic: str) -> tuple[Measure, ...]:
+    def of_topic(
+        self, purpose: QuestionPurpose, phase: SurveyPhase, topic: str
+    ) -> tuple[StudentMeasure, ...]:
         return tuple(each for each in self.measures(purpose, phase) if self._topic(each) == topic)
 
-    def topics(self, purpose: Purpose, phase: Phase) -> tuple[str, ...]:
+    def topics(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[str, ...]:
         return tuple(dict.fromkeys(self._topic(each) for each in self.measures(purpose, phase)))
 
-    def overall(self, purpose: Purpose, phase: Phase) -> Float64Array | None:
+    def overall(self, purpose: QuestionPurpose, phase: SurveyPhase) -> Float64Array | None:
         """Each student's mean over the topics' means, so that a topic of many questions counts no more than
         another; None where nobody answered."""
         topics = self.by_topic(purpose, phase)
         return row_means([each.values for each in topics]) if topics else None
 
-    def _topic(self, measure: Measure) -> str:
+    def _topic(self, measure: StudentMeasure) -> str:
         return next(each.topic for each in self.questions if each.id == measure.id)
 
 
@@ -152,7 +156,7 @@ def row_means(rows: Iterable[Float64Array]) -> Float64Array:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group:
+class StudentGroup:
     """Some of the students."""
 
     name: str

@@ -13,8 +13,8 @@ import numpy as np
 
 from kit.kernels.arrays import Float64Array
 
-FEWEST: Final = 4
-MOST: Final = 5000
+MIN_NUMBERS: Final = 4
+MAX_NUMBERS: Final = 5000
 
 
 def shapiro_wilk(values: Float64Array) -> tuple[float, float]:
@@ -22,7 +22,7 @@ def shapiro_wilk(values: Float64Array) -> tuple[float, float]:
     x = np.sort(values[~np.isnan(values)])
     n = len(x)
     spread = float(((x - x.mean()) ** 2).sum()) if n else 0.0
-    if not FEWEST <= n <= MOST or spread <= 0:
+    if not MIN_NUMBERS <= n <= MAX_NUMBERS or spread <= 0:
         return math.nan, math.nan
     w = min(1.0, float(_weights(n) @ x) ** 2 / spread)
     if w >= 1:

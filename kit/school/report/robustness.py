@@ -10,31 +10,31 @@ from typing import Final
 import numpy as np
 
 from kit.kernels.arrays import BoolArray, Float64Array
-from kit.school.report.expertise import Division
+from kit.school.report.expertise import ClassDivision
 from kit.school.report.inference import (
     NO_TEST,
-    SHUFFLES,
-    Chance,
+    SHUFFLE_COUNT,
+    PermutationTestResult,
     correlation,
     correlation_test,
     difference_test,
 )
 
-LEVEL: Final = 0.05
+SIGNIFICANCE_LEVEL: Final = 0.05
 """The p value that readers take for a line, for better or worse."""
-MOST_TESTED: Final = 60
+MAX_TESTED: Final = 60
 """Students up to whom p is looked at without each of them."""
-FEWEST: Final = 4
+MIN_PAIRS: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class LeaveOneOut:
     """A result without one student."""
 
     student: int
     """His or her place in the class, from 0."""
     value: float
-    chance: Chance
+    test: PermutationTestResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,28 +42,29 @@ class Sensitivity:
     """A result, and the same without each student."""
 
     value: float
-    chance: Chance
-    without: tuple[LeftOut, ...]
+    test: PermutationTestResult
+    without: tuple[LeaveOneOut, ...]
 
     @property
-    def least(self) -> LeftOut:
+    def lowest(self) -> LeaveOneOut:
         return min(self.without, key=lambda each: each.value)
 
     @property
-    def greatest(self) -> LeftOut:
+    def highest(self) -> LeaveOneOut:
         return max(self.without, key=lambda each: each.value)
 
     @property
-    def turning(self) -> tuple[LeftOut, ...]:
+    def decisive(self) -> tuple[LeaveOneOut, ...]:
         """Those without whom p is on the other side of 0.05."""
         return tuple(
             each
             for each in self.without
-            if not math.isnan(each.chance.p) and (each.chance.p < LEVEL) != (self.chance.p < LEVEL)
+            if not math.isnan(each.test.p_value)
+            and (each.test.p_value < SIGNIFICANCE_LEVEL) != (self.test.p_value < SIGNIFICANCE_LEVEL)
         )
 
 
-def of_difference(values: Float64Array, division: Division, seed: int) -> Sensitivity | None:
+def difference_sensitivity(values: Float64Array, division: ClassDivision, seed: int) -> Sensitivity | None:
     """Experts' mean minus beginners'. The groups stay as they are. None where a group has nobody to spare."""
     first, second = division.experts.members, division.beginners.members
     counted = ~np.isnan(values)
@@ -73,27 +74,29 @@ def of_difference(values: Float64Array, division: Division, seed: int) -> Sensit
     def gap(kept: BoolArray) -> float:
         return float(values[first & kept].mean() - values[second & kept].mean())
 
-    def test(kept: BoolArray, shuffles: int) -> Chance:
+    def test(kept: BoolArray, shuffles: int) -> PermutationTestResult:
         rng = np.random.default_rng(seed)
         return difference_test(values[first & kept], values[second & kept], rng, shuffles)
 
     return _leave_out(counted & (first | second), gap, test)
 
 
-def of_correlation(x: Float64Array, y: Float64Array, seed: int) -> Sensitivity | None:
+def correlation_sensitivity(x: Float64Array, y: Float64Array, seed: int) -> Sensitivity | None:
     """Of Pearson's r; None below four pairs, or where one quantity does not vary."""
     both = ~(np.isnan(x) | np.isnan(y))
-    if both.sum() < FEWEST or math.isnan(correlation(x, y)):
+    if both.sum() < MIN_PAIRS or math.isnan(correlation(x, y)):
         return None
 
-    def test(kept: BoolArray, shuffles: int) -> Chance:
+    def test(kept: BoolArray, shuffles: int) -> PermutationTestResult:
         return correlation_test(x[kept], y[kept], np.random.default_rng(seed), shuffles)
 
     return _leave_out(both, lambda kept: correlation(x[kept], y[kept]), test)
 
 
 def _leave_out(
-    members: BoolArray, value: Callable[[BoolArray], float], test: Callable[[BoolArray, int], Chance]
+    members: BoolArray,
+    value: Callable[[BoolArray], float],
+    test: Callable[[BoolArray, int], PermutationTestResult],
 ) -> Sensitivity:
     # Fewer in a large class, where this is asked as often as it has students.
     shuffles = max(1000, 100_000 // int(members.sum()))
@@ -106,12 +109,12 @@ def _leave_out(
             without[int(student)] = (found, kept)
     by_value = sorted(without, key=lambda student: without[student][0])
     # In a large class only the extremes are worth a test: nobody else can move p as far.
-    tested = set(without) if len(without) <= MOST_TESTED else {by_value[0], by_value[-1]}
+    tested = set(without) if len(without) <= MAX_TESTED else {by_value[0], by_value[-1]}
     return Sensitivity(
         value(members),
-        test(members, SHUFFLES),
+        test(members, SHUFFLE_COUNT),
         tuple(
-            LeftOut(student, found, test(kept, shuffles) if student in tested else NO_TEST)
+            LeaveOneOut(student, found, test(kept, shuffles) if student in tested else NO_TEST)
             for student, (found, kept) in without.items()
         ),
     )

@@ -11,9 +11,9 @@ from typing import Final
 from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 
-LARGEST: Final = 100_000_000
+MAX_FILE_SIZE: Final = 100_000_000
 """Bytes of one file: a year of a student's work is a hundredth of it."""
-LONGEST_NAME: Final = 40
+MAX_NAME_LENGTH: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +28,17 @@ class Student:
 
 
 @dataclass(frozen=True, slots=True)
-class Roll:
+class ClassRoster:
     """A class, and what was noticed while reading it."""
 
     students: tuple[Student, ...]
-    files: int
+    file_count: int
     """How many were found, readable or not."""
-    cautions: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 
 @dataclass(slots=True)
-class _Found:
+class _StudentFiles:
     """A student while files are being put together."""
 
     files: list[Path]
@@ -46,7 +46,7 @@ class _Found:
     name: str
 
 
-def read_roll(paths: Sequence[Path], *, names: bool = False) -> Roll:
+def read_roster(paths: Sequence[Path], *, names: bool = False) -> ClassRoster:
     """Reads every file, and every ``.json`` file directly in a folder; goes on past those that cannot be read.
 
     ``names``: students are called by the name they gave, else by their file's; otherwise S1, S2, ... in an order
@@ -54,19 +54,19 @@ def read_roll(paths: Sequence[Path], *, names: bool = False) -> Roll:
     """
     cautions: list[str] = []
     files = list(_files(paths, cautions))
-    found: list[_Found] = []
+    found: list[_StudentFiles] = []
     for file in files:
-        _take(file, found, cautions)
+        _add_file(file, found, cautions)
     found.sort(key=lambda each: hashlib.sha256(min(each.events).encode()).digest())
-    cautions += _namesakes(found)
+    cautions += _same_name_warnings(found)
     width = len(str(len(found)))
     labels = [each.name or each.files[0].stem for each in found] if names else []
-    labels = list(_told_apart(labels)) or [f"S{number:0{width}}" for number in range(1, len(found) + 1)]
+    labels = list(_unique_labels(labels)) or [f"S{number:0{width}}" for number in range(1, len(found) + 1)]
     students = (
         Student(label, tuple(each.files), tuple(sorted(each.events.values(), key=lambda event: event.time)))
         for label, each in zip(labels, found, strict=True)
     )
-    return Roll(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(cautions))
+    return ClassRoster(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(cautions))
 
 
 def _files(paths: Iterable[Path], cautions: list[str]) -> Iterator[Path]:
@@ -85,12 +85,12 @@ def _files(paths: Iterable[Path], cautions: list[str]) -> Iterator[Path]:
                 yield file
 
 
-def _take(file: Path, found: list[_Found], cautions: list[str]) -> None:
+def _add_file(file: Path, found: list[_StudentFiles], cautions: list[str]) -> None:
     """Reads a file, and puts it to the student whose entries it shares, if there is one."""
     try:
-        if file.is_file() and file.stat().st_size > LARGEST:
+        if file.is_file() and file.stat().st_size > MAX_FILE_SIZE:
             raise ProgressError(
-                f"{file}: is larger than {LARGEST // 1_000_000} MB; no export of progress is."
+                f"{file}: is larger than {MAX_FILE_SIZE // 1_000_000} MB; no export of progress is."
             )
         events = {event.uid: event for event in read_export(file)}
     except ProgressError as error:
@@ -102,40 +102,40 @@ def _take(file: Path, found: list[_Found], cautions: list[str]) -> None:
     if not events:
         cautions.append(f"{file}: holds no entry yet. It is left out.")
         return
-    name = _name(events.values())
+    name = _student_name(events.values())
     for other in found:
         shared = events.keys() & other.events.keys()
         if not shared:
             continue
         if name and other.name and name != other.name:
             cautions.append(
-                f"{file}: shares {_entries(len(shared))} with {other.files[0]}, but they name different students. "
+                f"{file}: shares {_count_text(len(shared))} with {other.files[0]}, but they name different students. "
                 "They are kept apart, and count what they share twice."
             )
             continue
         cautions.append(
-            f"{file}: is of the same student as {other.files[0]} ({_entries(len(shared))} in common). "
+            f"{file}: is of the same student as {other.files[0]} ({_count_text(len(shared))} in common). "
             "The two are put together."
         )
         other.files.append(file)
         other.events.update(events)
-        other.name = _name(other.events.values())
+        other.name = _student_name(other.events.values())
         return
-    found.append(_Found([file], events, name))
+    found.append(_StudentFiles([file], events, name))
 
 
-def _name(events: Iterable[ProgressEvent]) -> str:
+def _student_name(events: Iterable[ProgressEvent]) -> str:
     """The last name that the student gave; empty if none."""
     given = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
     last = max(given, key=lambda each: each.time, default=None)
     value = last.content.get("value") if last is not None else None
     if not isinstance(value, str):
         return ""
-    return "".join(c if is_printable(c) else " " for c in value).strip()[:LONGEST_NAME]
+    return "".join(c if is_printable(c) else " " for c in value).strip()[:MAX_NAME_LENGTH]
 
 
-def _namesakes(found: Sequence[_Found]) -> Iterator[str]:
-    by_name: dict[str, list[_Found]] = {}
+def _same_name_warnings(found: Sequence[_StudentFiles]) -> Iterator[str]:
+    by_name: dict[str, list[_StudentFiles]] = {}
     for each in found:
         by_name.setdefault(each.name.casefold(), []).append(each)
     for name, some in sorted(by_name.items()):
@@ -147,7 +147,7 @@ def _namesakes(found: Sequence[_Found]) -> Iterator[str]:
             )
 
 
-def _told_apart(labels: Sequence[str]) -> Iterator[str]:
+def _unique_labels(labels: Sequence[str]) -> Iterator[str]:
     """The same labels, those that come again with a number."""
     count: dict[str, int] = {}
     for label in labels:
@@ -155,5 +155,5 @@ def _told_apart(labels: Sequence[str]) -> Iterator[str]:
         yield label if count[label] == 1 else f"{label} ({count[label]})"
 
 
-def _entries(count: int) -> str:
+def _count_text(count: int) -> str:
     return "1 entry" if count == 1 else f"{count} entries"

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from kit.school.progress import EventKind, ProgressEvent
 
-PAUSE: Final = timedelta(minutes=10)
+MAX_IDLE: Final = timedelta(minutes=10)
 """Whoever does nothing for longer is taken to be away; that time is not counted."""
 
 _OF_LESSONS: Final = frozenset(
@@ -28,12 +28,12 @@ class ExerciseWork:
     points: float = 0.0
     """The best."""
     max_points: float = 0.0
-    passed: bool = False
+    is_passed: bool = False
     tries_to_pass: int | None = None
-    lost: Counter[str] = field(default_factory=Counter)
+    lost_criteria: Counter[str] = field(default_factory=Counter)
     """How often each criterion was lost."""
     hints: int = 0
-    solution: bool = False
+    has_seen_solution: bool = False
 
 
 @dataclass(slots=True)
@@ -64,15 +64,15 @@ class LessonWork:
         return sum(each.max_points for each in self.exercises.values())
 
     @property
-    def passed(self) -> int:
-        return sum(each.passed for each in self.exercises.values())
+    def passed_count(self) -> int:
+        return sum(each.is_passed for each in self.exercises.values())
 
 
-Work = Mapping[str, LessonWork]
+StudentWork = Mapping[str, LessonWork]
 """By lesson."""
 
 
-def work_of(events: Sequence[ProgressEvent]) -> Work:
+def student_work(events: Sequence[ProgressEvent]) -> StudentWork:
     """One student's work; ``events`` in the order of their time."""
     lessons: dict[str, LessonWork] = {}
     before: tuple[str, ProgressEvent] | None = None
@@ -81,14 +81,14 @@ def work_of(events: Sequence[ProgressEvent]) -> Work:
             continue
         name, _, rest = event.subject.partition("/")
         lesson = lessons.setdefault(name, LessonWork())
-        if before is not None and before[0] == name and event.time - before[1].time <= PAUSE:
+        if before is not None and before[0] == name and event.time - before[1].time <= MAX_IDLE:
             lesson.minutes += (event.time - before[1].time).total_seconds() / 60
         before = name, event
-        _note(lesson, event.kind, rest, event.content)
+        _add_event(lesson, event.kind, rest, event.content)
     return lessons
 
 
-def _note(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[str, Any]) -> None:
+def _add_event(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[str, Any]) -> None:
     if kind is EventKind.STEP:
         lesson.steps.add(rest)
     elif kind is EventKind.PREDICTION:
@@ -97,14 +97,14 @@ def _note(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[str, 
     else:
         exercise = lesson.exercises.setdefault(rest.partition("/")[0], ExerciseWork())
         if kind is EventKind.ATTEMPT:
-            _attempt(exercise, content)
+            _add_attempt(exercise, content)
         elif kind is EventKind.HINT:
             exercise.hints += 1
         else:
-            exercise.solution = True
+            exercise.has_seen_solution = True
 
 
-def _attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
+def _add_attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
     verdict = content.get("verdict")
     if verdict not in ("pass", "fail"):
         return  # the check itself broke, or nobody knows
@@ -112,11 +112,11 @@ def _attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
     most = _number(content.get("max_points"))
     exercise.max_points = max(exercise.max_points, most)
     exercise.points = max(exercise.points, min(_number(content.get("points")), most))
-    if verdict == "pass" and not exercise.passed:
-        exercise.passed, exercise.tries_to_pass = True, exercise.attempts
+    if verdict == "pass" and not exercise.is_passed:
+        exercise.is_passed, exercise.tries_to_pass = True, exercise.attempts
     lost = content.get("lost")
     if isinstance(lost, list):
-        exercise.lost.update({each for each in lost if isinstance(each, str)})
+        exercise.lost_criteria.update({each for each in lost if isinstance(each, str)})
 
 
 def _number(value: object) -> float:
@@ -130,6 +130,6 @@ def _number(value: object) -> float:
     return max(0.0, number) if math.isfinite(number) else 0.0
 
 
-def lessons_of(works: Iterable[Work]) -> tuple[str, ...]:
+def started_lessons(works: Iterable[StudentWork]) -> tuple[str, ...]:
     """Every lesson that anybody began, by name."""
     return tuple(sorted({name for work in works for name in work}))

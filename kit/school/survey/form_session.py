@@ -8,111 +8,121 @@ from typing import Final
 
 from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.survey.questions import HIGHEST, LOWEST, Form, Phase, Question, Shape, Value
+from kit.school.survey.questions import (
+    HIGHEST,
+    LOWEST,
+    AnswerShape,
+    AnswerValue,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
+)
 
-LONGEST_TEXT: Final = 4000
+MAX_TEXT_LENGTH: Final = 4000
 """Characters of one free answer."""
 
 _YES: Final[Mapping[str, bool]] = {"y": True, "yes": True, "n": False, "no": False}
 
 
-class NotAnAnswer(ValueError):
+class InvalidAnswer(ValueError):
     """A line that does not answer the question; the message says what would."""
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class FormAnswers:
     """What one student said so far; of several answers to one question the last one counts."""
 
-    given: Mapping[tuple[Phase, str], Value] = field(default_factory=dict)
+    values: Mapping[tuple[SurveyPhase, str], AnswerValue] = field(default_factory=dict)
     """By phase and question. A blank is there as None; what was never asked is not there."""
-    odd: tuple[str, ...] = ()
+    invalid_questions: tuple[str, ...] = ()
     """Questions whose stored answer cannot be one, which are left out."""
 
     @classmethod
-    def of(cls, form: Form, events: Iterable[ProgressEvent]) -> Answers:
+    def from_events(cls, form: SurveyForm, events: Iterable[ProgressEvent]) -> FormAnswers:
         """Folds a student's events; those about questions that the form does not have are passed over."""
-        given: dict[tuple[Phase, str], Value] = {}
+        given: dict[tuple[SurveyPhase, str], AnswerValue] = {}
         odd: dict[str, None] = {}
         for event in events:
-            question = form.find(event.subject) if event.kind is EventKind.FORM else None
+            question = form.find_question(event.subject) if event.kind is EventKind.FORM else None
             if question is None:
                 continue
             phase, value = event.content.get("phase"), event.content.get("value")
-            if phase in question.phases and question.accepts(value):
-                given[Phase(phase), question.id] = value
+            if phase in question.phases and question.can_be_answered_with(value):
+                given[SurveyPhase(phase), question.id] = value
             else:
                 odd[question.id] = None
         return cls(given, tuple(odd))
 
-    def value(self, question: str, phase: Phase) -> Value:
-        return self.given.get((phase, question))
+    def value(self, question: str, phase: SurveyPhase) -> AnswerValue:
+        return self.values.get((phase, question))
 
-    def latest(self, question: str, phase: Phase) -> Value:
+    def latest_value(self, question: str, phase: SurveyPhase) -> AnswerValue:
         """What was said in this phase; else in the last other one in which it was."""
-        where = (phase, *(each for each in reversed(Phase) if each is not phase))
-        return next((self.value(question, each) for each in where if self.has(question, each)), None)
+        where = (phase, *(each for each in reversed(SurveyPhase) if each is not phase))
+        return next((self.value(question, each) for each in where if self.is_answered(question, each)), None)
 
-    def has(self, question: str, phase: Phase) -> bool:
+    def is_answered(self, question: str, phase: SurveyPhase) -> bool:
         """Whether it was answered or left blank on purpose."""
-        return (phase, question) in self.given
+        return (phase, question) in self.values
 
-    def started(self, phase: Phase) -> bool:
-        return any(of is phase for of, _ in self.given)
+    def has_started(self, phase: SurveyPhase) -> bool:
+        return any(of is phase for of, _ in self.values)
 
 
-def applies(question: Question, answers: Answers, phase: Phase) -> bool:
+def is_asked(question: SurveyQuestion, answers: FormAnswers, phase: SurveyPhase) -> bool:
     """Whether the question is asked of this student."""
     rule = question.only_if
-    return phase in question.phases and (rule is None or rule.allows(answers.latest(rule.question, phase)))
+    return phase in question.phases and (
+        rule is None or rule.is_met(answers.latest_value(rule.question, phase))
+    )
 
 
-def asked(form: Form, answers: Answers, phase: Phase) -> list[Question]:
+def asked_questions(form: SurveyForm, answers: FormAnswers, phase: SurveyPhase) -> list[SurveyQuestion]:
     """All questions of the phase that this student is asked, as things stand."""
-    return [each for each in form.in_phase(phase) if applies(each, answers, phase)]
+    return [each for each in form.questions_in_phase(phase) if is_asked(each, answers, phase)]
 
 
-def still_open(form: Form, answers: Answers, phase: Phase) -> list[Question]:
+def open_questions(form: SurveyForm, answers: FormAnswers, phase: SurveyPhase) -> list[SurveyQuestion]:
     """Those of them that were neither answered nor left blank yet."""
-    return [each for each in asked(form, answers, phase) if not answers.has(each.id, phase)]
+    return [each for each in asked_questions(form, answers, phase) if not answers.is_answered(each.id, phase)]
 
 
-def parse(question: Question, line: str) -> Value:
+def parse_answer(question: SurveyQuestion, line: str) -> AnswerValue:
     """What a typed line answers; an empty one leaves the question blank. Raises NotAnAnswer."""
     text = line.strip()
     return _PARSERS[question.shape](question, text) if text else None
 
 
-def _scale(question: Question, text: str) -> int:
+def _scale(question: SurveyQuestion, text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) <= 3 and LOWEST <= int(text) <= HIGHEST):
-        raise NotAnAnswer(f"Type a number from {LOWEST} to {HIGHEST}, or nothing to leave it blank.")
+        raise InvalidAnswer(f"Type a number from {LOWEST} to {HIGHEST}, or nothing to leave it blank.")
     return int(text)
 
 
-def _choice(question: Question, text: str) -> str:
+def _choice(question: SurveyQuestion, text: str) -> str:
     count = len(question.options)
     if not (text.isascii() and text.isdigit() and len(text) <= 3 and 1 <= int(text) <= count):
-        raise NotAnAnswer(f"Type a number from 1 to {count}, or nothing to leave it blank.")
+        raise InvalidAnswer(f"Type a number from 1 to {count}, or nothing to leave it blank.")
     return question.options[int(text) - 1]
 
 
-def _yes_no(question: Question, text: str) -> bool:
+def _yes_no(question: SurveyQuestion, text: str) -> bool:
     if text.lower() not in _YES:
-        raise NotAnAnswer("Type y or n, or nothing to leave it blank.")
+        raise InvalidAnswer("Type y or n, or nothing to leave it blank.")
     return _YES[text.lower()]
 
 
-def _text(question: Question, text: str) -> str:
-    if len(text) > LONGEST_TEXT:
-        raise NotAnAnswer(f"That is {len(text)} characters; {LONGEST_TEXT} fit. Say it in fewer.")
+def _text(question: SurveyQuestion, text: str) -> str:
+    if len(text) > MAX_TEXT_LENGTH:
+        raise InvalidAnswer(f"That is {len(text)} characters; {MAX_TEXT_LENGTH} fit. Say it in fewer.")
     if "\ufffd" in text or not is_printable(text):
-        raise NotAnAnswer("Some of that was no text, such as a key's code. Type it again.")
+        raise InvalidAnswer("Some of that was no text, such as a key's code. Type it again.")
     return text
 
 
-_PARSERS: Final[Mapping[Shape, Callable[[Question, str], Value]]] = {
-    Shape.SCALE: _scale,
-    Shape.CHOICE: _choice,
-    Shape.YES_NO: _yes_no,
-    Shape.TEXT: _text,
+_PARSERS: Final[Mapping[AnswerShape, Callable[[SurveyQuestion, str], AnswerValue]]] = {
+    AnswerShape.SCALE: _scale,
+    AnswerShape.CHOICE: _choice,
+    AnswerShape.YES_NO: _yes_no,
+    AnswerShape.TEXT: _text,
 }

@@ -11,11 +11,11 @@ LOWEST: Final = 1
 HIGHEST: Final = 7
 """Of every scale."""
 
-Value = int | str | bool | None
+AnswerValue = int | str | bool | None
 """What was answered: a point of the scale, a text or an option, yes or no; None: left blank."""
 
 
-class Shape(StrEnum):
+class AnswerShape(StrEnum):
     """How a question is answered."""
 
     SCALE = "scale"
@@ -24,7 +24,7 @@ class Shape(StrEnum):
     TEXT = "text"
 
 
-class Phase(StrEnum):
+class SurveyPhase(StrEnum):
     """When a question is asked."""
 
     BEFORE = "before"
@@ -35,7 +35,7 @@ class Phase(StrEnum):
     """After the quiz, which shows what one knows: what one says of oneself is asked once more."""
 
 
-class Purpose(StrEnum):
+class QuestionPurpose(StrEnum):
     """What a question is for; the class report makes a table of each kind of rating."""
 
     BACKGROUND = "background"
@@ -50,7 +50,7 @@ class Purpose(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class AskCondition:
     """A question is asked only where an earlier one was answered so."""
 
     question: str
@@ -59,7 +59,7 @@ class Rule:
     at_least: int | None = None
     """At least so much on a scale."""
 
-    def allows(self, value: Value) -> bool:
+    def is_met(self, value: AnswerValue) -> bool:
         """A blank never does."""
         if self.at_least is not None:
             return isinstance(value, int) and not isinstance(value, bool) and value >= self.at_least
@@ -67,50 +67,52 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class SurveyQuestion:
     """One question, or one row of a group of them."""
 
     id: str
     text: str
     """Of the row; of the question itself where there are no rows."""
-    purpose: Purpose
-    shape: Shape = Shape.SCALE
-    lead: str = ""
+    purpose: QuestionPurpose
+    shape: AnswerShape = AnswerShape.SCALE
+    group_text: str = ""
     """What is asked of every row of the group; empty where there are no rows."""
     topic: str = ""
     """Such as ``ros2``; ratings are averaged by it. Those of experience name what Algorithm 4 asks for."""
-    phases: tuple[Phase, ...] = (Phase.AFTER,)
+    phases: tuple[SurveyPhase, ...] = (SurveyPhase.AFTER,)
     low: str = ""
     """What the scale's lowest point means."""
     high: str = ""
     options: tuple[str, ...] = ()
-    only_if: Rule | None = None
+    only_if: AskCondition | None = None
 
-    def accepts(self, value: object) -> TypeGuard[Value]:
+    def can_be_answered_with(self, value: object) -> TypeGuard[AnswerValue]:
         """Whether a stored value can be an answer to this question; a blank can."""
         if value is None:
             return True
         if isinstance(value, bool):
-            return self.shape is Shape.YES_NO
+            return self.shape is AnswerShape.YES_NO
         if isinstance(value, int):
-            return self.shape is Shape.SCALE and LOWEST <= value <= HIGHEST
+            return self.shape is AnswerShape.SCALE and LOWEST <= value <= HIGHEST
         if isinstance(value, str):
-            return value in self.options if self.shape is Shape.CHOICE else self.shape is Shape.TEXT
+            return (
+                value in self.options if self.shape is AnswerShape.CHOICE else self.shape is AnswerShape.TEXT
+            )
         return False
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class SurveyForm:
     """All questions, in the order in which they are asked."""
 
     title: str
-    questions: tuple[Question, ...]
+    questions: tuple[SurveyQuestion, ...]
 
-    def find(self, identity: str) -> Question | None:
+    def find_question(self, identity: str) -> SurveyQuestion | None:
         return next((each for each in self.questions if each.id == identity), None)
 
-    def of(self, purpose: Purpose) -> tuple[Question, ...]:
+    def questions_for(self, purpose: QuestionPurpose) -> tuple[SurveyQuestion, ...]:
         return tuple(each for each in self.questions if each.purpose is purpose)
 
-    def in_phase(self, phase: Phase) -> Iterator[Question]:
+    def questions_in_phase(self, phase: SurveyPhase) -> Iterator[SurveyQuestion]:
         return (each for each in self.questions if phase in each.phases)

@@ -7,30 +7,39 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.survey.questions import HIGHEST, LOWEST, Form, Phase, Purpose, Question, Rule, Shape
+from kit.school.survey.questions import (
+    HIGHEST,
+    LOWEST,
+    AnswerShape,
+    AskCondition,
+    QuestionPurpose,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
+)
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-FILE: Final = "form.yaml"
+FORM_FILE: Final = "form.yaml"
 
-_SHAPES: Final = {each.value: each for each in Shape}
-_PURPOSES: Final = {each.value: each for each in Purpose}
-_PHASES: Final = {each.value: each for each in Phase}
+_SHAPES: Final = {each.value: each for each in AnswerShape}
+_PURPOSES: Final = {each.value: each for each in QuestionPurpose}
+_PHASES: Final = {each.value: each for each in SurveyPhase}
 
 
 def form_file() -> Path:
     """The kit's own form: inside the installed package, or in a checkout. FileNotFoundError if neither."""
     package = Path(__file__).resolve().parents[2]
     for folder in (package / "data" / "lessons", package.parent / "lessons"):
-        if (folder / FILE).is_file():
-            return folder / FILE
-    raise FileNotFoundError(f"{FILE} is missing: neither in {package / 'data'} nor beside {package}")
+        if (folder / FORM_FILE).is_file():
+            return folder / FORM_FILE
+    raise FileNotFoundError(f"{FORM_FILE} is missing: neither in {package / 'data'} nor beside {package}")
 
 
-def read_form(file: Path | None = None) -> Form:
+def read_form(file: Path | None = None) -> SurveyForm:
     """The form in a file, by default the kit's. Raises WorldError with all its mistakes, and FileNotFoundError."""
     file = form_file() if file is None else file
     problems = ProblemCollector()
@@ -38,15 +47,15 @@ def read_form(file: Path | None = None) -> Form:
     problems.raise_if_any()
     assert section is not None  # None is noted as a problem
     title = section.name("title")
-    questions: list[Question] = []
+    questions: list[SurveyQuestion] = []
     for group in section.sections("groups", at_least=1):
-        _add(questions, group)
+        _add_group(questions, group)
     section.finish()
     problems.raise_if_any()
-    return Form(title, tuple(questions))
+    return SurveyForm(title, tuple(questions))
 
 
-def _add(questions: list[Question], group: Section) -> None:
+def _add_group(questions: list[SurveyQuestion], group: Section) -> None:
     for question, section in _questions(group):
         if any(each.id == question.id for each in questions):
             section.error(f"{quoted(question.id)} is there twice", "id")
@@ -57,21 +66,21 @@ def _add(questions: list[Question], group: Section) -> None:
     group.finish()
 
 
-def _questions(group: Section) -> Iterator[tuple[Question, Section]]:
+def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
     """The questions of a group, each with the section in which its id stands."""
     identity = group.name("id")
-    shape = group.choice("shape", _SHAPES, Shape.SCALE.value)
+    shape = group.choice("shape", _SHAPES, AnswerShape.SCALE.value)
     text = group.name("text")
-    made = Question(
+    made = SurveyQuestion(
         id=identity,
         text=text,
-        purpose=group.choice("purpose", _PURPOSES) or Purpose.WORDS,
+        purpose=group.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS,
         shape=shape,
         topic=group.name("topic") if group.has("topic") else "",
         phases=tuple(_PHASES[name] for name in _phase_names(group)),
-        low=group.name("low") if shape is Shape.SCALE else "",
-        high=group.name("high") if shape is Shape.SCALE else "",
-        options=group.texts("options", at_least=2) if shape is Shape.CHOICE else (),
+        low=group.name("low") if shape is AnswerShape.SCALE else "",
+        high=group.name("high") if shape is AnswerShape.SCALE else "",
+        options=group.texts("options", at_least=2) if shape is AnswerShape.CHOICE else (),
         only_if=_rule(group.section("only_if", None)),
     )
     if not group.has("rows"):
@@ -79,12 +88,12 @@ def _questions(group: Section) -> Iterator[tuple[Question, Section]]:
         return
     for row in group.sections("rows", at_least=1):
         yield (
-            Question(
+            SurveyQuestion(
                 id=f"{identity}.{row.name('id')}",
                 text=row.name("text"),
                 purpose=made.purpose,
                 shape=shape,
-                lead=text,
+                group_text=text,
                 topic=row.name("topic") if row.has("topic") else made.topic,
                 phases=made.phases,
                 low=made.low,
@@ -98,34 +107,34 @@ def _questions(group: Section) -> Iterator[tuple[Question, Section]]:
 
 
 def _phase_names(group: Section) -> tuple[str, ...]:
-    names = group.texts("phases", (Phase.AFTER.value,), at_least=1)
+    names = group.texts("phases", (SurveyPhase.AFTER.value,), at_least=1)
     wrong = [name for name in names if name not in _PHASES]
     for name in wrong:
         group.error(f"there is no phase {quoted(name)}: {suggestion(name, _PHASES)}", "phases")
     return tuple(name for name in names if name not in wrong)
 
 
-def _rule(section: Section | None) -> Rule | None:
+def _rule(section: Section | None) -> AskCondition | None:
     if section is None:
         return None
     question = section.name("question")
     made = (
-        Rule(question, at_least=section.integer("at_least", minimum=LOWEST, maximum=HIGHEST))
+        AskCondition(question, at_least=section.integer("at_least", minimum=LOWEST, maximum=HIGHEST))
         if section.has("at_least")
-        else Rule(question, answer=section.flag("answer"))
+        else AskCondition(question, answer=section.flag("answer"))
     )
     section.finish()
     return made
 
 
-def _check_rule(rule: Rule, earlier: list[Question], group: Section) -> None:
+def _check_rule(rule: AskCondition, earlier: list[SurveyQuestion], group: Section) -> None:
     """A rule can only speak of a question that was asked before, and of an answer that it can have."""
     named = next((each for each in earlier if each.id == rule.question), None)
     if named is None:
         hint = suggestion(rule.question, [each.id for each in earlier])
         group.error(f"no earlier question is called {quoted(rule.question)}: {hint}", "only_if")
         return
-    wanted = Shape.YES_NO if rule.at_least is None else Shape.SCALE
+    wanted = AnswerShape.YES_NO if rule.at_least is None else AnswerShape.SCALE
     if named.shape is not wanted:
         group.error(
             f"{quoted(rule.question)} is of shape {named.shape.value}: `answer` goes with yes_no, `at_least` with scale",

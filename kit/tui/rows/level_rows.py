@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from kit.school.game.drive_records import Noted
+from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost
-from kit.school.game.player_progress import LevelStanding
-from kit.school.game.race import Driver, Finish
+from kit.school.game.player_progress import LevelProgress
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.widgets.text_rows import Row, StyledText, row
 
 CELL: Final = (20, 26)
@@ -16,23 +16,23 @@ CELL: Final = (20, 26)
 WIDTH: Final = 80
 STAR, NO_STAR, SHUT = "*", ".", "-"
 TITLES: Final = ("finished", "touched nothing", "under par")
-WHO: Final = {Driver.KEYS: "by hand", Driver.CONTROLLER: "by program", Driver.AGENT: "by agent"}
+WHO: Final = {DriverKind.KEYS: "by hand", DriverKind.CONTROLLER: "by program", DriverKind.AGENT: "by agent"}
 
 
-def stars(standing: LevelStanding) -> str:
+def stars(progress: LevelProgress) -> str:
     """``**.``, or ``---`` for a level that is not open yet."""
-    if not standing.is_open:
-        return SHUT * len(standing.stars)
-    return "".join(STAR if has else NO_STAR for has in standing.stars)
+    if not progress.is_open:
+        return SHUT * len(progress.stars)
+    return "".join(STAR if has else NO_STAR for has in progress.stars)
 
 
-def grid(standings: Sequence[LevelStanding]) -> list[list[int]]:
+def grid(standings: Sequence[LevelProgress]) -> list[list[int]]:
     """Which levels stand in which row of the map: by number, from 0."""
     rows = 1 + max((each.level.row for each in standings), default=-1)
     return [[number for number, each in enumerate(standings) if each.level.row == at] for at in range(rows)]
 
 
-def level_map(standings: Sequence[LevelStanding], chosen: int) -> list[Row]:
+def level_map(standings: Sequence[LevelProgress], chosen: int) -> list[Row]:
     """One row for each depth, an empty one between."""
     made: list[Row] = []
     for numbers in grid(standings):
@@ -44,27 +44,27 @@ def level_map(standings: Sequence[LevelStanding], chosen: int) -> list[Row]:
     return made[:-1]
 
 
-def _cell(standing: LevelStanding, is_chosen: bool, width: int) -> tuple[StyledText, ...]:
-    title = standing.level.title
+def _cell(progress: LevelProgress, is_chosen: bool, width: int) -> tuple[StyledText, ...]:
+    title = progress.level.title
     room = width - 6
     title = title if len(title) <= room else title[: room - 1] + "."
-    style = "bold" if is_chosen else "" if standing.is_open else "dim"
+    style = "bold" if is_chosen else "" if progress.is_open else "dim"
     return (
         (">" if is_chosen else " ", "bold"),
-        (stars(standing), "warn" if standing.count else "dim"),
+        (stars(progress), "warn" if progress.star_count else "dim"),
         (f" {title:<{room}} ", style),
     )
 
 
-def about(standing: LevelStanding, ghosts: Sequence[Ghost], reference: Ghost | None) -> list[Row]:
+def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: Ghost | None) -> list[Row]:
     """What the chosen level asks for, and how it was driven."""
-    level = standing.level
-    if not standing.is_open:
-        return [row((level.title, "bold"), f"  opens when you have finished {' or '.join(level.after)}.")]
+    level = progress.level
+    if not progress.is_open:
+        return [row((level.title, "bold"), f"  opens when you have finished {' or '.join(level.opened_by)}.")]
     times = [
-        f"{WHO[Driver(ghost.name)]} {standing.best[Driver(ghost.name)]:.1f} s"
+        f"{WHO[DriverKind(ghost.name)]} {progress.best_times[DriverKind(ghost.name)]:.1f} s"
         for ghost in ghosts
-        if Driver(ghost.name) in standing.best
+        if DriverKind(ghost.name) in progress.best_times
     ]
     best = ", ".join(times) or "not finished yet"
     measure = "" if reference is None else f"; the reference takes {reference.seconds:.1f} s"
@@ -75,7 +75,9 @@ def about(standing: LevelStanding, ghosts: Sequence[Ghost], reference: Ghost | N
     ]
 
 
-def result(level_title: str, par: float, finish: Finish, noted: Noted, reference: Ghost | None) -> list[Row]:
+def result(
+    level_title: str, par: float, finish: RaceFinish, noted: DriveRecord, reference: Ghost | None
+) -> list[Row]:
     """What a drive earned: rows of a page."""
     if finish.foul:
         head = f" It does not count: {finish.foul}."

@@ -6,9 +6,15 @@ import textwrap
 from collections.abc import Sequence
 from typing import Final
 
-from kit.school.quiz.answers import Choice, Outcome
-from kit.school.quiz.items import Item
-from kit.school.quiz.quiz_text import SURE_CHOICES, SURE_QUESTION, feedback, verdict, ways_on
+from kit.school.quiz.answers import AnswerChoice, AnswerOutcome
+from kit.school.quiz.items import QuizItem
+from kit.school.quiz.quiz_text import (
+    CONFIDENCE_CHOICES,
+    CONFIDENCE_QUESTION,
+    feedback_text,
+    follow_up_lines,
+    verdict_text,
+)
 from kit.tui.widgets.text_rows import Row, row
 
 MARGIN: Final = 2
@@ -16,14 +22,14 @@ WIDEST: Final = 92
 """Longer lines are hard to read, however wide the terminal."""
 
 _LOOKS: Final = {
-    Outcome.RIGHT: "good",
-    Outcome.WRONG: "bad",
-    Outcome.NOT_SURE: "bold",
-    Outcome.BLANK: "bold",
+    AnswerOutcome.RIGHT: "good",
+    AnswerOutcome.WRONG: "bad",
+    AnswerOutcome.NOT_SURE: "bold",
+    AnswerOutcome.BLANK: "bold",
 }
 
 
-def question_rows(item: Item, width: int) -> list[Row]:
+def question_rows(item: QuizItem, width: int) -> list[Row]:
     """The question and its picture."""
     room = _room(width)
     rows = [row(" " * MARGIN + line) for line in textwrap.wrap(item.question, room)]
@@ -32,13 +38,15 @@ def question_rows(item: Item, width: int) -> list[Row]:
     return [*rows, row()]
 
 
-def option_rows(item: Item, width: int, choice: Choice | None = None, *, told: bool = False) -> list[Row]:
+def option_rows(
+    item: QuizItem, width: int, choice: AnswerChoice | None = None, *, told: bool = False
+) -> list[Row]:
     """The options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
     rows: list[Row] = []
     for index, option in enumerate(item.options):
         chosen = choice is not None and choice.option == index
         mark, style = (">", "bold") if chosen else (" ", "")
-        if told and option.right:
+        if told and option.is_right:
             mark, style = "+", "good"
         elif told:
             mark, style = ("x", "bad") if chosen else (" ", "dim")
@@ -50,22 +58,22 @@ def option_rows(item: Item, width: int, choice: Choice | None = None, *, told: b
 
 def sure_rows() -> list[Row]:
     """How sure one is."""
-    parts: list[str | tuple[str, str]] = [" " * MARGIN, (SURE_QUESTION, "bold")]
-    for number, text in SURE_CHOICES:
+    parts: list[str | tuple[str, str]] = [" " * MARGIN, (CONFIDENCE_QUESTION, "bold")]
+    for number, text in CONFIDENCE_CHOICES:
         parts += ["  ", (str(number), "bold"), f" {text}"]
     return [row(), row(*parts)]
 
 
-def told_rows(item: Item, choice: Choice, width: int) -> list[Row]:
+def told_rows(item: QuizItem, choice: AnswerChoice, width: int) -> list[Row]:
     """The verdict, what is said to the choice, and where to go from here."""
     room = _room(width)
     style = _LOOKS[choice.outcome(item)]
-    lines = textwrap.wrap(feedback(item, choice), room)
+    lines = textwrap.wrap(feedback_text(item, choice), room)
     return [
         row(),
-        row(" " * MARGIN, (verdict(item, choice), style)),
+        row(" " * MARGIN, (verdict_text(item, choice), style)),
         *(row(" " * MARGIN + line) for line in lines),
-        *(row((" " * MARGIN + line, "dim")) for line in ways_on(item, room)),
+        *(row((" " * MARGIN + line, "dim")) for line in follow_up_lines(item, room)),
     ]
 
 

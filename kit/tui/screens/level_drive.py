@@ -17,10 +17,10 @@ from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
 from kit.render.scene import Mark, Path, Scene
 from kit.run.view import clock
-from kit.school.game.drive_records import Noted, note
+from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
-from kit.school.game.levels import Level
-from kit.school.game.race import LONGEST, SEED, Driver, Finish, Judge
+from kit.school.game.levels import GameLevel
+from kit.school.game.race import SEED, TIME_LIMIT_PARS, DriverKind, RaceFinish, RaceReferee
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.keys import base_key, drive_key, named
@@ -45,7 +45,7 @@ WAY: Final = 0.15
 class DriveEnded(Message):
     """The drive has ended."""
 
-    def __init__(self, finish: Finish, noted: Noted | None, problem: str) -> None:
+    def __init__(self, finish: RaceFinish, noted: DriveRecord | None, problem: str) -> None:
         super().__init__()
         self.finish = finish
         self.noted = noted
@@ -97,7 +97,7 @@ class LevelDrive(WatchScreen):
     def __init__(
         self,
         theme: Theme,
-        level: Level,
+        level: GameLevel,
         ghosts: Sequence[Ghost],
         journal: ProgressJournal,
         workspace: Workspace,
@@ -111,7 +111,7 @@ class LevelDrive(WatchScreen):
         self._with_ghosts = True
         self._progress = journal
         self._workspace = workspace
-        self._judge: Judge | None = None
+        self._judge: RaceReferee | None = None
         self._is_over = False
         self._strength = 1.0
         self._said: Row = ()
@@ -122,7 +122,7 @@ class LevelDrive(WatchScreen):
 
     def open_world(self) -> None:
         self._judge, self._is_over, self.view, self._said = None, False, None, ()
-        place = self._level.find()
+        place = self._level.find_scenario()
         self.host.open(lambda: place, find_controller(TWO if len(place.partners) > 1 else ONE), paused=True)
         self._place: Place = place
 
@@ -136,7 +136,7 @@ class LevelDrive(WatchScreen):
             return
         self._strength = strength
         if self._judge is None and any(message.startswith("p_") for message in messages):
-            self._judge = judge = Judge(self._place)
+            self._judge = judge = RaceReferee(self._place)
             self.host.post(lambda session: session.runner.observers.append(judge))
             self.host.set_paused(False)
         self.host.post(lambda session: session.keys.publish(messages, strength))
@@ -180,8 +180,8 @@ class LevelDrive(WatchScreen):
             self.host.set_paused(True)
             self.host.post(self._end)
 
-    def _has_ended(self, finish: Finish, time_s: float) -> bool:
-        return finish.reached or bool(finish.foul) or time_s > LONGEST * self._level.par
+    def _has_ended(self, finish: RaceFinish, time_s: float) -> bool:
+        return finish.reached or bool(finish.foul) or time_s > TIME_LIMIT_PARS * self._level.par
 
     def _end(self, session: Session) -> None:
         """In the world's thread, between two ticks: nothing moves any more."""
@@ -190,7 +190,9 @@ class LevelDrive(WatchScreen):
         finish, noted, problem = self._judge.finish, None, ""
         if recording is not None:
             try:
-                noted = note(self._progress, self._workspace, self._level, Driver.KEYS, finish, recording)
+                noted = record_drive(
+                    self._progress, self._workspace, self._level, DriverKind.KEYS, finish, recording
+                )
             except ProgressError as error:
                 problem = str(error)
         self.post_message(DriveEnded(finish, noted, problem))

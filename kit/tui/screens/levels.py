@@ -12,11 +12,11 @@ from textual.binding import Binding, BindingType
 
 from kit.controllers import kit_controllers, user_controllers
 from kit.school.game import leaderboard
-from kit.school.game.drive_records import Noted, note
-from kit.school.game.ghosts import Ghost, folder, ghosts, reference_ghost
-from kit.school.game.levels import Level, all_levels
-from kit.school.game.player_progress import LevelStanding, standings
-from kit.school.game.race import Driver, Finish, race, race_agent
+from kit.school.game.drive_records import DriveRecord, record_drive
+from kit.school.game.ghosts import Ghost, ghosts_folder, load_ghosts, load_reference_ghost
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.game.race import DriverKind, RaceFinish, race_agent, race_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import key_line
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.workspace import Workspace
 
-    _Drive: TypeAlias = Callable[[Level], tuple[Finish, Recording]]
+    _Drive: TypeAlias = Callable[[GameLevel], tuple[RaceFinish, Recording]]
     _Tell: TypeAlias = Callable[[float], None]
 
 ABOUT_ROWS: Final = 4
@@ -75,7 +75,7 @@ class LevelsScreen(ActivePaintScreen[None]):
     """
 
     def __init__(
-        self, theme: Theme, journal: ProgressJournal, workspace: Workspace, level: Level | None = None
+        self, theme: Theme, journal: ProgressJournal, workspace: Workspace, level: GameLevel | None = None
     ) -> None:
         """``level``: opened at once."""
         super().__init__()
@@ -84,7 +84,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._workspace = workspace
         self._levels = all_levels()
         self._first = level
-        self._found: tuple[LevelStanding, ...] = ()
+        self._found: tuple[LevelProgress, ...] = ()
         self._known: dict[str, tuple[tuple[Ghost, ...], Ghost | None]] = {}
         self._doing = ""
         self._at = 0 if level is None else [each.id for each in self._levels].index(level.id)
@@ -99,7 +99,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         self._read()
         if self._first is None:
             self._at = next(
-                (number for number, each in enumerate(self._found) if each.is_open and each.count < 3), 0
+                (number for number, each in enumerate(self._found) if each.is_open and each.star_count < 3), 0
             )
         self._load_ghosts()
         if self._first is not None:
@@ -109,16 +109,16 @@ class LevelsScreen(ActivePaintScreen[None]):
         self.call_after_refresh(self._show)
 
     @property
-    def chosen(self) -> LevelStanding:
+    def chosen(self) -> LevelProgress:
         return self._found[self._at]
 
     def _read(self) -> None:
-        self._found = standings(self._levels, self._progress.events(EventKind.FINISH))
+        self._found = level_progress(self._levels, self._progress.events(EventKind.FINISH))
 
     def _show(self) -> None:
         if not self.size.width or not self._found:
             return
-        have = sum(each.count for each in self._found)
+        have = sum(each.star_count for each in self._found)
         right = row((f"{have} of {3 * len(self._found)} stars ", "bold"))
         self._rows("heading").show(
             [
@@ -144,8 +144,8 @@ class LevelsScreen(ActivePaintScreen[None]):
             self._known[level.id] = await to_thread(self._ghosts_of, level)
             self._show()
 
-    def _ghosts_of(self, level: Level) -> tuple[tuple[Ghost, ...], Ghost | None]:
-        return ghosts(self._workspace, level), reference_ghost(self._workspace, level)
+    def _ghosts_of(self, level: GameLevel) -> tuple[tuple[Ghost, ...], Ghost | None]:
+        return load_ghosts(self._workspace, level), load_reference_ghost(self._workspace, level)
 
     def _rows(self, name: str) -> TextRows:
         return self.query_one(f"#{name}", TextRows)
@@ -194,7 +194,8 @@ class LevelsScreen(ActivePaintScreen[None]):
         )
         if picked is not None:
             await self._race(
-                Driver.CONTROLLER, lambda level: race(level, files[picked], on_second=self._tell)
+                DriverKind.CONTROLLER,
+                lambda level: race_controller(level, files[picked], on_second=self._tell),
             )
 
     @work(exclusive=True, group="drive")
@@ -210,7 +211,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
         if picked is not None:
             await self._race(
-                Driver.AGENT, lambda level: _race_agent(level, self._workspace.runs, picked, self._tell)
+                DriverKind.AGENT, lambda level: _race_agent(level, self._workspace.runs, picked, self._tell)
             )
 
     def action_watch(self) -> None:
@@ -219,7 +220,7 @@ class LevelsScreen(ActivePaintScreen[None]):
         files = [
             file
             for each in (*near, *([reference] if reference else []))
-            for file in sorted(folder(self._workspace).glob(f"{level.id}.{each.name}*.npz"))
+            for file in sorted(ghosts_folder(self._workspace).glob(f"{level.id}.{each.name}*.npz"))
         ]
         if not files:
             self.app.push_screen(
@@ -245,11 +246,11 @@ class LevelsScreen(ActivePaintScreen[None]):
                 self.app.push_screen(MessageDialog("It cannot be watched", wrapped(str(error))))
                 return
             await self.app.push_screen_wait(
-                RecordingScreen(self._theme, self.chosen.level.find(), recording, "a drive")
+                RecordingScreen(self._theme, self.chosen.level.find_scenario(), recording, "a drive")
             )
 
     def action_fame(self) -> None:
-        found = leaderboard.entries(leaderboard.hall())
+        found = leaderboard.read_entries(leaderboard.leaderboard_folder())
         rows: list[Row] = [row()]
         for level in self._levels:
             best = [each for each in found if each.level == level.id][:BEST]
@@ -282,14 +283,14 @@ class LevelsScreen(ActivePaintScreen[None]):
                 MessageDialog(
                     "Not open yet",
                     wrapped(
-                        f"{self.chosen.level.title} opens when you have finished {' or '.join(self.chosen.level.after)}."
+                        f"{self.chosen.level.title} opens when you have finished {' or '.join(self.chosen.level.opened_by)}."
                     ),
                 )
             )
             return False
         return True
 
-    async def _race(self, driver: Driver, drive: _Drive) -> None:
+    async def _race(self, driver: DriverKind, drive: _Drive) -> None:
         """Has somebody else drive, off the screen, and shows what came of it."""
         level = self.chosen.level
         self._doing = "It drives ..."
@@ -310,9 +311,9 @@ class LevelsScreen(ActivePaintScreen[None]):
             )
         )
 
-    def _raced(self, driver: Driver, level: Level, drive: _Drive) -> tuple[Finish, Noted]:
+    def _raced(self, driver: DriverKind, level: GameLevel, drive: _Drive) -> tuple[RaceFinish, DriveRecord]:
         finish, recording = drive(level)
-        return finish, note(self._progress, self._workspace, level, driver, finish, recording)
+        return finish, record_drive(self._progress, self._workspace, level, driver, finish, recording)
 
     def _tell(self, seconds: float) -> None:
         """Called in the race's thread."""
@@ -324,7 +325,7 @@ class LevelsScreen(ActivePaintScreen[None]):
             self._doing = text
             self._show()
 
-    def _after(self, level: Level) -> None:
+    def _after(self, level: GameLevel) -> None:
         """A drive has ended: stars and ghosts may be others now."""
         self._known.pop(level.id, None)
         self._read()
@@ -337,7 +338,7 @@ def _runs(folder: Path) -> list[str]:
     return [run.name for run in list_runs(folder)]
 
 
-def _race_agent(level: Level, runs: Path, name: str, tell: _Tell) -> tuple[Finish, Recording]:
+def _race_agent(level: GameLevel, runs: Path, name: str, tell: _Tell) -> tuple[RaceFinish, Recording]:
     from kit.learning.policies.policies import PolicyError
     from kit.learning.training.runs import RunError, find_run
 

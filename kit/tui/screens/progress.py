@@ -32,11 +32,11 @@ def _rows(store: StudentStore) -> list[Row] | str:
 
 
 def _quiz(store: StudentStore) -> list[str]:
-    from kit.school.quiz.answers import answers_of
+    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.reading import read_bank
-    from kit.school.quiz.schedule import schedule_of
+    from kit.school.quiz.schedule import build_schedule
     from kit.world.problems import WorldError
 
     events = store.progress().events()
@@ -44,7 +44,7 @@ def _quiz(store: StudentStore) -> list[str]:
         bank = read_bank()
     except (WorldError, FileNotFoundError) as error:
         return str(error).splitlines()
-    answers = answers_of(events)
+    answers = answers_from_events(events)
     if not answers:
         return ["Nothing answered yet."]
-    return list(scores_lines(bank, answers, schedule_of(bank, events, local_now())))
+    return list(scores_lines(bank, answers, build_schedule(bank, events, local_now())))

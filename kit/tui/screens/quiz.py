@@ -10,9 +10,9 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 
 from kit.school.progress import ProgressError
-from kit.school.quiz.answers import BLANK, NOT_SURE, SURENESS, Choice
-from kit.school.quiz.items import OPTIONS, Item
-from kit.school.quiz.quiz_session import Sitting
+from kit.school.quiz.answers import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
+from kit.school.quiz.items import OPTION_COUNT, QuizItem
+from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import closing_lines
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows, window
 from kit.tui.screens.message_dialog import MessageDialog
@@ -58,12 +58,12 @@ class QuizScreen(ActivePaintScreen[None]):
     QuizScreen #body { height: 1fr; }
     """
 
-    def __init__(self, sitting: Sitting) -> None:
+    def __init__(self, session: QuizSession) -> None:
         super().__init__()
-        self._sitting = sitting
-        self._item: Item | None = sitting.item
-        self._number = sitting.number
-        self._choice: Choice | None = None
+        self._sitting = session
+        self._item: QuizItem | None = session.item
+        self._number = session.question_number
+        self._choice: AnswerChoice | None = None
         self._top = 0
         self._asked_to_skip = False
         self.stage = QuizStage.ASKED if self._item is not None else QuizStage.OVER
@@ -94,9 +94,7 @@ class QuizScreen(ActivePaintScreen[None]):
         title = row((self._sitting.plan.title, "bold"))
         if self._item is None or self.stage is QuizStage.OVER:
             return title
-        place = (
-            f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.total)}"
-        )
+        place = f"{self._item.topic.label}, question {self._number} of {max(self._number, self._sitting.question_count)}"
         return spread(title, row((place, "dim")), self.size.width)
 
     def _body(self) -> list[Row]:
@@ -120,10 +118,10 @@ class QuizScreen(ActivePaintScreen[None]):
     def action_number(self, number: int) -> None:
         if self.stage is QuizStage.ASKED and number == 0:
             self._note(NOT_SURE)
-        elif self.stage is QuizStage.ASKED and number <= OPTIONS:
-            self._choice = Choice(number - 1)
+        elif self.stage is QuizStage.ASKED and number <= OPTION_COUNT:
+            self._choice = AnswerChoice(number - 1)
             self._go(QuizStage.CHOSEN)
-        elif self.stage is QuizStage.CHOSEN and number in SURENESS and self._choice is not None:
+        elif self.stage is QuizStage.CHOSEN and number in CONFIDENCE_LABELS and self._choice is not None:
             self._note(self._choice, number)
 
     def action_skip(self) -> None:
@@ -144,7 +142,7 @@ class QuizScreen(ActivePaintScreen[None]):
         if self.stage is not QuizStage.TOLD:
             return
         self._item = self._sitting.item
-        self._number = self._sitting.number
+        self._number = self._sitting.question_number
         self._choice = None
         self._go(QuizStage.OVER if self._item is None else QuizStage.ASKED)
 
@@ -161,7 +159,7 @@ class QuizScreen(ActivePaintScreen[None]):
         else:
             self.app.exit()
 
-    def _note(self, choice: Choice, confidence: int | None = None) -> None:
+    def _note(self, choice: AnswerChoice, confidence: int | None = None) -> None:
         """The answer goes to the disk; only then is anything said of it."""
         try:
             self._sitting.answer(choice, confidence)

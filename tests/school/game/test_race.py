@@ -14,11 +14,11 @@ from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import allows
 from kit.school.game import leaderboard
-from kit.school.game.drive_records import note
-from kit.school.game.ghosts import ghosts, reference_ghost
-from kit.school.game.levels import Level, UnknownLevel, all_levels, find_level
-from kit.school.game.player_progress import standings
-from kit.school.game.race import Driver, Finish, judged, race, reference
+from kit.school.game.drive_records import record_drive
+from kit.school.game.ghosts import load_ghosts, load_reference_ghost
+from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
+from kit.school.game.player_progress import level_progress
+from kit.school.game.race import DriverKind, RaceFinish, drive_reference, judge_recording, race_controller
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
@@ -77,17 +77,17 @@ rclpy.spin(Jump())
     "level",
     [pytest.param(each, marks=[pytest.mark.long] if each.par > 16 else [], id=each.id) for each in LEVELS],
 )
-def test_the_reference_earns_every_star(level: Level) -> None:
-    finish, recording = reference(level)
+def test_the_reference_earns_every_star(level: GameLevel) -> None:
+    finish, recording = drive_reference(level)
     assert finish.stars(level.par) == (True, True, True)
     assert level.par < 2.5 * finish.seconds  # a par that anybody makes is none
-    assert judged(level, recording) == replace(finish, failure=None)
+    assert judge_recording(level, recording) == replace(finish, failure=None)
 
 
 def test_every_level_can_be_opened_one_after_the_other() -> None:
     opened: set[str] = set()
     for level in LEVELS:
-        assert not level.after or set(level.after) & opened, level.id
+        assert not level.opened_by or set(level.opened_by) & opened, level.id
         opened.add(level.id)
 
 
@@ -95,7 +95,7 @@ def test_every_level_can_be_opened_one_after_the_other() -> None:
 def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
     file = tmp_path / "mine.py"
     file.write_text(FORWARD.format(speed=speed))
-    finish, recording = race(replace(FIRST, par=2.0), find_controller(str(file)))
+    finish, recording = race_controller(replace(FIRST, par=2.0), find_controller(str(file)))
     assert finish.reached is reached
     assert finish.failure is None
     assert recording.ticks > 0
@@ -105,7 +105,7 @@ def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
 def test_what_is_not_fair_does_not_count(tmp_path: Path, source: str) -> None:
     file = tmp_path / "mine.py"
     file.write_text(source)
-    finish, _ = race(replace(FIRST, par=1.0), find_controller(str(file)))
+    finish, _ = race_controller(replace(FIRST, par=1.0), find_controller(str(file)))
     assert finish.foul
     assert finish.stars(10.0) == (False, False, False)
 
@@ -128,7 +128,7 @@ def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
     file = desk / "controllers" / "mine.py"
     places = [str(desk / "progress.db"), str(desk / "levels.npz")]
     file.write_text(WRITER.replace("{places!r}", repr(places)))
-    finish, _ = race(replace(FIRST, par=2.0), find_controller(str(file)))
+    finish, _ = race_controller(replace(FIRST, par=2.0), find_controller(str(file)))
     assert finish.failure is None
     assert finish.reached
     assert not any(Path(place).exists() for place in places)
@@ -137,7 +137,7 @@ def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
 def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("1/0\n")
-    finish, _ = race(FIRST, find_controller(str(file)))
+    finish, _ = race_controller(FIRST, find_controller(str(file)))
     assert finish.failure is not None
     assert not finish.reached
 
@@ -156,48 +156,50 @@ def test_stars_add_up_over_drives_and_open_levels() -> None:
         drive("the-door", "keys", 3.0, reached=False),
         ProgressEvent("x", datetime.now(UTC).isoformat(), EventKind.FINISH, FIRST.id, {"driver": "horse"}),
     ]
-    found = {each.level.id: each for each in standings(LEVELS, events)}
+    found = {each.level.id: each for each in level_progress(LEVELS, events)}
     assert found[FIRST.id].stars == (True, True, True)
-    assert found[FIRST.id].best == {Driver.KEYS: FIRST.par + 3.0, Driver.AGENT: FIRST.par - 1.0}
+    assert found[FIRST.id].best_times == {DriverKind.KEYS: FIRST.par + 3.0, DriverKind.AGENT: FIRST.par - 1.0}
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open
-    assert found["the-door"].count == 0
+    assert found["the-door"].star_count == 0
 
 
 def test_the_best_drive_is_kept_as_a_ghost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "hall"))
     workspace = open_workspace(tmp_path / "desk")
-    finish, recording = reference(FIRST)
+    finish, recording = drive_reference(FIRST)
     with ProgressJournal(workspace.folder) as progress:
-        first = note(progress, workspace, FIRST, Driver.KEYS, finish, recording)
-        slower = note(progress, workspace, FIRST, Driver.KEYS, replace(finish, seconds=99.0), recording)
+        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording)
+        slower = record_drive(
+            progress, workspace, FIRST, DriverKind.KEYS, replace(finish, seconds=99.0), recording
+        )
     assert (first.is_best, slower.is_best) == (True, False)
-    assert first.kept is not None
-    (own,) = ghosts(workspace, FIRST)
-    known = reference_ghost(workspace, FIRST)
+    assert first.recording is not None
+    (own,) = load_ghosts(workspace, FIRST)
+    known = load_reference_ghost(workspace, FIRST)
     assert known is not None
     assert own.seconds == pytest.approx(known.seconds)
-    assert own.poses(0.0)[0] == pytest.approx(tuple(FIRST.find().starts[0]), abs=0.02)
+    assert own.poses(0.0)[0] == pytest.approx(tuple(FIRST.find_scenario().starts[0]), abs=0.02)
     assert own.poses(1e9) == own.poses(own.seconds)
-    first.kept.write_bytes(b"damaged")
-    assert ghosts(workspace, FIRST) == ()
+    first.recording.write_bytes(b"damaged")
+    assert load_ghosts(workspace, FIRST) == ()
 
 
 def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
     hall = tmp_path / "hall"
-    found = standings(LEVELS, [drive(FIRST.id, "keys", 5.0)])
+    found = level_progress(LEVELS, [drive(FIRST.id, "keys", 5.0)])
     assert not leaderboard.has_joined(hall)
-    leaderboard.publish(hall, "Ada\x1b[31m", found)
-    (entry,) = leaderboard.entries(hall)
+    leaderboard.publish_entry(hall, "Ada\x1b[31m", found)
+    (entry,) = leaderboard.read_entries(hall)
     assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
     own = hall / f"{os.getuid()}.json"
     (hall / "123456.json").write_text(own.read_text())  # written for somebody else
     (hall / "999.json").symlink_to(own)
     (hall / "0.txt").write_text("x")
-    assert len(leaderboard.entries(hall)) == 1
-    leaderboard.leave(hall)
-    leaderboard.leave(hall)
-    assert leaderboard.entries(hall) == []
+    assert len(leaderboard.read_entries(hall)) == 1
+    leaderboard.remove_own_entry(hall)
+    leaderboard.remove_own_entry(hall)
+    assert leaderboard.read_entries(hall) == []
 
 
 @pytest.mark.parametrize(
@@ -213,15 +215,15 @@ def test_the_hall_knows_who_joined_and_nobody_else(tmp_path: Path) -> None:
 )
 def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
     (tmp_path / f"{os.getuid()}.json").write_text(content)
-    assert leaderboard.entries(tmp_path) == []
+    assert leaderboard.read_entries(tmp_path) == []
 
 
 def test_a_hall_in_which_files_can_be_exchanged_is_refused(tmp_path: Path) -> None:
     hall = tmp_path / "hall"
     hall.mkdir()
     hall.chmod(0o777)
-    with pytest.raises(leaderboard.FameError, match="chmod"):
-        leaderboard.publish(hall, "Ada", standings(LEVELS, []))
+    with pytest.raises(leaderboard.LeaderboardError, match="chmod"):
+        leaderboard.publish_entry(hall, "Ada", level_progress(LEVELS, []))
 
 
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
@@ -238,4 +240,4 @@ def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
 
 
 def test_a_finish_that_is_no_finish_is_not_one() -> None:
-    assert Finish(False, 3.0, 0).stars(10.0) == (False, False, False)
+    assert RaceFinish(False, 3.0, 0).stars(10.0) == (False, False, False)

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.reading import lessons_folder
-from kit.school.quiz.answers import BLANK, NOT_SURE, Choice
-from kit.school.quiz.items import IDEAS, OPTIONS, Item, Topic
-from kit.school.quiz.reading import SHEET, read_bank
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
+from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QuizItem, QuizTopic
+from kit.school.quiz.reading import QUIZ_FILE, read_bank
 from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 
 BANK = read_bank()
@@ -27,25 +27,25 @@ def test_there_are_enough_of_every_lesson_and_idea() -> None:
     assert set(BANK.lessons) == folders
     assert len(BANK.lessons) >= 13
     assert len(BANK.items) >= 65
-    assert all(len(BANK.of_lesson(lesson)) >= 5 for lesson in BANK.lessons)
-    assert [item.idea for item in BANK.twelve] == list(range(1, IDEAS + 1))
-    assert all(len(BANK.of_topic(topic)) >= 4 for topic in Topic)
+    assert all(len(BANK.lesson_items(lesson)) >= 5 for lesson in BANK.lessons)
+    assert [item.idea for item in BANK.quiz_items] == list(range(1, IDEA_COUNT + 1))
+    assert all(len(BANK.topic_items(topic)) >= 4 for topic in QuizTopic)
 
 
 def test_the_right_option_stands_anywhere() -> None:
-    places = Counter(item.right for item in BANK.items)
-    assert all(0.27 <= places[i] / len(BANK.items) <= 0.40 for i in range(OPTIONS))
-    twelve = Counter(item.right for item in BANK.twelve)
-    assert all(2 <= twelve[i] <= 6 for i in range(OPTIONS))
+    places = Counter(item.right_option for item in BANK.items)
+    assert all(0.27 <= places[i] / len(BANK.items) <= 0.40 for i in range(OPTION_COUNT))
+    twelve = Counter(item.right_option for item in BANK.quiz_items)
+    assert all(2 <= twelve[i] <= 6 for i in range(OPTION_COUNT))
     for lesson in BANK.lessons:
-        assert len({item.right for item in BANK.of_lesson(lesson)}) >= 2
+        assert len({item.right_option for item in BANK.lesson_items(lesson)}) >= 2
 
 
 def test_the_right_option_is_not_given_away_by_its_length() -> None:
     longest = shortest = 0.0
     for item in BANK.items:
         lengths = [len(option.text) for option in item.options]
-        right = lengths[item.right]
+        right = lengths[item.right_option]
         longest += (right == max(lengths)) / lengths.count(max(lengths))
         shortest += (right == min(lengths)) / lengths.count(min(lengths))
     assert 0.2 <= longest / len(BANK.items) <= 0.45
@@ -53,23 +53,23 @@ def test_the_right_option_is_not_given_away_by_its_length() -> None:
 
 
 @every_item
-def test_options_are_of_like_length(item: Item) -> None:
+def test_options_are_of_like_length(item: QuizItem) -> None:
     lengths = [len(option.text) for option in item.options]
     assert max(lengths) - min(lengths) <= 14 or max(lengths) <= 1.6 * min(lengths)
 
 
 @every_item
-def test_every_choice_is_told_something_of_its_own(item: Item) -> None:
+def test_every_choice_is_told_something_of_its_own(item: QuizItem) -> None:
     told = [option.feedback for option in item.options]
-    assert len(set(told)) == OPTIONS
+    assert len(set(told)) == OPTION_COUNT
     assert all(len(text) >= 20 for text in told)
     assert item.question.endswith(("?", ")")) or "?" in item.question
 
 
 @every_item
-def test_it_fits_the_smallest_full_screen(item: Item) -> None:
+def test_it_fits_the_smallest_full_screen(item: QuizItem) -> None:
     width = 80
-    choices = [*(Choice(i) for i in range(OPTIONS)), NOT_SURE, BLANK]
+    choices = [*(AnswerChoice(i) for i in range(OPTION_COUNT)), NOT_SURE, BLANK]
     asked = [*question_rows(item, width), *option_rows(item, width, choices[0]), *sure_rows()]
     pages = [asked]
     pages += [
@@ -104,4 +104,4 @@ def test_commands_within_the_words_are_verbs_of_the_kit() -> None:
 
 
 def test_sheets_lie_in_the_lessons_folders() -> None:
-    assert {path.parent.name for path in lessons_folder().glob(f"*/{SHEET}")} == set(BANK.lessons)
+    assert {path.parent.name for path in lessons_folder().glob(f"*/{QUIZ_FILE}")} == set(BANK.lessons)

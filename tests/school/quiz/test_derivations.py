@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.school.quiz.reading import read_bank
 from tests.school.quiz.derivations import DERIVATIONS
 
@@ -15,11 +15,11 @@ DERIVED = [item for item in ITEMS if item.derived]
 
 
 @pytest.mark.parametrize("item", DERIVED, ids=lambda item: item.id)
-def test_the_answer_is_what_the_kit_does(item: Item, tmp_path: Path) -> None:
+def test_the_answer_is_what_the_kit_does(item: QuizItem, tmp_path: Path) -> None:
     finding = DERIVATIONS[item.derived](item, tmp_path)
     for option in item.options:
         says_so = finding.means[option.text] == finding.truth
-        assert says_so is option.right, (option.text, finding)
+        assert says_so is option.is_right, (option.text, finding)
 
 
 def test_every_derivation_is_of_use() -> None:

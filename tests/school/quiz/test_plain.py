@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.school.quiz.reading import read_bank
 
 BANK = read_bank()
@@ -33,7 +33,7 @@ def answers(folder: Path) -> list[ProgressEvent]:
         return progress.events(EventKind.ANSWER)
 
 
-def asked(output: str) -> list[Item]:
+def asked(output: str) -> list[QuizItem]:
     """The items whose questions stand in the output, in order."""
     flat = " ".join(output.split())
     places = {flat.find(" ".join(item.question.split())): item for item in BANK.items}
@@ -46,7 +46,7 @@ def test_from_the_first_question_to_the_result(folder: Path) -> None:
     assert "Question 12 of 12" in result.output
     given = answers(folder)
     assert [event.subject for event in given] == [item.id for item in asked(result.output)]
-    assert {event.subject for event in given} == {item.id for item in BANK.twelve}
+    assert {event.subject for event in given} == {item.id for item in BANK.quiz_items}
     right = sum(event.content["right"] for event in given)
     assert f"{right} of 12 right" in result.output
     assert f"{right} of 12" in quiz(folder, "--scores").output
@@ -55,16 +55,16 @@ def test_from_the_first_question_to_the_result(folder: Path) -> None:
 
 def test_a_wrong_answer_is_told_why(folder: Path) -> None:
     first = asked(quiz(folder, said="q\n").output)[0]
-    wrong = (first.right + 1) % 3
+    wrong = (first.right_option + 1) % 3
     output = " ".join(quiz(folder, said=f"{wrong + 1}\n3\n").output.split())
     assert " ".join(first.options[wrong].feedback.split()) in output
-    assert f"Not right: option {first.right + 1} is." in output
+    assert f"Not right: option {first.right_option + 1} is." in output
 
 
 def test_a_right_answer_is_told_why(folder: Path) -> None:
     first = asked(quiz(folder, said="q\n").output)[0]
-    output = " ".join(quiz(folder, said=f"{first.right + 1}\n\n").output.split())
-    assert " ".join(first.options[first.right].feedback.split()) in output
+    output = " ".join(quiz(folder, said=f"{first.right_option + 1}\n\n").output.split())
+    assert " ".join(first.options[first.right_option].feedback.split()) in output
     assert [event.content["confidence"] for event in answers(folder)] == [None]
 
 
@@ -86,7 +86,7 @@ def test_it_goes_on_where_one_left(folder: Path) -> None:
 
 
 def test_a_lesson_by_number_or_name_and_its_second_round(folder: Path) -> None:
-    count = len(BANK.of_lesson("07-who-collides-who-sees"))
+    count = len(BANK.lesson_items("07-who-collides-who-sees"))
     whole = "2\n3\n" * count
     assert quiz(folder, "7", said=whole).exit_code == 0
     assert len(answers(folder)) == count

@@ -8,13 +8,20 @@ from pathlib import Path
 import pytest
 
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.school.quiz.answers import NOT_SURE, Choice, Outcome
-from kit.school.quiz.items import Topic, bank_of
-from kit.school.quiz.quiz_session import SEED, Sitting, Today, of_lesson, student_seed, the_twelve
+from kit.school.quiz.answers import NOT_SURE, AnswerChoice, AnswerOutcome
+from kit.school.quiz.items import QuizTopic, build_bank
+from kit.school.quiz.quiz_session import (
+    SEED_SUBJECT,
+    PracticePlan,
+    QuizSession,
+    lesson_plan,
+    quiz_plan,
+    student_seed,
+)
 from tests.school.quiz.made import MONDAY, bank, item
 
-BANK = bank_of(
-    [*bank(ros2=5).items, *(item(f"idea-{i}", Topic.RL, lesson="09-rl", idea=i) for i in (1, 2, 3))]
+BANK = build_bank(
+    [*bank(ros2=5).items, *(item(f"idea-{i}", QuizTopic.RL, lesson="09-rl", idea=i) for i in (1, 2, 3))]
 )
 
 
@@ -34,29 +41,29 @@ def clock() -> Clock:
 
 def test_each_answer_is_in_the_journal_before_the_next_question(tmp_path: Path, clock: Clock) -> None:
     with ProgressJournal(tmp_path) as progress, ProgressJournal(tmp_path) as another:
-        sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
+        sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
         for count in range(1, 4):
             asked = sitting.item
             assert asked is not None
-            assert sitting.number == count
-            assert sitting.answer(Choice(asked.right), 4) is Outcome.RIGHT
+            assert sitting.question_number == count
+            assert sitting.answer(AnswerChoice(asked.right_option), 4) is AnswerOutcome.RIGHT
             (*_, event) = another.events(EventKind.ANSWER)
             assert len(another.events(EventKind.ANSWER)) == count
             assert event.subject == asked.id
             assert event.content == {
-                "chosen": asked.right, "not_sure": False, "right": True, "confidence": 4,
+                "chosen": asked.right_option, "not_sure": False, "right": True, "confidence": 4,
                 "occasion": "quiz", "topic": "rl",
             }  # fmt: skip
         assert sitting.item is None
 
 
 def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock: Clock) -> None:
-    plan = of_lesson(BANK, "01-ros2")
+    plan = lesson_plan(BANK, "01-ros2")
     order: list[str] = []
     for sitting_number in range(5):
         with ProgressJournal(tmp_path) as progress:
-            sitting = Sitting(progress, BANK, plan, seed=student_seed(progress), clock=clock)
-            assert (sitting.number, sitting.total) == (sitting_number + 1, 5)
+            sitting = QuizSession(progress, BANK, plan, seed=student_seed(progress), clock=clock)
+            assert (sitting.question_number, sitting.question_count) == (sitting_number + 1, 5)
             assert sitting.item is not None
             order.append(sitting.item.id)
             sitting.answer(NOT_SURE)
@@ -64,53 +71,53 @@ def test_a_new_sitting_goes_on_where_the_last_one_stopped(tmp_path: Path, clock:
 
 
 def test_a_finished_round_begins_anew_only_when_asked(tmp_path: Path, clock: Clock) -> None:
-    plan = the_twelve(BANK)
+    plan = quiz_plan(BANK)
     with ProgressJournal(tmp_path) as progress:
-        first = Sitting(progress, BANK, plan, seed=1, clock=clock)
+        first = QuizSession(progress, BANK, plan, seed=1, clock=clock)
         while first.item is not None:
-            first.answer(Choice(0), 1)
-        assert Sitting(progress, BANK, plan, seed=1, clock=clock).item is None
-        again = Sitting(progress, BANK, plan, seed=1, clock=clock, anew=True)
+            first.answer(AnswerChoice(0), 1)
+        assert QuizSession(progress, BANK, plan, seed=1, clock=clock).item is None
+        again = QuizSession(progress, BANK, plan, seed=1, clock=clock, restart=True)
         count = 0
         while again.item is not None:
-            again.answer(Choice(1), 1)
+            again.answer(AnswerChoice(1), 1)
             count += 1
             if count == 1:  # left and come back to without the word
-                again = Sitting(progress, BANK, plan, seed=1, clock=clock)
+                again = QuizSession(progress, BANK, plan, seed=1, clock=clock)
         assert count == 3
-        assert len(plan.rounds(again.answers()).finished) == 2
+        assert len(plan.history(again.all_answers()).finished) == 2
 
 
 def test_todays_practice_ends_and_says_when_next(tmp_path: Path, clock: Clock) -> None:
     with ProgressJournal(tmp_path) as progress:
-        lesson = Sitting(progress, BANK, of_lesson(BANK, "01-ros2"), seed=1, clock=clock)
-        lesson.answer(Choice(0), 2)
-        assert Sitting(progress, BANK, Today(BANK), seed=1, clock=clock).item is None
+        lesson = QuizSession(progress, BANK, lesson_plan(BANK, "01-ros2"), seed=1, clock=clock)
+        lesson.answer(AnswerChoice(0), 2)
+        assert QuizSession(progress, BANK, PracticePlan(BANK), seed=1, clock=clock).item is None
         clock.now += timedelta(days=1)
-        today = Sitting(progress, BANK, Today(BANK), seed=1, clock=clock)
-        assert (today.number, today.total) == (1, 4)
+        today = QuizSession(progress, BANK, PracticePlan(BANK), seed=1, clock=clock)
+        assert (today.question_number, today.question_count) == (1, 4)
         for number in range(1, 5):
-            assert today.number == number
-            assert today.total == 4
-            today.answer(Choice(0), 3)
+            assert today.question_number == number
+            assert today.question_count == 4
+            today.answer(AnswerChoice(0), 3)
         assert today.item is None
-        (standing,) = today.schedule().standings
+        (standing,) = today.schedule().topics
         assert standing.due == (clock.now + timedelta(days=3)).date()
 
 
 def test_an_answer_that_cannot_be_kept_is_not_taken(tmp_path: Path, clock: Clock) -> None:
     progress = ProgressJournal(tmp_path)
-    sitting = Sitting(progress, BANK, the_twelve(BANK), seed=1, clock=clock)
+    sitting = QuizSession(progress, BANK, quiz_plan(BANK), seed=1, clock=clock)
     asked = sitting.item
     progress.close()
     with pytest.raises(ProgressError):
-        sitting.answer(Choice(0), 1)
+        sitting.answer(AnswerChoice(0), 1)
     assert sitting.item is asked
-    assert sitting.given == []
+    assert sitting.session_answers == []
 
 
 def test_the_seed_is_drawn_once(tmp_path: Path) -> None:
     with ProgressJournal(tmp_path) as progress:
         seed = student_seed(progress)
         assert student_seed(progress) == seed
-        assert len(progress.events(EventKind.ABOUT, SEED)) == 1
+        assert len(progress.events(EventKind.ABOUT, SEED_SUBJECT)) == 1

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from kit.school.quiz.items import Topic
+from kit.school.quiz.items import QuizTopic
 from kit.school.quiz.reading import read_bank
 from kit.world.problems import WorldError
 
@@ -43,8 +43,8 @@ def test_a_sheet_becomes_items(tmp_path: Path) -> None:
     item = {**good(), "picture": "a - b\n", "try": "kit maps", "derived": "it", "idea": 3}
     write(tmp_path, item)
     (read,) = read_bank(tmp_path).items
-    assert (read.id, read.lesson, read.topic, read.idea) == ("one", "01-first", Topic.LAYERS, 3)
-    assert (read.right, read.picture, read.attempt, read.derived) == (1, ("a - b",), "kit maps", "it")
+    assert (read.id, read.lesson, read.topic, read.idea) == ("one", "01-first", QuizTopic.LAYERS, 3)
+    assert (read.right_option, read.picture, read.attempt, read.derived) == (1, ("a - b",), "kit maps", "it")
     assert read.see == "01-first"
     assert read.options[1].feedback == "since 1"
 

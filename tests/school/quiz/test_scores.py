@@ -7,32 +7,51 @@ from collections.abc import Sequence
 import pytest
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, Outcome, answer_of, answers_of
-from kit.school.quiz.items import Topic
+from kit.school.quiz.answers import (
+    BLANK,
+    NOT_SURE,
+    AnswerChoice,
+    AnswerOutcome,
+    Occasion,
+    answer_from_event,
+    answers_from_events,
+)
+from kit.school.quiz.items import QuizTopic
 from kit.school.quiz.quiz_text import calibration_lines, tally_line
-from kit.school.quiz.rounds import rounds_of
-from kit.school.quiz.scores import Tally, by_topic, calibration, latest, tally
+from kit.school.quiz.rounds import round_history
+from kit.school.quiz.scores import (
+    OutcomeCounts,
+    count_by_topic,
+    count_outcomes,
+    latest_answers,
+    measure_calibration,
+)
 from tests.school.quiz.made import MONDAY, answered, bank
 
 BANK = bank(ros2=4, layers=2)
 ITEMS = BANK.items
-WRONG = Choice(1)
+WRONG = AnswerChoice(1)
 
 
 def test_each_outcome_is_counted_by_itself() -> None:
-    choices = [Choice(0), WRONG, NOT_SURE, BLANK]
-    answers = answers_of(answered(item, 0, choice) for item, choice in zip(ITEMS, choices, strict=False))
-    counted = by_topic(ITEMS, latest(answers))
-    assert [answer.outcome for answer in answers] == list(Outcome)
-    assert counted[Topic.ROS2] == Tally(1, 1, 1, 1)
-    assert tally(ITEMS, latest(answers)) == Tally(1, 1, 1, 1, 2)
-    assert counted[Topic.LAYERS].items == 2
-    assert tally_line(Tally(1, 1, 1, 1, 2)) == "1 of 6 right, 1 wrong, 1 not sure, 1 blank, 2 not asked yet"
+    choices = [AnswerChoice(0), WRONG, NOT_SURE, BLANK]
+    answers = answers_from_events(
+        answered(item, 0, choice) for item, choice in zip(ITEMS, choices, strict=False)
+    )
+    counted = count_by_topic(ITEMS, latest_answers(answers))
+    assert [answer.outcome for answer in answers] == list(AnswerOutcome)
+    assert counted[QuizTopic.ROS2] == OutcomeCounts(1, 1, 1, 1)
+    assert count_outcomes(ITEMS, latest_answers(answers)) == OutcomeCounts(1, 1, 1, 1, 2)
+    assert counted[QuizTopic.LAYERS].total == 2
+    assert (
+        tally_line(OutcomeCounts(1, 1, 1, 1, 2))
+        == "1 of 6 right, 1 wrong, 1 not sure, 1 blank, 2 not asked yet"
+    )
 
 
 def test_the_latest_answer_counts() -> None:
-    answers = answers_of([answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 1)])
-    assert tally(ITEMS[:1], latest(answers)) == Tally(right=1)
+    answers = answers_from_events([answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 1)])
+    assert count_outcomes(ITEMS[:1], latest_answers(answers)) == OutcomeCounts(right=1)
 
 
 @pytest.mark.parametrize(
@@ -48,22 +67,22 @@ def test_the_latest_answer_counts() -> None:
     ids=str,
 )
 def test_what_cannot_be_understood_is_passed_over(content: dict[str, object]) -> None:
-    assert answer_of(ProgressEvent("u", MONDAY.isoformat(), EventKind.ANSWER, "x", content)) is None
+    assert answer_from_event(ProgressEvent("u", MONDAY.isoformat(), EventKind.ANSWER, "x", content)) is None
 
 
 def test_who_chose_nothing_is_sure_of_nothing() -> None:
-    (answer,) = answers_of([answered(ITEMS[0], 0, NOT_SURE, confidence=4)])
+    (answer,) = answers_from_events([answered(ITEMS[0], 0, NOT_SURE, confidence=4)])
     assert answer.confidence is None
 
 
 def _calibrated(figures: Sequence[tuple[int, int, int]]) -> list[str]:
     """Lines for (confidence, answers, right)."""
     events = [
-        answered(ITEMS[0], i, Choice(0) if i < right else WRONG, confidence=confidence)
+        answered(ITEMS[0], i, AnswerChoice(0) if i < right else WRONG, confidence=confidence)
         for confidence, count, right in figures
         for i in range(count)
     ]
-    return calibration_lines(calibration(answers_of(events)))
+    return calibration_lines(measure_calibration(answers_from_events(events)))
 
 
 def test_how_well_one_judges_oneself() -> None:
@@ -76,16 +95,16 @@ def test_how_well_one_judges_oneself() -> None:
 
 
 def test_rounds_are_counted_one_after_the_other() -> None:
-    answers = answers_of(answered(item, day) for day in range(2) for item in ITEMS[:4])
-    rounds = rounds_of(ITEMS[:4], answers, Occasion.LESSON)
+    answers = answers_from_events(answered(item, day) for day in range(2) for item in ITEMS[:4])
+    rounds = round_history(ITEMS[:4], answers, Occasion.LESSON)
     assert len(rounds.finished) == 2
-    assert rounds.under_way == {}
-    assert {item.id for item in rounds.left(1)} == {item.id for item in ITEMS[:4]}
-    assert rounds_of(ITEMS[:4], answers, Occasion.QUIZ).finished == ()
+    assert rounds.current == {}
+    assert {item.id for item in rounds.remaining(1)} == {item.id for item in ITEMS[:4]}
+    assert round_history(ITEMS[:4], answers, Occasion.QUIZ).finished == ()
 
 
 def test_within_a_round_the_first_answer_counts() -> None:
     events = [answered(ITEMS[0], 0, WRONG), answered(ITEMS[0], 0.1), answered(ITEMS[1], 0.2)]
-    rounds = rounds_of(ITEMS[:2], answers_of(events), Occasion.LESSON)
-    assert rounds.finished[0][ITEMS[0].id].outcome is Outcome.WRONG
-    assert rounds.under_way == {}
+    rounds = round_history(ITEMS[:2], answers_from_events(events), Occasion.LESSON)
+    assert rounds.finished[0][ITEMS[0].id].outcome is AnswerOutcome.WRONG
+    assert rounds.current == {}

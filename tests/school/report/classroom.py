@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
-from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion, content_of
-from kit.school.quiz.items import Item
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion, event_content
+from kit.school.quiz.items import QuizItem
 from kit.school.quiz.reading import read_bank
-from kit.school.survey.form_session import Answers, asked
-from kit.school.survey.questions import Form, Phase, Question, Shape, Value
+from kit.school.survey.form_session import FormAnswers, asked_questions
+from kit.school.survey.questions import AnswerShape, AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
 from kit.school.survey.reading import read_form
 
 START = datetime(2026, 9, 14, 9, 0, tzinfo=UTC)
@@ -43,10 +43,10 @@ class Diary:
         uid = hashlib.sha256(f"{self.name}/{len(self.events)}".encode()).hexdigest()[:32]
         self.events.append(ProgressEvent(uid, self._time.isoformat(), kind, subject, content or {}))
 
-    def answer(self, item: Item, choice: Choice, occasion: Occasion = Occasion.QUIZ) -> None:
-        self.note(EventKind.ANSWER, item.id, content_of(item, choice, None, occasion))
+    def answer(self, item: QuizItem, choice: AnswerChoice, occasion: Occasion = Occasion.QUIZ) -> None:
+        self.note(EventKind.ANSWER, item.id, event_content(item, choice, None, occasion))
 
-    def rate(self, question: str, value: Value, phase: Phase = Phase.AFTER) -> None:
+    def rate(self, question: str, value: AnswerValue, phase: SurveyPhase = SurveyPhase.AFTER) -> None:
         self.note(EventKind.FORM, question, {"phase": phase.value, "value": value})
 
     def attempt(self, exercise: str, points: float, verdict: str, lost: Sequence[str] = ()) -> None:
@@ -84,7 +84,7 @@ def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
     form = the_form()
     diary = Diary(name)
     diary.note(EventKind.ABOUT, "name", {"value": name})
-    _fill_in(diary, form, Phase.BEFORE, skill, rng)
+    _fill_in(diary, form, SurveyPhase.BEFORE, skill, rng)
     for lesson, exercise in LESSONS:
         diary.note(EventKind.STEP, f"{lesson}/1")
         diary.note(EventKind.PREDICTION, f"{lesson}/2", {"chosen": 1, "right": bool(rng.random() < skill)})
@@ -93,43 +93,45 @@ def student(name: str, skill: float, rng: np.random.Generator) -> Diary:
             diary.note(EventKind.HINT, f"{lesson}/{exercise}/reached", {"step": 1})
         diary.attempt(f"{lesson}/{exercise}", 5.0, "pass")
     bank = the_bank()
-    for item in bank.twelve:
+    for item in bank.quiz_items:
         diary.answer(item, _choice(item, skill, rng))
-    for item in bank.twelve[:3]:
-        diary.answer(item, Choice(item.right), Occasion.SPACED)
+    for item in bank.quiz_items[:3]:
+        diary.answer(item, AnswerChoice(item.right_option), Occasion.SPACED)
     for item in [each for each in bank.items if not each.idea][:4]:
         diary.answer(item, _choice(item, skill, rng), Occasion.LESSON)
-    _fill_in(diary, form, Phase.AFTER, min(1.0, skill + 0.3), rng)
+    _fill_in(diary, form, SurveyPhase.AFTER, min(1.0, skill + 0.3), rng)
     return diary
 
 
-def _choice(item: Item, skill: float, rng: np.random.Generator) -> Choice:
+def _choice(item: QuizItem, skill: float, rng: np.random.Generator) -> AnswerChoice:
     luck = rng.random()
     if luck < 0.2 + 0.7 * skill:
-        return Choice(item.right)
-    wrong = [option for option in range(len(item.options)) if option != item.right]
-    return Choice(int(rng.choice(wrong))) if luck < 0.8 else NOT_SURE if luck < 0.9 else BLANK
+        return AnswerChoice(item.right_option)
+    wrong = [option for option in range(len(item.options)) if option != item.right_option]
+    return AnswerChoice(int(rng.choice(wrong))) if luck < 0.8 else NOT_SURE if luck < 0.9 else BLANK
 
 
-def _fill_in(diary: Diary, form: Form, phase: Phase, level: float, rng: np.random.Generator) -> None:
-    answers, done = Answers(), set[str]()
-    while ahead := [each for each in asked(form, answers, phase) if each.id not in done]:
+def _fill_in(
+    diary: Diary, form: SurveyForm, phase: SurveyPhase, level: float, rng: np.random.Generator
+) -> None:
+    answers, done = FormAnswers(), set[str]()
+    while ahead := [each for each in asked_questions(form, answers, phase) if each.id not in done]:
         for question in ahead:
             diary.rate(question.id, _value(question, level, rng), phase)
         done.update(question.id for question in ahead)
-        answers = Answers.of(form, diary.events)
+        answers = FormAnswers.from_events(form, diary.events)
 
 
-def _value(question: Question, level: float, rng: np.random.Generator) -> Value:
+def _value(question: SurveyQuestion, level: float, rng: np.random.Generator) -> AnswerValue:
     match question.shape:
-        case Shape.SCALE:
+        case AnswerShape.SCALE:
             blank = rng.random() < 0.02
             return None if blank else int(np.clip(round(1 + 6 * level + rng.normal(0, 1)), 1, 7))
-        case Shape.CHOICE:
+        case AnswerShape.CHOICE:
             return question.options[int(rng.integers(len(question.options)))]
-        case Shape.YES_NO:
+        case AnswerShape.YES_NO:
             return bool(rng.random() < 0.7)
-        case Shape.TEXT:
+        case AnswerShape.TEXT:
             return "More moving pictures, please." if rng.random() < 0.2 else None
 
 

@@ -14,22 +14,31 @@ import numpy as np
 import pytest
 
 from kit.school.progress import EventKind
-from kit.school.quiz.answers import BLANK, NOT_SURE, Choice, Occasion
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion
 from kit.school.report.as_data import as_csv, as_json
 from kit.school.report.as_html import as_html
 from kit.school.report.as_svg import as_svg
 from kit.school.report.as_text import ASCII, BLOCKS, rows_of
-from kit.school.report.class_data import ClassData, gather
-from kit.school.report.class_report import CHAPTERS, class_report, set_up
-from kit.school.report.document import Bars, Caution, Chapter, Histogram, Report, Said, Scatter, Table
-from kit.school.report.measures import Item
-from kit.school.report.students import read_roll
+from kit.school.report.class_data import ClassData, build_class_data
+from kit.school.report.class_report import CHAPTERS, build_report, prepare_report
+from kit.school.report.document import (
+    BarChart,
+    ClassReport,
+    Histogram,
+    Quote,
+    ReportChapter,
+    ReportTable,
+    ReportWarning,
+    ScatterPlot,
+)
+from kit.school.report.measures import ReportItem
+from kit.school.report.students import read_roster
 from tests.school.report.classroom import Diary, classroom, diaries, the_bank, the_form
 
 
-def known() -> Mapping[str, Item]:
+def known() -> Mapping[str, ReportItem]:
     return {
-        each.id: Item(each.id, each.topic.value, tuple(o.text for o in each.options), bool(each.idea))
+        each.id: ReportItem(each.id, each.topic.value, tuple(o.text for o in each.options), bool(each.idea))
         for each in the_bank().items
     }
 
@@ -37,26 +46,26 @@ def known() -> Mapping[str, Item]:
 def data_of(folder: Path, made: Sequence[Diary]) -> ClassData:
     for diary in made:
         diary.export(folder)
-    return gather(read_roll([folder], names=True), the_form(), known())
+    return build_class_data(read_roster([folder], names=True), the_form(), known())
 
 
-def report_of(folder: Path, made: Sequence[Diary]) -> Report:
-    return class_report(set_up(data_of(folder, made)), len(made))
+def report_of(folder: Path, made: Sequence[Diary]) -> ClassReport:
+    return build_report(prepare_report(data_of(folder, made)), len(made))
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Report:
+def report(tmp_path_factory: pytest.TempPathFactory) -> ClassReport:
     folder = tmp_path_factory.mktemp("class")
     classroom(folder)
-    roll = read_roll([folder], names=True)
-    return class_report(set_up(gather(roll, the_form(), known())), roll.files)
+    roll = read_roster([folder], names=True)
+    return build_report(prepare_report(build_class_data(roll, the_form(), known())), roll.file_count)
 
 
-def table(report: Report, identity: str) -> Table:
+def table(report: ClassReport, identity: str) -> ReportTable:
     return next(each for each in report.tables if each.id == identity)
 
 
-def test_a_whole_class_has_every_chapter(report: Report) -> None:
+def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
     assert tuple(each.id for each in report.chapters) == CHAPTERS
     assert len({each.id for each in (*report.tables, *report.plots)}) == len(report.tables) + len(
         report.plots
@@ -64,14 +73,14 @@ def test_a_whole_class_has_every_chapter(report: Report) -> None:
 
 
 @pytest.mark.parametrize("glyphs", [BLOCKS, ASCII], ids=["blocks", "ascii"])
-def test_it_fits_eighty_columns(report: Report, glyphs: Any) -> None:
+def test_it_fits_eighty_columns(report: ClassReport, glyphs: Any) -> None:
     rows = list(rows_of(report, glyphs))
     assert max(map(len, rows)) <= 79
     assert all(row == row.rstrip() for row in rows)
     assert glyphs is BLOCKS or "\n".join(rows).isascii()
 
 
-def test_every_mean_has_its_n_and_interval(report: Report) -> None:
+def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
     means = [each for each in report.tables if "M" in {column.title for column in each.columns}]
     assert len(means) >= 8
     for each in means:
@@ -81,7 +90,7 @@ def test_every_mean_has_its_n_and_interval(report: Report) -> None:
             assert titles[-1] == "p"
 
 
-def test_the_same_class_makes_the_same_report(report: Report, tmp_path: Path) -> None:
+def test_the_same_class_makes_the_same_report(report: ClassReport, tmp_path: Path) -> None:
     assert as_json(report_of(tmp_path, list(diaries(12)))) == as_json(report)
 
 
@@ -128,8 +137,8 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
         for question in the_form().questions:
             for phase in question.phases:
                 diary.rate(question.id, 4, phase)
-        for item in the_bank().twelve:
-            diary.answer(item, Choice(item.right))
+        for item in the_bank().quiz_items:
+            diary.answer(item, AnswerChoice(item.right_option))
         made.append(diary)
     report = report_of(tmp_path, made)
     assert any("one group empty" in each.text for each in cautions(report))
@@ -143,42 +152,42 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
     json.loads(as_json(report))
 
 
-def cautions(report: Report) -> list[Caution]:
-    return [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, Caution)]
+def cautions(report: ClassReport) -> list[ReportWarning]:
+    return [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, ReportWarning)]
 
 
 def test_blank_not_sure_and_wrong_stay_apart(tmp_path: Path) -> None:
-    first, *others = the_bank().twelve[:4]
+    first, *others = the_bank().quiz_items[:4]
     ada = Diary("Ada")
-    ada.answer(first, Choice(first.right))
-    ada.answer(others[0], Choice((others[0].right + 1) % 3))
+    ada.answer(first, AnswerChoice(first.right_option))
+    ada.answer(others[0], AnswerChoice((others[0].right_option + 1) % 3))
     ada.answer(others[1], NOT_SURE)
     ada.answer(others[2], BLANK)
     ben = Diary("Ben")
-    ben.answer(first, Choice(first.right))
+    ben.answer(first, AnswerChoice(first.right_option))
     row = table(report_of(tmp_path, [ada, ben]), "quiz-outcomes").rows[-1]
     assert row == ("overall", 2, 2, 1, 1, 4, 8), "what Ben did not reach is blank"
 
 
 def test_who_did_not_take_the_quiz_is_not_in_it(tmp_path: Path) -> None:
-    item = the_bank().twelve[0]
+    item = the_bank().quiz_items[0]
     ada, ben = Diary("Ada"), Diary("Ben")
-    ada.answer(item, Choice(item.right))
-    ben.answer(item, Choice(item.right), Occasion.LESSON)
+    ada.answer(item, AnswerChoice(item.right_option))
+    ben.answer(item, AnswerChoice(item.right_option), Occasion.LESSON)
     data = data_of(tmp_path, [ada, ben])
     assert [each is None for each in data.quiz.replies[item.id]] == [False, True]
 
 
 def test_only_the_first_answer_counts_and_later_ones_are_the_gain(tmp_path: Path) -> None:
-    item = the_bank().twelve[0]
-    wrong = Choice((item.right + 1) % 3)
+    item = the_bank().quiz_items[0]
+    wrong = AnswerChoice((item.right_option + 1) % 3)
     made = []
     for name in ("Ada", "Ben", "Cleo"):
         diary = Diary(name)
-        diary.answer(item, Choice(item.right), Occasion.LESSON)
+        diary.answer(item, AnswerChoice(item.right_option), Occasion.LESSON)
         diary.answer(item, wrong)
         diary.answer(item, wrong, Occasion.SPACED)
-        diary.answer(item, Choice(item.right), Occasion.SPACED)
+        diary.answer(item, AnswerChoice(item.right_option), Occasion.SPACED)
         made.append(diary)
     report = report_of(tmp_path, made)
     assert table(report, "quiz-gain").rows[-1][:5] == ("Total", 3, 0.0, 1.0, 1.0)
@@ -192,7 +201,7 @@ def test_questions_of_another_kit_are_left_out_and_said(tmp_path: Path) -> None:
     )
     data = data_of(tmp_path, made)
     assert "of-another-kit" not in data.quiz.replies
-    assert any("not in this kit" in each for each in data.cautions)
+    assert any("not in this kit" in each for each in data.warnings)
 
 
 WICKED = "<script>alert(1)</script>&\"'\x1b[31m\x07=1+1"
@@ -207,7 +216,7 @@ def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
         {"chosen": [1], "confidence": [2], "occasion": ["quiz"]},
         {"chosen": 1, "confidence": {}, "occasion": "quiz"},
     ):
-        diary.note(EventKind.ANSWER, the_bank().twelve[0].id, content)
+        diary.note(EventKind.ANSWER, the_bank().quiz_items[0].id, content)
     report = report_of(tmp_path, [diary])
     text = "\n".join(rows_of(report))
     page = as_html(report)
@@ -217,11 +226,11 @@ def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
     for each in report.tables:
         for row in csv.reader(io.StringIO(as_csv(each))):
             assert not any(cell.startswith(("=", "@", "+")) for cell in row)
-    said = [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, Said)]
+    said = [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, Quote)]
     assert [each.text for each in said] == [WICKED]
 
 
-def test_a_page_needs_nothing_from_elsewhere(report: Report) -> None:
+def test_a_page_needs_nothing_from_elsewhere(report: ClassReport) -> None:
     page = as_html(report)
     assert "http://www.w3.org/2000/svg" in page
     loaders = ("<script", "<link", "<img", "src=", "@import", "url(")
@@ -229,21 +238,21 @@ def test_a_page_needs_nothing_from_elsewhere(report: Report) -> None:
     assert "default-src 'none'" in page
 
 
-def test_every_plot_is_a_picture_with_what_it_shows(report: Report) -> None:
+def test_every_plot_is_a_picture_with_what_it_shows(report: ClassReport) -> None:
     for plot in report.plots:
         root = ElementTree.fromstring(as_svg(plot))
         tags = [element.tag.rpartition("}")[2] for element in root.iter()]
         match plot:
-            case Bars():
+            case BarChart():
                 wanted = sum(value == value for _, values in plot.rows for value in values) + len(plot.groups)
                 assert tags.count("rect") == wanted + 1
             case Histogram():
                 assert tags.count("rect") == len(plot.counts) + 1
-            case Scatter():
+            case ScatterPlot():
                 assert tags.count("circle") == len(set(plot.points))
 
 
-def test_tables_as_csv_hold_the_numbers_in_full(report: Report) -> None:
+def test_tables_as_csv_hold_the_numbers_in_full(report: ClassReport) -> None:
     rows = list(csv.reader(io.StringIO(as_csv(table(report, "gained")))))
     assert rows[0] == ["", "group", "n", "M", "SD", "95% of M low", "95% of M high", "p"]
     assert all(len(row) == len(rows[0]) and row[0] for row in rows[1:])
@@ -252,15 +261,17 @@ def test_tables_as_csv_hold_the_numbers_in_full(report: Report) -> None:
 
 
 def test_a_bar_is_as_long_as_its_value() -> None:
-    bars = Bars("b", "Bars", ("one",), (("full", (7.0,)), ("none", (1.0,)), ("gone", (float("nan"),))), 1, 7)
-    lines = list(rows_of(Report("r", (Chapter("c", "C", (bars,)),)), ASCII))
+    bars = BarChart(
+        "b", "Bars", ("one",), (("full", (7.0,)), ("none", (1.0,)), ("gone", (float("nan"),))), 1, 7
+    )
+    lines = list(rows_of(ClassReport("r", (ReportChapter("c", "C", (bars,)),)), ASCII))
     assert [line.count("#") for line in lines if "|" in line] == [40, 0, 0]
     assert "nobody" in lines[-1]
 
 
 def test_a_point_lies_where_it_belongs() -> None:
-    scatter = Scatter("s", "S", "x", "y", ((1, 0), (7, 1), (7, 1)), (1, 7), (0, 1), (1 / 6, -1 / 6))
-    lines = list(rows_of(Report("r", (Chapter("c", "C", (scatter,)),)), ASCII))
+    scatter = ScatterPlot("s", "S", "x", "y", ((1, 0), (7, 1), (7, 1)), (1, 7), (0, 1), (1 / 6, -1 / 6))
+    lines = list(rows_of(ClassReport("r", (ReportChapter("c", "C", (scatter,)),)), ASCII))
     field = [line.partition("|")[2] for line in lines if "|" in line]
     assert field[-1][0] == "o"
     assert field[0][55] == "2"

@@ -10,16 +10,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.school.report.expertise import TOPICS, WAYS, divide, effective_weights, scores
-from kit.school.report.measures import Measure
+from kit.school.report.expertise import (
+    DIVISION_METHODS,
+    TOPICS,
+    divide_class,
+    effective_weights,
+    expertise_scores,
+)
+from kit.school.report.measures import StudentMeasure
 
 
 def score_of(ratings: Sequence[float]) -> float:
     """One student's, by the kit."""
     measures = [
-        Measure(f"q{topic}", topic, np.array([value])) for topic, value in zip(TOPICS, ratings, strict=True)
+        StudentMeasure(f"q{topic}", topic, np.array([value]))
+        for topic, value in zip(TOPICS, ratings, strict=True)
     ]
-    found = scores(measures, {f"q{topic}": topic for topic in TOPICS})
+    found = expertise_scores(measures, {f"q{topic}": topic for topic in TOPICS})
     assert found is not None
     return float(found[0])
 
@@ -69,28 +76,30 @@ def test_who_leaves_one_out_has_no_score(topic: str) -> None:
 
 
 def test_without_a_topic_there_are_no_scores() -> None:
-    assert scores([Measure("a", "robotics", np.ones(3))], {"a": "robotics"}) is None
+    assert expertise_scores([StudentMeasure("a", "robotics", np.ones(3))], {"a": "robotics"}) is None
 
 
 def division(way: str, *values: float) -> Any:
-    return divide(np.array(values), way)
+    return divide_class(np.array(values), way)
 
 
 def test_the_three_ways() -> None:
     values = (1.0, 6.0, 3.0, 4.0, math.nan)
-    assert {way: divide(np.array(values), way).experts.members.tolist() for way in WAYS} == {  # type: ignore[union-attr]
+    assert {
+        way: divide_class(np.array(values), way).experts.members.tolist() for way in DIVISION_METHODS
+    } == {  # type: ignore[union-attr]
         "scale": [False, True, False, True, False],
         "half": [False, True, False, True, False],
         "mean": [False, True, False, True, False],
     }
-    for way in WAYS:
+    for way in DIVISION_METHODS:
         assert not division(way, *values).beginners.members[4], "who has no score is in no group"
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", DIVISION_METHODS)
 @pytest.mark.parametrize("values", [(), (3.0,), (math.nan, 3.0), (math.nan, math.nan)])
 def test_too_few_cannot_be_divided(way: str, values: tuple[float, ...]) -> None:
-    assert divide(np.array(values, dtype=np.float64), way) is None
+    assert divide_class(np.array(values, dtype=np.float64), way) is None
 
 
 def test_one_group_only_is_no_division() -> None:

@@ -7,44 +7,49 @@ import math
 import numpy as np
 import pytest
 
-from kit.school.quiz.answers import Outcome
-from kit.school.report.items import analyse, kr20
-from kit.school.report.measures import BLANK, Item, Quiz, Reply
+from kit.school.quiz.answers import AnswerOutcome
+from kit.school.report.items import analyse_item, kr20
+from kit.school.report.measures import BLANK, AnswerSheet, ItemReply, ReportItem
 
-LETTERS = {".": BLANK, "?": Reply(Outcome.NOT_SURE)}
+LETTERS = {".": BLANK, "?": ItemReply(AnswerOutcome.NOT_SURE)}
 
 
-def reply(letter: str) -> Reply | None:
+def reply(letter: str) -> ItemReply | None:
     """A to C by option, capital where right; `.` blank, `?` not sure, `-` not there."""
     if letter == "-":
         return None
     if letter in LETTERS:
         return LETTERS[letter]
     right = letter.isupper()
-    return Reply(Outcome.RIGHT if right else Outcome.WRONG, "abc".index(letter.lower()))
+    return ItemReply(AnswerOutcome.RIGHT if right else AnswerOutcome.WRONG, "abc".index(letter.lower()))
 
 
-def quiz(**rows: str) -> Quiz:
-    items = tuple(Item(name, "ros2") for name in rows)
-    return Quiz(items, {name: tuple(map(reply, row)) for name, row in rows.items()})
+def quiz(**rows: str) -> AnswerSheet:
+    items = tuple(ReportItem(name, "ros2") for name in rows)
+    return AnswerSheet(items, {name: tuple(map(reply, row)) for name, row in rows.items()})
 
 
 def test_wrong_not_sure_and_blank_are_told_apart() -> None:
     sheet = quiz(one="AAbc.?-")
-    found = analyse(sheet, sheet.items[0])
+    found = analyse_item(sheet, sheet.items[0])
     assert found.n == 6
-    assert found.outcomes == {Outcome.RIGHT: 2, Outcome.WRONG: 2, Outcome.BLANK: 1, Outcome.NOT_SURE: 1}
-    assert found.chosen == {0: 2, 1: 1, 2: 1}
+    assert found.outcomes == {
+        AnswerOutcome.RIGHT: 2,
+        AnswerOutcome.WRONG: 2,
+        AnswerOutcome.BLANK: 1,
+        AnswerOutcome.NOT_SURE: 1,
+    }
+    assert found.choice_counts == {0: 2, 1: 1, 2: 1}
     assert found.difficulty == pytest.approx(2 / 6)
     assert found.interval.low < 2 / 6 < found.interval.high
 
 
 def test_item_rest_leaves_the_item_itself_out() -> None:
     sheet = quiz(one="AAbb", two="AAbb", three="bAAb")
-    first = analyse(sheet, sheet.items[0])
+    first = analyse_item(sheet, sheet.items[0])
     rest = np.array([1, 2, 1, 0]) / 2
-    assert first.with_rest == pytest.approx(np.corrcoef([1, 1, 0, 0], rest)[0, 1])
-    assert math.isnan(analyse(quiz(one="AAbb"), Item("one", "ros2")).with_rest)
+    assert first.rest_correlation == pytest.approx(np.corrcoef([1, 1, 0, 0], rest)[0, 1])
+    assert math.isnan(analyse_item(quiz(one="AAbb"), ReportItem("one", "ros2")).rest_correlation)
 
 
 @pytest.mark.parametrize(
@@ -59,12 +64,12 @@ def test_item_rest_leaves_the_item_itself_out() -> None:
 )
 def test_what_a_teacher_should_look_at(rows: dict[str, str], words: str) -> None:
     sheet = quiz(**rows)
-    assert any(words in each for each in analyse(sheet, sheet.items[0]).cautions)
+    assert any(words in each for each in analyse_item(sheet, sheet.items[0]).warnings)
 
 
 def test_a_good_item_is_left_in_peace() -> None:
     sheet = quiz(one="AAAbcb", two="AAAbbb", three="AAbbbb")
-    assert analyse(sheet, sheet.items[0]).cautions == ()
+    assert analyse_item(sheet, sheet.items[0]).warnings == ()
 
 
 def test_kr_20_by_hand() -> None:
@@ -83,5 +88,5 @@ def test_scores_count_only_who_took_the_quiz() -> None:
     sheet = quiz(one="A.-", two="Ab-")
     assert sheet.score[:2].tolist() == [1.0, 0.0]
     assert math.isnan(sheet.score[2])
-    assert sheet.count(Outcome.BLANK)[:2].tolist() == [0, 1]
-    assert math.isnan(sheet.count(Outcome.RIGHT)[2])
+    assert sheet.outcome_counts(AnswerOutcome.BLANK)[:2].tolist() == [0, 1]
+    assert math.isnan(sheet.outcome_counts(AnswerOutcome.RIGHT)[2])

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressJournal
-from kit.school.report.students import read_roll
+from kit.school.report.students import read_roster
 from tests.school.report.classroom import NAMES, START, Diary, classroom, student
 
 
@@ -24,20 +24,20 @@ def diary(name: str) -> Diary:
 def test_a_folder_stands_for_its_files(tmp_path: Path) -> None:
     classroom(tmp_path, 3)
     (tmp_path / "notes.txt").write_text("no export")
-    roll = read_roll([tmp_path])
-    assert (len(roll.students), roll.files, roll.cautions) == (3, 3, ())
+    roll = read_roster([tmp_path])
+    assert (len(roll.students), roll.file_count, roll.warnings) == (3, 3, ())
 
 
 def test_students_have_numbers_unless_names_are_wanted(tmp_path: Path) -> None:
     classroom(tmp_path, 11)
-    without = [each.label for each in read_roll([tmp_path]).students]
+    without = [each.label for each in read_roster([tmp_path]).students]
     assert without == [f"S{number:02}" for number in range(1, 12)]
-    assert {each.label for each in read_roll([tmp_path], names=True).students} == set(NAMES[:11])
+    assert {each.label for each in read_roster([tmp_path], names=True).students} == set(NAMES[:11])
 
 
 def test_the_numbers_do_not_follow_names_or_files(tmp_path: Path) -> None:
     files = classroom(tmp_path, 12)
-    forwards, backwards = read_roll(files), read_roll(files[::-1])
+    forwards, backwards = read_roster(files), read_roster(files[::-1])
     assert [each.files for each in forwards.students] == [each.files for each in backwards.students]
     assert [each.files[0] for each in forwards.students] != sorted(files)
 
@@ -46,7 +46,7 @@ def test_the_file_names_who_gave_no_name(tmp_path: Path) -> None:
     nameless = Diary("x")
     nameless.note(EventKind.STEP, "01-drive/1")
     nameless.export(tmp_path, "a17.json")
-    assert [each.label for each in read_roll([tmp_path], names=True).students] == ["a17"]
+    assert [each.label for each in read_roster([tmp_path], names=True).students] == ["a17"]
 
 
 def test_two_exports_of_one_student_are_one(tmp_path: Path) -> None:
@@ -54,36 +54,36 @@ def test_two_exports_of_one_student_are_one(tmp_path: Path) -> None:
     early = ada.export(tmp_path, "early.json")
     ada.note(EventKind.STEP, "01-drive/1")
     late = ada.export(tmp_path, "late.json")
-    roll = read_roll([early, late])
+    roll = read_roster([early, late])
     assert len(roll.students) == 1
     assert len(roll.students[0].events) == 2
-    assert "same student" in roll.cautions[0]
+    assert "same student" in roll.warnings[0]
 
 
 def test_a_file_named_twice_is_read_once(tmp_path: Path) -> None:
     file = diary("Ada").export(tmp_path)
     (tmp_path / "link.json").symlink_to(file)
-    roll = read_roll([file, tmp_path])
+    roll = read_roster([file, tmp_path])
     assert len(roll.students) == 1
-    assert len(roll.cautions) == 2
+    assert len(roll.warnings) == 2
 
 
 def test_somebody_elses_progress_taken_over_stays_two(tmp_path: Path) -> None:
     ada, ben = diary("Ada"), Diary("Ben")
     ben.events += ada.events
     ben.note(EventKind.ABOUT, "name", {"value": "Ben"}, minutes=99)
-    roll = read_roll([ada.export(tmp_path), ben.export(tmp_path)])
+    roll = read_roster([ada.export(tmp_path), ben.export(tmp_path)])
     assert len(roll.students) == 2
-    assert "different students" in roll.cautions[0]
+    assert "different students" in roll.warnings[0]
 
 
 def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
     first = diary("Ada")
     second = Diary("another")
     second.note(EventKind.ABOUT, "name", {"value": "ada "})
-    roll = read_roll([first.export(tmp_path), second.export(tmp_path)], names=True)
+    roll = read_roster([first.export(tmp_path), second.export(tmp_path)], names=True)
     assert len(roll.students) == 2
-    assert "same name" in roll.cautions[0]
+    assert "same name" in roll.warnings[0]
     assert len({each.label for each in roll.students}) == 2
 
 
@@ -125,26 +125,26 @@ def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
 def test_what_is_no_export_is_named_and_the_rest_goes_on(tmp_path: Path, content: bytes) -> None:
     diary("Ada").export(tmp_path)
     (tmp_path / "wrong.json").write_bytes(content)
-    roll = read_roll([tmp_path])
+    roll = read_roster([tmp_path])
     assert len(roll.students) == 1
-    assert len(roll.cautions) == 1
-    assert "wrong.json" in roll.cautions[0]
+    assert len(roll.warnings) == 1
+    assert "wrong.json" in roll.warnings[0]
 
 
 def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
     (tmp_path / "folder.json").mkdir()
     (tmp_path / "empty").mkdir()
     file = diary("Ada").export(tmp_path)
-    roll = read_roll([file, tmp_path / "gone.json", tmp_path / "folder.json", tmp_path / "empty"])
+    roll = read_roster([file, tmp_path / "gone.json", tmp_path / "folder.json", tmp_path / "empty"])
     assert len(roll.students) == 1
-    assert len(roll.cautions) == 3
+    assert len(roll.warnings) == 3
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
 def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
     file = diary("Ada").export(tmp_path)
     file.chmod(0)
-    assert "cannot be read" in read_roll([file]).cautions[0]
+    assert "cannot be read" in read_roster([file]).warnings[0]
 
 
 def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
@@ -152,14 +152,14 @@ def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
         progress.add(EventKind.ABOUT, "name", {"value": "Ada"}, now=START)
         progress.add(EventKind.STEP, "01-drive/1", now=START + timedelta(minutes=1))
         progress.export(tmp_path / "ada.json")
-    roll = read_roll([tmp_path / "ada.json"], names=True)
+    roll = read_roster([tmp_path / "ada.json"], names=True)
     assert [(each.label, len(each.events)) for each in roll.students] == [("Ada", 2)]
 
 
 def test_a_name_cannot_command_the_terminal(tmp_path: Path) -> None:
     wicked = Diary("x")
     wicked.note(EventKind.ABOUT, "name", {"value": "\x1b[2J" + "A" * 500})
-    label = read_roll([wicked.export(tmp_path)], names=True).students[0].label
+    label = read_roster([wicked.export(tmp_path)], names=True).students[0].label
     assert "\x1b" not in label
     assert len(label) <= 40
 
@@ -167,5 +167,5 @@ def test_a_name_cannot_command_the_terminal(tmp_path: Path) -> None:
 def test_events_come_in_the_order_of_time(tmp_path: Path) -> None:
     made = student("Ada", 0.5, np.random.default_rng(0))
     made.events.reverse()
-    times = [event.time for event in read_roll([made.export(tmp_path)]).students[0].events]
+    times = [event.time for event in read_roster([made.export(tmp_path)]).students[0].events]
     assert times == sorted(times)

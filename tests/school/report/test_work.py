@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from kit.school.progress import EventKind
-from kit.school.report.work import lessons_of, work_of
+from kit.school.report.work import started_lessons, student_work
 from tests.school.report.classroom import Diary
 
 
@@ -18,10 +18,10 @@ def test_attempts_points_and_what_was_lost() -> None:
     diary.attempt("01-drive/flag", 0.0, "broken")
     diary.attempt("01-drive/flag", 5.0, "pass")
     diary.attempt("01-drive/flag", 3.0, "fail", ["clear"])
-    exercise = work_of(diary.events)["01-drive"].exercises["flag"]
+    exercise = student_work(diary.events)["01-drive"].exercises["flag"]
     assert (exercise.attempts, exercise.points, exercise.max_points) == (4, 5.0, 5.0)
-    assert (exercise.passed, exercise.tries_to_pass) == (True, 3)
-    assert exercise.lost == {"reached": 2, "clear": 2}
+    assert (exercise.is_passed, exercise.tries_to_pass) == (True, 3)
+    assert exercise.lost_criteria == {"reached": 2, "clear": 2}
 
 
 def test_steps_hints_predictions_and_solutions() -> None:
@@ -32,27 +32,27 @@ def test_steps_hints_predictions_and_solutions() -> None:
     diary.note(EventKind.PREDICTION, "01-drive/4", {"chosen": 0, "right": False})
     diary.note(EventKind.HINT, "01-drive/flag/reached", {"step": 1})
     diary.note(EventKind.SOLUTION, "01-drive/flag")
-    lesson = work_of(diary.events)["01-drive"]
+    lesson = student_work(diary.events)["01-drive"]
     assert len(lesson.steps) == 2
     assert (lesson.predictions, lesson.predicted_right, lesson.hints) == (2, 1, 1)
-    assert lesson.exercises["flag"].solution
-    assert (lesson.attempts, lesson.passed) == (0, 0)
+    assert lesson.exercises["flag"].has_seen_solution
+    assert (lesson.attempts, lesson.passed_count) == (0, 0)
 
 
 def test_time_stops_in_pauses_and_between_lessons() -> None:
     diary = Diary("Ada")
     for lesson, minutes in (("a", 1), ("a", 3), ("b", 4), ("b", 9), ("b", 60), ("b", 2), ("a", 5)):
         diary.note(EventKind.STEP, f"{lesson}/1", minutes=minutes)
-    work = work_of(diary.events)
+    work = student_work(diary.events)
     assert (work["a"].minutes, work["b"].minutes) == (3, 11)
-    assert lessons_of([work, {}]) == ("a", "b")
+    assert started_lessons([work, {}]) == ("a", "b")
 
 
 def test_what_is_not_of_lessons_is_passed_over() -> None:
     diary = Diary("Ada")
     diary.note(EventKind.ABOUT, "name", {"value": "Ada"})
     diary.note(EventKind.FINISH, "level-1", {"reached": True})
-    assert work_of(diary.events) == {}
+    assert student_work(diary.events) == {}
 
 
 @pytest.mark.parametrize(
@@ -69,5 +69,5 @@ def test_what_is_not_of_lessons_is_passed_over() -> None:
 def test_damaged_entries_count_as_little_as_they_say(content: dict[str, Any]) -> None:
     diary = Diary("Ada")
     diary.note(EventKind.ATTEMPT, "01-drive/flag", content)
-    lesson = work_of(diary.events)["01-drive"]
+    lesson = student_work(diary.events)["01-drive"]
     assert 0 <= lesson.points <= lesson.max_points <= 5

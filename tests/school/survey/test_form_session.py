@@ -7,18 +7,43 @@ from typing import Any
 import pytest
 
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.survey.form_session import Answers, NotAnAnswer, applies, asked, parse, still_open
-from kit.school.survey.questions import Form, Phase, Purpose, Question, Rule, Shape
+from kit.school.survey.form_session import (
+    FormAnswers,
+    InvalidAnswer,
+    asked_questions,
+    is_asked,
+    open_questions,
+    parse_answer,
+)
+from kit.school.survey.questions import (
+    AnswerShape,
+    AskCondition,
+    QuestionPurpose,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
+)
 from kit.school.survey.reading import read_form
 
-RATED = Question(
-    "rated", "How much?", Purpose.EXPERIENCE, phases=(Phase.BEFORE, Phase.AFTER), low="a", high="b"
+RATED = SurveyQuestion(
+    "rated",
+    "How much?",
+    QuestionPurpose.EXPERIENCE,
+    phases=(SurveyPhase.BEFORE, SurveyPhase.AFTER),
+    low="a",
+    high="b",
 )
-DONE = Question("done", "Did you?", Purpose.DONE, Shape.YES_NO)
-WHY = Question("why", "Why?", Purpose.WORDS, Shape.TEXT, only_if=Rule("done", answer=True))
-MORE = Question("more", "More?", Purpose.WORDS, Shape.TEXT, only_if=Rule("rated", at_least=3))
-CHOSEN = Question("chosen", "Which?", Purpose.BACKGROUND, Shape.CHOICE, options=("left", "right"))
-FORM = Form("A form", (RATED, DONE, WHY, MORE, CHOSEN))
+DONE = SurveyQuestion("done", "Did you?", QuestionPurpose.DONE, AnswerShape.YES_NO)
+WHY = SurveyQuestion(
+    "why", "Why?", QuestionPurpose.WORDS, AnswerShape.TEXT, only_if=AskCondition("done", answer=True)
+)
+MORE = SurveyQuestion(
+    "more", "More?", QuestionPurpose.WORDS, AnswerShape.TEXT, only_if=AskCondition("rated", at_least=3)
+)
+CHOSEN = SurveyQuestion(
+    "chosen", "Which?", QuestionPurpose.BACKGROUND, AnswerShape.CHOICE, options=("left", "right")
+)
+FORM = SurveyForm("A form", (RATED, DONE, WHY, MORE, CHOSEN))
 
 
 def said(question: str, value: Any, phase: str = "after", number: int = 0) -> ProgressEvent:
@@ -29,14 +54,16 @@ def said(question: str, value: Any, phase: str = "after", number: int = 0) -> Pr
 
 
 def open_after(*events: ProgressEvent) -> list[str]:
-    return [each.id for each in still_open(FORM, Answers.of(FORM, events), Phase.AFTER)]
+    return [
+        each.id for each in open_questions(FORM, FormAnswers.from_events(FORM, events), SurveyPhase.AFTER)
+    ]
 
 
 def test_a_blank_is_an_answer_and_stays_blank() -> None:
-    answers = Answers.of(FORM, [said("rated", None)])
-    assert answers.has("rated", Phase.AFTER)
-    assert answers.value("rated", Phase.AFTER) is None
-    assert not answers.has("rated", Phase.BEFORE)
+    answers = FormAnswers.from_events(FORM, [said("rated", None)])
+    assert answers.is_answered("rated", SurveyPhase.AFTER)
+    assert answers.value("rated", SurveyPhase.AFTER) is None
+    assert not answers.is_answered("rated", SurveyPhase.BEFORE)
     assert open_after(said("rated", None)) == ["done", "chosen"]
 
 
@@ -54,22 +81,22 @@ def test_rules_follow_the_answers() -> None:
 
 
 def test_the_last_answer_counts() -> None:
-    answers = Answers.of(FORM, [said("rated", 2, number=1), said("rated", 6, number=2)])
-    assert answers.value("rated", Phase.AFTER) == 6
+    answers = FormAnswers.from_events(FORM, [said("rated", 2, number=1), said("rated", 6, number=2)])
+    assert answers.value("rated", SurveyPhase.AFTER) == 6
 
 
 @pytest.mark.parametrize("value", [0, 8, -1, 3.5, "3", True, [3], {"a": 1}, 10**30])
 def test_what_cannot_be_an_answer_is_left_out_and_named(value: Any) -> None:
-    answers = Answers.of(FORM, [said("rated", value)])
-    assert not answers.given
-    assert answers.odd == ("rated",)
+    answers = FormAnswers.from_events(FORM, [said("rated", value)])
+    assert not answers.values
+    assert answers.invalid_questions == ("rated",)
 
 
 @pytest.mark.parametrize(
     ("question", "value"), [("done", 1), ("chosen", "up"), ("why", 5), ("why", False), ("chosen", True)]
 )
 def test_each_shape_has_answers_of_its_own(question: str, value: Any) -> None:
-    assert Answers.of(FORM, [said(question, value)]).odd == (question,)
+    assert FormAnswers.from_events(FORM, [said(question, value)]).invalid_questions == (question,)
 
 
 @pytest.mark.parametrize("phase", ["before", "later", None, ["after"], {}])
@@ -77,13 +104,13 @@ def test_a_phase_in_which_it_is_not_asked_does_not_count(phase: Any) -> None:
     event = ProgressEvent(
         "u", "2026-01-01T00:00:00+00:00", EventKind.FORM, "done", {"phase": phase, "value": True}
     )
-    assert not Answers.of(FORM, [event]).given
+    assert not FormAnswers.from_events(FORM, [event]).values
 
 
 def test_unknown_questions_and_other_events_are_passed_over() -> None:
     other = ProgressEvent("u", "2026-01-01T00:00:00+00:00", EventKind.STEP, "rated", {})
-    answers = Answers.of(FORM, [said("of a newer kit", 3), other])
-    assert answers == Answers()
+    answers = FormAnswers.from_events(FORM, [said("of a newer kit", 3), other])
+    assert answers == FormAnswers()
 
 
 @pytest.mark.parametrize(
@@ -99,9 +126,9 @@ def test_unknown_questions_and_other_events_are_passed_over() -> None:
         (WHY, "", None),
     ],
 )
-def test_a_line_is_understood(question: Question, line: str, value: Any) -> None:
-    assert parse(question, line) == value
-    assert question.accepts(parse(question, line))
+def test_a_line_is_understood(question: SurveyQuestion, line: str, value: Any) -> None:
+    assert parse_answer(question, line) == value
+    assert question.can_be_answered_with(parse_answer(question, line))
 
 
 @pytest.mark.parametrize(
@@ -121,24 +148,24 @@ def test_a_line_is_understood(question: Question, line: str, value: Any) -> None
         (WHY, "\udcff"),
     ],
 )
-def test_a_line_that_is_no_answer_says_what_would_be(question: Question, line: str) -> None:
-    with pytest.raises(NotAnAnswer) as caught:
-        parse(question, line)
+def test_a_line_that_is_no_answer_says_what_would_be(question: SurveyQuestion, line: str) -> None:
+    with pytest.raises(InvalidAnswer) as caught:
+        parse_answer(question, line)
     assert str(caught.value)
 
 
 def test_every_question_of_the_kits_form_can_be_reached() -> None:
     """Whoever says yes to everything, and knows much, is asked everything."""
     form = read_form()
-    yes = {Shape.SCALE: 7, Shape.YES_NO: True, Shape.TEXT: "words"}
+    yes = {AnswerShape.SCALE: 7, AnswerShape.YES_NO: True, AnswerShape.TEXT: "words"}
     events = []
-    for phase in Phase:
+    for phase in SurveyPhase:
         events += [
             said(each.id, yes.get(each.shape, each.options[:1] and each.options[0]), phase.value)
-            for each in form.in_phase(phase)
+            for each in form.questions_in_phase(phase)
         ]
-        answers = Answers.of(form, events)
-        assert not answers.odd
-        assert asked(form, answers, phase) == list(form.in_phase(phase))
-        assert not still_open(form, answers, phase)
-        assert all(applies(each, answers, phase) for each in form.in_phase(phase))
+        answers = FormAnswers.from_events(form, events)
+        assert not answers.invalid_questions
+        assert asked_questions(form, answers, phase) == list(form.questions_in_phase(phase))
+        assert not open_questions(form, answers, phase)
+        assert all(is_asked(each, answers, phase) for each in form.questions_in_phase(phase))

@@ -13,8 +13,8 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.survey.form_session import Answers
-from kit.school.survey.questions import Phase, Purpose, Shape
+from kit.school.survey.form_session import FormAnswers
+from kit.school.survey.questions import AnswerShape, QuestionPurpose, SurveyPhase
 from kit.school.survey.reading import read_form
 
 
@@ -26,36 +26,36 @@ def answer(workspace: Path, *arguments: str, lines: str = "") -> str:
     return result.output
 
 
-def kept(workspace: Path) -> Answers:
+def kept(workspace: Path) -> FormAnswers:
     with ProgressJournal(workspace) as progress:
-        return Answers.of(read_form(), progress.events(EventKind.FORM))
+        return FormAnswers.from_events(read_form(), progress.events(EventKind.FORM))
 
 
 def test_it_goes_on_where_it_stopped(tmp_path: Path) -> None:
     answer(tmp_path, lines="2\n5\n\n")
     found = kept(tmp_path)
-    assert found.value("experience.robotics", Phase.BEFORE) == 5
-    assert found.has("experience.ros1", Phase.BEFORE)
-    assert found.value("experience.ros1", Phase.BEFORE) is None
+    assert found.value("experience.robotics", SurveyPhase.BEFORE) == 5
+    assert found.is_answered("experience.ros1", SurveyPhase.BEFORE)
+    assert found.value("experience.ros1", SurveyPhase.BEFORE) is None
     text = answer(tmp_path, lines="6\nq\n")
     assert "Robotics" not in text
-    assert kept(tmp_path).value("experience.ros2", Phase.BEFORE) == 6
+    assert kept(tmp_path).value("experience.ros2", SurveyPhase.BEFORE) == 6
 
 
 def test_a_wrong_line_is_asked_again_and_b_goes_back(tmp_path: Path) -> None:
     answer(tmp_path, lines="nine\n2\n8\n5\nb\n6\nq\n")
     found = kept(tmp_path)
-    assert found.value("experience.robotics", Phase.BEFORE) == 6
-    assert not found.has("experience.ros1", Phase.BEFORE)
+    assert found.value("experience.robotics", SurveyPhase.BEFORE) == 6
+    assert not found.is_answered("experience.ros1", SurveyPhase.BEFORE)
 
 
 def test_the_whole_form_before_and_after(tmp_path: Path) -> None:
     assert "Thank you" in answer(tmp_path, lines="1\n" + "4\n" * 7 + "n\n")
-    assert "setup.install" not in {question for _, question in kept(tmp_path).given}
+    assert "setup.install" not in {question for _, question in kept(tmp_path).values}
     assert "after the lessons" in answer(tmp_path, lines="q\n"), "what comes next is the form after"
     lines = "".join(
         {"scale": "4\n", "yes_no": "y\n", "text": "fine\n"}[each.shape]
-        for each in read_form().in_phase(Phase.AFTER)
+        for each in read_form().questions_in_phase(SurveyPhase.AFTER)
     )
     assert "Thank you" in answer(tmp_path, lines=lines)
     assert "is answered" in answer(tmp_path, "after")
@@ -66,28 +66,34 @@ def test_the_whole_form_before_and_after(tmp_path: Path) -> None:
 
 def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> None:
     form = read_form()
-    twice = {each.id for each in form.in_phase(Phase.QUIZZED)}
-    assert twice == {each.id for each in (*form.of(Purpose.GAINED), *form.of(Purpose.OUTCOME))}
+    twice = {each.id for each in form.questions_in_phase(SurveyPhase.QUIZZED)}
+    assert twice == {
+        each.id
+        for each in (
+            *form.questions_for(QuestionPurpose.GAINED),
+            *form.questions_for(QuestionPurpose.OUTCOME),
+        )
+    }
     with ProgressJournal(tmp_path) as progress:
-        for each in form.in_phase(Phase.AFTER):
-            value = {Shape.SCALE: 5, Shape.YES_NO: True}.get(each.shape)
+        for each in form.questions_in_phase(SurveyPhase.AFTER):
+            value = {AnswerShape.SCALE: 5, AnswerShape.YES_NO: True}.get(each.shape)
             progress.add(EventKind.FORM, each.id, {"phase": "after", "value": value})
     assert "is answered" in answer(tmp_path), "before the quiz nothing more is asked"
     with ProgressJournal(tmp_path) as progress:
         progress.add(EventKind.ANSWER, "item", {"chosen": 1, "right": False, "occasion": "quiz"})
     assert "Thank you" in answer(tmp_path, lines="3\n" * len(twice))
     answers = kept(tmp_path)
-    assert {answers.value(each, Phase.AFTER) for each in twice} == {5}
-    assert {answers.value(each, Phase.QUIZZED) for each in twice} == {3}
+    assert {answers.value(each, SurveyPhase.AFTER) for each in twice} == {5}
+    assert {answers.value(each, SurveyPhase.QUIZZED) for each in twice} == {3}
 
 
 def test_again_keeps_or_blanks(tmp_path: Path) -> None:
     answer(tmp_path, lines="2\n5\n3\nq\n")
     answer(tmp_path, "before", "--again", lines="\n\n-\nq\n")
     found = kept(tmp_path)
-    assert found.value("experience.robotics", Phase.BEFORE) == 5
-    assert found.has("experience.ros1", Phase.BEFORE)
-    assert found.value("experience.ros1", Phase.BEFORE) is None
+    assert found.value("experience.robotics", SurveyPhase.BEFORE) == 5
+    assert found.is_answered("experience.ros1", SurveyPhase.BEFORE)
+    assert found.value("experience.ros1", SurveyPhase.BEFORE) is None
 
 
 def test_the_screen_is_wide_enough(tmp_path: Path) -> None:
@@ -117,8 +123,8 @@ def test_a_kill_loses_nothing_that_was_answered(tmp_path: Path, how: signal.Sign
         process.stdin.close()
         process.stdout.close()
     found = kept(tmp_path)
-    assert found.value("experience.robotics", Phase.BEFORE) == 2
-    assert found.value("experience.ros1", Phase.BEFORE) == 7
+    assert found.value("experience.robotics", SurveyPhase.BEFORE) == 2
+    assert found.value("experience.ros1", SurveyPhase.BEFORE) == 7
 
 
 def test_a_workspace_that_cannot_be_is_told(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.survey.questions import Phase, Purpose, Shape
+from kit.school.survey.questions import AnswerShape, QuestionPurpose, SurveyPhase
 from kit.school.survey.reading import form_file, read_form
 from kit.world.problems import WorldError
 
@@ -22,7 +22,7 @@ groups:
 
 def test_the_kits_form_asks_what_the_report_needs() -> None:
     form = read_form()
-    assert {each.topic for each in form.of(Purpose.EXPERIENCE)} >= {
+    assert {each.topic for each in form.questions_for(QuestionPurpose.EXPERIENCE)} >= {
         "robotics",
         "ros1",
         "ros2",
@@ -30,18 +30,21 @@ def test_the_kits_form_asks_what_the_report_needs() -> None:
         "flatland",
         "rl",
     }
-    for purpose in Purpose:
-        assert form.of(purpose), purpose
-    rated = [each for each in form.questions if each.shape is Shape.SCALE]
+    for purpose in QuestionPurpose:
+        assert form.questions_for(purpose), purpose
+    rated = [each for each in form.questions if each.shape is AnswerShape.SCALE]
     assert all(each.low and each.high for each in rated)
-    assert all(each.topic for each in rated if each.purpose is not Purpose.SETUP)
-    hard, told = form.of(Purpose.DIFFICULTY), form.of(Purpose.EXPLANATION)
+    assert all(each.topic for each in rated if each.purpose is not QuestionPurpose.SETUP)
+    hard, told = (
+        form.questions_for(QuestionPurpose.DIFFICULTY),
+        form.questions_for(QuestionPurpose.EXPLANATION),
+    )
     assert {each.topic for each in hard} == {each.topic for each in told}
 
 
 def test_experience_is_asked_twice_the_same_way() -> None:
-    both = {each.phases for each in read_form().of(Purpose.EXPERIENCE)}
-    assert both == {(Phase.BEFORE, Phase.AFTER)}
+    both = {each.phases for each in read_form().questions_for(QuestionPurpose.EXPERIENCE)}
+    assert both == {(SurveyPhase.BEFORE, SurveyPhase.AFTER)}
 
 
 def test_what_stands_in_the_file_fits_a_screen() -> None:

@@ -27,7 +27,7 @@ LEVELS = all_levels()
 
 @pytest.fixture
 def progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ProgressJournal]:
-    monkeypatch.setenv(leaderboard.VARIABLE, str(tmp_path / "hall"))
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "hall"))
     with ProgressJournal(tmp_path) as opened:
         yield opened
 
@@ -107,7 +107,7 @@ def test_a_drive_earns_stars_and_leaves_a_ghost(progress: ProgressJournal, tmp_p
         await pilot.pause()
         await pilot.press("escape")
         await until(pilot, lambda: pilot.app.screen is screen)
-        assert screen._found[0].count >= 2
+        assert screen._found[0].star_count >= 2
         assert screen._found[2].is_open
 
     play(scene, progress, tmp_path / "desk")

@@ -11,7 +11,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.quiz_session import Sitting, of_lesson, the_twelve
+from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.school.quiz.reading import read_bank
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.screens.quiz import QuizScreen, QuizStage
@@ -29,12 +29,12 @@ def progress(tmp_path: Path) -> Iterator[ProgressJournal]:
 def play(
     scene: Scene, progress: ProgressJournal, *, lesson: str = "", size: tuple[int, int] = (80, 24)
 ) -> None:
-    plan = of_lesson(BANK, lesson) if lesson else the_twelve(BANK)
+    plan = lesson_plan(BANK, lesson) if lesson else quiz_plan(BANK)
 
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=size) as pilot:
-            screen = QuizScreen(Sitting(progress, BANK, plan, seed=1))
+            screen = QuizScreen(QuizSession(progress, BANK, plan, seed=1))
             await app.push_screen(screen)
             await pilot.pause()
             await scene(screen, pilot)
@@ -63,7 +63,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
         assert item is not None
         assert "question 1 of 12" in rows(screen)[0]
         assert all(option.text in flat(screen) for option in item.options)
-        wrong = (item.right + 1) % 3
+        wrong = (item.right_option + 1) % 3
         await pilot.press(str(wrong + 1))
         assert screen.stage is QuizStage.CHOSEN
         assert any(row.startswith(f"> {wrong + 1}") for row in rows(screen))
@@ -74,7 +74,7 @@ def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
         assert (event.content["chosen"], event.content["confidence"]) == (wrong, 4)
         assert " ".join(item.options[wrong].feedback.split()) in flat(screen)
         assert any(row.startswith(f"x {wrong + 1}") for row in rows(screen))
-        assert any(row.startswith(f"+ {item.right + 1}") for row in rows(screen))
+        assert any(row.startswith(f"+ {item.right_option + 1}") for row in rows(screen))
         await pilot.press("n")
         assert "question 2 of 12" in rows(screen)[0]
         assert screen.stage is QuizStage.ASKED
@@ -119,13 +119,13 @@ def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
 
 
 def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
-    count = len(BANK.of_lesson("08-fewest-layers"))
+    count = len(BANK.lesson_items("08-fewest-layers"))
 
     async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
         for _ in range(count):
             item = screen._item
             assert item is not None
-            await pilot.press(str(item.right + 1), "4", "n")
+            await pilot.press(str(item.right_option + 1), "4", "n")
         assert screen.stage is QuizStage.OVER
         assert f"{count} of {count} right" in flat(screen)
         assert f"certain {count} of {count}" in flat(screen)

@@ -7,16 +7,26 @@ from collections.abc import Iterator
 import numpy as np
 
 from kit.school.report.chapters.setting import SCALE, Setting, cautions_of, means_table, title_of
-from kit.school.report.document import Block, Caution, Cell, Chapter, Column, Histogram, Style, Table, Text
+from kit.school.report.document import (
+    CellStyle,
+    Histogram,
+    ReportBlock,
+    ReportChapter,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    TableCell,
+    TableColumn,
+)
 from kit.school.report.expertise import effective_weights
-from kit.school.report.inference import present, summary
-from kit.school.report.measures import Measure
-from kit.school.survey.questions import Phase, Purpose
+from kit.school.report.inference import non_blank, summary_statistics
+from kit.school.report.measures import StudentMeasure
+from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 BINS = tuple(float(edge) for edge in np.linspace(*SCALE, 7))
 
 
-def people(setting: Setting, files: int) -> Chapter:
+def people(setting: Setting, files: int) -> ReportChapter:
     """The roll: how many, what they filled in, what was wrong with their files."""
     data = setting.data
     quiz = [
@@ -24,83 +34,92 @@ def people(setting: Setting, files: int) -> Chapter:
         for i, name in enumerate(data.names)
         if any(row[i] is not None for row in data.quiz.replies.values())
     ]
-    blocks: list[Block] = [Caution(text) for text in data.cautions]
-    rows: tuple[tuple[Cell, ...], ...] = (
+    blocks: list[ReportBlock] = [ReportWarning(text) for text in data.warnings]
+    rows: tuple[tuple[TableCell, ...], ...] = (
         ("files", files),
         ("students", len(data.names)),
-        ("form before", _answered(setting, Phase.BEFORE)),
-        ("form after", _answered(setting, Phase.AFTER)),
-        ("form quizzed", _answered(setting, Phase.QUIZZED)),
+        ("form before", _answered(setting, SurveyPhase.BEFORE)),
+        ("form after", _answered(setting, SurveyPhase.AFTER)),
+        ("form quizzed", _answered(setting, SurveyPhase.QUIZZED)),
         ("quiz", len(quiz)),
         ("lessons", sum(bool(work) for work in data.work)),
     )
-    blocks.append(Table("class", "Who is in this report", (Column("", Style.TEXT), Column("n")), rows))
-    counted: tuple[tuple[Cell, ...], ...] = tuple(
+    blocks.append(
+        ReportTable(
+            "class", "Who is in this report", (TableColumn("", CellStyle.TEXT), TableColumn("n")), rows
+        )
+    )
+    counted: tuple[tuple[TableCell, ...], ...] = tuple(
         (question.text, word, count)
-        for question, _, counts in data.counted
+        for question, _, counts in data.option_counts
         for word, count in counts.items()
         if count
     )
     if counted:
-        columns = (Column("", Style.TEXT), Column("answer", Style.TEXT), Column("n"))
-        blocks.append(Table("facts", "What they said of themselves", columns, counted, grouped=True))
+        columns = (TableColumn("", CellStyle.TEXT), TableColumn("answer", CellStyle.TEXT), TableColumn("n"))
+        blocks.append(ReportTable("facts", "What they said of themselves", columns, counted, grouped=True))
     blocks.append(
-        Text(
+        ReportText(
             "How to read: n counts who answered; blanks are left out, never taken for anything. SD is of the sample "
             "(n - 1). Intervals hold the true value with 95% confidence (means by Student's t, shares by Wilson). "
             "p is the share of all divisions into groups of these sizes that differ at least as much (exact "
             "permutation test, two-sided; in a large class a sample of 20,000 of them). Of twenty such p, one is below 0.05 by chance alone."
         )
     )
-    return Chapter("class", "The class", tuple(blocks))
+    return ReportChapter("class", "The class", tuple(blocks))
 
 
-def _answered(setting: Setting, phase: Phase) -> int:
+def _answered(setting: Setting, phase: SurveyPhase) -> int:
     """Students with at least one rating of that phase."""
     rows = [values for (of, _), values in setting.data.ratings.values.items() if of is phase]
     return int((~np.isnan(np.stack(rows))).any(axis=0).sum()) if rows else 0
 
 
-def experience(setting: Setting) -> Chapter | None:
+def experience(setting: Setting) -> ReportChapter | None:
     """What they knew before, Algorithm 4, and the three divisions."""
-    prior = setting.data.ratings.measures(Purpose.EXPERIENCE, Phase.BEFORE)
+    prior = setting.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     if not prior:
         return None
-    everybody = setting.data.ratings.overall(Purpose.EXPERIENCE, Phase.BEFORE)
+    everybody = setting.data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     assert everybody is not None  # there are ratings
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         means_table(
-            "prior", "Experience before, 1 to 7", (*prior, Measure("all", "All of it", everybody)), setting
+            "prior",
+            "Experience before, 1 to 7",
+            (*prior, StudentMeasure("all", "All of it", everybody)),
+            setting,
         ),
         histogram("prior-histogram", "Students by mean experience before", everybody),
         *_scores(setting),
     ]
-    return Chapter("experience", "Experience and expertise", tuple(blocks))
+    return ReportChapter("experience", "Experience and expertise", tuple(blocks))
 
 
-def _scores(setting: Setting) -> Iterator[Block]:
-    if setting.score is None or not len(present(setting.score)):
-        yield Caution("Nobody rated all six topics of Algorithm 4, so there are no scores and no groups.")
+def _scores(setting: Setting) -> Iterator[ReportBlock]:
+    if setting.score is None or not len(non_blank(setting.score)):
+        yield ReportWarning(
+            "Nobody rated all six topics of Algorithm 4, so there are no scores and no groups."
+        )
         return
     missing = int(np.isnan(setting.score).sum())
     if missing:
-        yield Caution(
+        yield ReportWarning(
             f"{missing} of {len(setting.score)} left out a topic of Algorithm 4: no score, in no group."
         )
     names = {"ros": "the greater of ROS 1 and 2"}
-    weights: tuple[tuple[Cell, ...], ...] = tuple(
+    weights: tuple[tuple[TableCell, ...], ...] = tuple(
         (names.get(topic, title_of(topic)), weight) for topic, weight in effective_weights()
     )
-    yield Table(
+    yield ReportTable(
         "weights",
         "What Algorithm 4 weighs in truth: its means of means come to this",
-        (Column("rating", Style.TEXT), Column("weight", decimals=3)),
+        (TableColumn("rating", CellStyle.TEXT), TableColumn("weight", decimals=3)),
         weights,
     )
     order = np.argsort(-np.nan_to_num(setting.score, nan=-np.inf), kind="stable")[
         : len(setting.score) - missing
     ]
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             setting.data.names[i],
             float(setting.score[i]),
@@ -108,48 +127,48 @@ def _scores(setting: Setting) -> Iterator[Block]:
         )
         for i in order
     )
-    yield Table(
+    yield ReportTable(
         "scores",
         "Expertise scores and divisions",
         (
-            Column("student", Style.TEXT),
-            Column("score"),
-            *(Column(each.title, Style.TEXT) for each in setting.divisions),
+            TableColumn("student", CellStyle.TEXT),
+            TableColumn("score"),
+            *(TableColumn(each.title, CellStyle.TEXT) for each in setting.divisions),
         ),
         rows,
     )
     if not setting.divisions:
-        yield Caution("The scores cannot be divided into two groups.")
+        yield ReportWarning("The scores cannot be divided into two groups.")
         return
     yield _divisions(setting)
     for each in setting.divisions:
         yield from cautions_of(each)
     if setting.division is None:
-        yield Caution(
+        yield ReportWarning(
             "The division asked for leaves one group empty, so the tables below do not divide the class."
         )
     else:
-        yield Text(f"The tables below divide the class {setting.division.title}.")
+        yield ReportText(f"The tables below divide the class {setting.division.title}.")
 
 
-def _divisions(setting: Setting) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _divisions(setting: Setting) -> ReportTable:
+    rows: list[tuple[TableCell, ...]] = []
     for each in setting.divisions:
         assert setting.score is not None  # a division comes from scores
-        parts: list[Cell] = [each.title]
+        parts: list[TableCell] = [each.title]
         for group in each.groups:
-            found = summary(setting.score[group.members])
+            found = summary_statistics(setting.score[group.members])
             parts += [found.n, found.mean, found.sd]
         inside = setting.score[each.experts.members].min() - setting.score[each.beginners.members].max()
         rows.append((*parts, float(inside)))
     heads = ("n", "M", "SD")
-    return Table(
+    return ReportTable(
         "divisions",
         "The groups by each division: beginners, then experts",
         (
-            Column("", Style.TEXT),
-            *(Column(f"{who} {head}") for who in ("B", "E") for head in heads),
-            Column("gap"),
+            TableColumn("", CellStyle.TEXT),
+            *(TableColumn(f"{who} {head}") for who in ("B", "E") for head in heads),
+            TableColumn("gap"),
         ),
         tuple(rows),
         "gap: from the best beginner to the least expert.",
@@ -158,5 +177,5 @@ def _divisions(setting: Setting) -> Table:
 
 def histogram(identity: str, title: str, values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Histogram:
     """Of ratings from 1 to 7."""
-    counts, _ = np.histogram(present(values), BINS)
+    counts, _ = np.histogram(non_blank(values), BINS)
     return Histogram(identity, title, BINS, tuple(int(count) for count in counts))

@@ -8,40 +8,41 @@ from typing import Final
 import numpy as np
 
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.school.quiz.answers import Outcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters.setting import SHARE, Setting, means_bars, means_table, slug, title_of
 from kit.school.report.document import (
-    Block,
-    Caution,
-    Cell,
-    Chapter,
-    Column,
+    CellStyle,
     Histogram,
-    Style,
-    Table,
-    Text,
-    chance_text,
+    ReportBlock,
+    ReportChapter,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    TableCell,
+    TableColumn,
+    p_value_text,
 )
-from kit.school.report.inference import paired_test, present, summary
-from kit.school.report.items import ItemAnalysis, analyse, kr20
-from kit.school.report.measures import Measure, Quiz
+from kit.school.report.inference import non_blank, paired_test, summary_statistics
+from kit.school.report.items import ItemAnalysis, analyse_item, kr20
+from kit.school.report.measures import AnswerSheet, StudentMeasure
 from kit.school.report.normality import shapiro_wilk
 
 BINS: Final = 6
 MARKED: Final = "*"
 
 
-def quiz(setting: Setting) -> Chapter | None:
+def quiz(setting: Setting) -> ReportChapter | None:
     """Scores by topic and question, blanks apart from wrong answers, and what changed when asked again."""
     sheet = setting.data.quiz
     if not sheet.items:
         return None
     topics = tuple(
-        Measure(topic, title_of(topic), sheet.share(sheet.of_topic(topic))) for topic in sheet.topics
+        StudentMeasure(topic, title_of(topic), sheet.share_right(sheet.of_topic(topic)))
+        for topic in sheet.topics
     )
-    total = Measure("total", "Total", sheet.score)
+    total = StudentMeasure("total", "Total", sheet.score)
     note = "Only a right answer counts; wrong, not sure and blank all count nothing here."
-    blocks: list[Block] = [
+    blocks: list[ReportBlock] = [
         means_table("quiz-topics", "Quiz: share of right answers", (*topics, total), setting, SHARE, note),
         means_bars("quiz-topics-bars", "Quiz: share of right answers", (*topics, total), setting, SHARE),
         _outcomes(setting),
@@ -51,33 +52,33 @@ def quiz(setting: Setting) -> Chapter | None:
         *_again(setting),
         *_bank(setting),
     ]
-    return Chapter("quiz", "The quiz", tuple(blocks))
+    return ReportChapter("quiz", "The quiz", tuple(blocks))
 
 
-def _outcomes(setting: Setting) -> Table:
+def _outcomes(setting: Setting) -> ReportTable:
     """Of all the answers: how many were what."""
     sheet = setting.data.quiz
-    counts = {outcome: sheet.count(outcome) for outcome in Outcome}
-    rows: list[tuple[Cell, ...]] = []
+    counts = {outcome: sheet.outcome_counts(outcome) for outcome in AnswerOutcome}
+    rows: list[tuple[TableCell, ...]] = []
     for group in setting.groups:
-        sums = [int(np.nansum(counts[outcome][group.members])) for outcome in Outcome]
+        sums = [int(np.nansum(counts[outcome][group.members])) for outcome in AnswerOutcome]
         taken = int((~np.isnan(sheet.score[group.members])).sum())
         rows.append((group.name, taken, *sums, sum(sums)))
     heads = (
-        Column("group", Style.TEXT),
-        Column("n"),
-        *(Column(each.value) for each in Outcome),
-        Column("in all"),
+        TableColumn("group", CellStyle.TEXT),
+        TableColumn("n"),
+        *(TableColumn(each.value) for each in AnswerOutcome),
+        TableColumn("in all"),
     )
     note = "What was not reached of a quiz that was begun counts as blank."
-    return Table("quiz-outcomes", "Answers by what became of them", heads, tuple(rows), note)
+    return ReportTable("quiz-outcomes", "Answers by what became of them", heads, tuple(rows), note)
 
 
-def _by_question(setting: Setting, topic: str) -> Table:
+def _by_question(setting: Setting, topic: str) -> ReportTable:
     sheet = setting.data.quiz
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for item in sheet.of_topic(topic):
-        right = sheet.right(item)
+        right = sheet.correctness(item)
         chance = setting.chance(right)
         for i, group in enumerate(setting.groups):
             replies = [
@@ -85,9 +86,9 @@ def _by_question(setting: Setting, topic: str) -> Table:
                 for each, inside in zip(sheet.replies[item.id], group.members, strict=True)
                 if inside and each is not None
             ]
-            counts = [sum(each.outcome is outcome for each in replies) for outcome in Outcome]
+            counts = [sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome]
             share = counts[0] / len(replies) if replies else None
-            p = chance.p if chance is not None and i == len(setting.groups) - 1 else ""
+            p = chance.p_value if chance is not None and i == len(setting.groups) - 1 else ""
             rows.append(
                 (
                     item.id,
@@ -100,18 +101,18 @@ def _by_question(setting: Setting, topic: str) -> Table:
                 )
             )
     heads = (
-        Column("question", Style.TEXT),
-        Column("group", Style.TEXT),
-        Column("n"),
-        Column("right"),
-        Column("95%"),
-        Column("wrong"),
-        Column("unsure"),
-        Column("blank"),
-        Column("p", Style.CHANCE, 3),
+        TableColumn("question", CellStyle.TEXT),
+        TableColumn("group", CellStyle.TEXT),
+        TableColumn("n"),
+        TableColumn("right"),
+        TableColumn("95%"),
+        TableColumn("wrong"),
+        TableColumn("unsure"),
+        TableColumn("blank"),
+        TableColumn("p", CellStyle.CHANCE, 3),
     )
     divided = setting.division is not None
-    return Table(
+    return ReportTable(
         f"quiz-{slug(topic)}",
         f"Questions on {title_of(topic)}",
         heads if divided else heads[:-1],
@@ -120,9 +121,9 @@ def _by_question(setting: Setting, topic: str) -> Table:
     )
 
 
-def _histogram(sheet: Quiz) -> Histogram:
+def _histogram(sheet: AnswerSheet) -> Histogram:
     edges = np.linspace(0, 1, BINS + 1)
-    counts, _ = np.histogram(present(sheet.score), edges)
+    counts, _ = np.histogram(non_blank(sheet.score), edges)
     return Histogram(
         "quiz-histogram",
         "Students by quiz score",
@@ -131,30 +132,30 @@ def _histogram(sheet: Quiz) -> Histogram:
     )
 
 
-def _shape(sheet: Quiz) -> Iterator[Block]:
+def _shape(sheet: AnswerSheet) -> Iterator[ReportBlock]:
     w, p = shapiro_wilk(sheet.score)
     if p == p:
-        n = len(present(sheet.score))
+        n = len(non_blank(sheet.score))
         verdict = (
             "is not what a normal distribution gives" if p < 0.05 else "does not speak against a normal one"
         )
-        yield Text(
-            f"Shape of the scores: Shapiro and Wilk's W = {w:.3f}, {chance_text(p)}, n = {n}. This {verdict}; with few "
+        yield ReportText(
+            f"Shape of the scores: Shapiro and Wilk's W = {w:.3f}, {p_value_text(p)}, n = {n}. This {verdict}; with few "
             "students it can hardly tell either way."
         )
 
 
-def _again(setting: Setting) -> Iterator[Block]:
+def _again(setting: Setting) -> Iterator[ReportBlock]:
     """The same items, first and newest answers, of who answered them again."""
     data = setting.data
-    if not any(each is not None for row in data.later.replies.values() for each in row):
-        yield Text("Nobody has answered a question of the quiz a second time yet: no gain can be told.")
+    if not any(each is not None for row in data.later_quiz.replies.values() for each in row):
+        yield ReportText("Nobody has answered a question of the quiz a second time yet: no gain can be told.")
         return
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for topic in (*data.quiz.topics, ""):
         items = data.quiz.of_topic(topic) if topic else data.quiz.items
-        first = np.stack([data.quiz.right(item) for item in items])
-        later = np.stack([data.later.right(item) for item in items])
+        first = np.stack([data.quiz.correctness(item) for item in items])
+        later = np.stack([data.later_quiz.correctness(item) for item in items])
         both = ~(np.isnan(first) | np.isnan(later))
         count = both.sum(axis=0)
         some = count > 0
@@ -162,36 +163,44 @@ def _again(setting: Setting) -> Iterator[Block]:
             continue
         before = np.where(both, first, 0).sum(axis=0)[some] / count[some]
         after = np.where(both, later, 0).sum(axis=0)[some] / count[some]
-        found = summary(after - before)
+        found = summary_statistics(after - before)
         chance = paired_test(after - before, np.random.default_rng(setting.seed))
         title = title_of(topic) if topic else "Total"
         rows.append(
-            (title, found.n, float(before.mean()), float(after.mean()), found.mean, found.interval, chance.p)
+            (
+                title,
+                found.n,
+                float(before.mean()),
+                float(after.mean()),
+                found.mean,
+                found.interval,
+                chance.p_value,
+            )
         )
-    yield Table(
+    yield ReportTable(
         "quiz-gain",
         "Gain: first and newest answers to the same questions",
         (
-            Column("", Style.TEXT),
-            Column("n"),
-            Column("first"),
-            Column("newest"),
-            Column("gain"),
-            Column("95% of gain"),
-            Column("p", Style.CHANCE, 3),
+            TableColumn("", CellStyle.TEXT),
+            TableColumn("n"),
+            TableColumn("first"),
+            TableColumn("newest"),
+            TableColumn("gain"),
+            TableColumn("95% of gain"),
+            TableColumn("p", CellStyle.CHANCE, 3),
         ),
         tuple(rows),
         "Only questions that a student answered more than once.",
     )
 
 
-def _bank(setting: Setting) -> Iterator[Block]:
+def _bank(setting: Setting) -> Iterator[ReportBlock]:
     """The questions that lessons and repetition ask: each as often as it was answered."""
     bank = setting.data.bank
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for item in bank.items:
         replies = [each for each in bank.replies[item.id] if each is not None]
-        counts = [sum(each.outcome is outcome for each in replies) for outcome in Outcome]
+        counts = [sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome]
         share = counts[0] / len(replies) if replies else None
         rows.append(
             (
@@ -204,106 +213,112 @@ def _bank(setting: Setting) -> Iterator[Block]:
             )
         )
     if rows:
-        yield Table(
+        yield ReportTable(
             "bank",
             "Questions of the lessons, first answers",
             (
-                Column("topic", Style.TEXT),
-                Column("question", Style.TEXT),
-                Column("n"),
-                Column("right"),
-                Column("95%"),
-                Column("wrong"),
-                Column("unsure"),
-                Column("blank"),
+                TableColumn("topic", CellStyle.TEXT),
+                TableColumn("question", CellStyle.TEXT),
+                TableColumn("n"),
+                TableColumn("right"),
+                TableColumn("95%"),
+                TableColumn("wrong"),
+                TableColumn("unsure"),
+                TableColumn("blank"),
             ),
             tuple(rows),
             grouped=True,
         )
 
 
-def items(setting: Setting) -> Chapter | None:
+def items(setting: Setting) -> ReportChapter | None:
     """Item analysis: difficulty, item-rest correlation, distractors, KR-20."""
     sheet = setting.data.quiz
     if not sheet.items:
         return None
-    found = [analyse(sheet, item) for item in sheet.items]
+    found = [analyse_item(sheet, item) for item in sheet.items]
     reliability = kr20(sheet)
-    blanks = int(np.nansum(sheet.count(Outcome.BLANK)))
-    blocks: list[Block] = [_difficulties(found), _distractors(found)]
-    blocks += [Caution(f"{each.item.id}: {'; '.join(each.cautions)}.") for each in found if each.cautions]
+    blanks = int(np.nansum(sheet.outcome_counts(AnswerOutcome.BLANK)))
+    blocks: list[ReportBlock] = [_difficulties(found), _distractors(found)]
+    blocks += [
+        ReportWarning(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in found if each.warnings
+    ]
     if reliability == reliability:
         inflated = " Blanks go together and make it look better than it is." if blanks else ""
         blocks.append(
-            Text(
+            ReportText(
                 f"KR-20 = {reliability:.2f}: how consistently the {len(found)} questions measure one thing "
                 f"(0.7 and more is usual for comparing groups). {blanks} of the answers are blank.{inflated}"
             )
         )
     blocks += [block for each in found for block in _texts(each)]
-    return Chapter("items", "The questions themselves", tuple(blocks))
+    return ReportChapter("items", "The questions themselves", tuple(blocks))
 
 
-def _difficulties(found: list[ItemAnalysis]) -> Table:
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+def _difficulties(found: list[ItemAnalysis]) -> ReportTable:
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             title_of(each.item.topic),
             each.item.id,
             each.n,
             each.difficulty,
             each.interval,
-            each.with_rest,
+            each.rest_correlation,
         )
         for each in found
     )
     heads = (
-        Column("topic", Style.TEXT),
-        Column("question", Style.TEXT),
-        Column("n"),
-        Column("right"),
-        Column("95%"),
-        Column("with rest r"),
+        TableColumn("topic", CellStyle.TEXT),
+        TableColumn("question", CellStyle.TEXT),
+        TableColumn("n"),
+        TableColumn("right"),
+        TableColumn("95%"),
+        TableColumn("with rest r"),
     )
-    return Table(
+    return ReportTable(
         "items", "How hard each question is, and how it goes with the rest", heads, rows, grouped=True
     )
 
 
-def _distractors(found: list[ItemAnalysis]) -> Table:
-    most = max((max((*each.chosen, len(each.item.options) - 1, 0)) for each in found), default=0) + 1
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+def _distractors(found: list[ItemAnalysis]) -> ReportTable:
+    most = max((max((*each.choice_counts, len(each.item.options) - 1, 0)) for each in found), default=0) + 1
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             title_of(each.item.topic),
             each.item.id,
             *(
-                f"{each.chosen.get(option, 0)}{MARKED if option in each.keys else ' '}"
+                f"{each.choice_counts.get(option, 0)}{MARKED if option in each.right_options else ' '}"
                 for option in range(most)
             ),
-            each.outcomes[Outcome.NOT_SURE],
-            each.outcomes[Outcome.BLANK],
+            each.outcomes[AnswerOutcome.NOT_SURE],
+            each.outcomes[AnswerOutcome.BLANK],
         )
         for each in found
     )
     heads = (
-        Column("topic", Style.TEXT),
-        Column("question", Style.TEXT),
-        *(Column(f"{option + 1}") for option in range(most)),
-        Column("unsure"),
-        Column("blank"),
+        TableColumn("topic", CellStyle.TEXT),
+        TableColumn("question", CellStyle.TEXT),
+        *(TableColumn(f"{option + 1}") for option in range(most)),
+        TableColumn("unsure"),
+        TableColumn("blank"),
     )
     note = (
         f"{MARKED} counted as right. A wrong option that nobody takes can go; one that many take is a lesson."
     )
-    return Table("distractors", "Who chose which option", heads, rows, note, grouped=True)
+    return ReportTable("distractors", "Who chose which option", heads, rows, note, grouped=True)
 
 
-def _texts(each: ItemAnalysis) -> Iterator[Block]:
+def _texts(each: ItemAnalysis) -> Iterator[ReportBlock]:
     """The options in words, of items that need a look."""
-    if not each.cautions or not each.item.options:
+    if not each.warnings or not each.item.options:
         return
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (f"{number + 1}{MARKED if number in each.keys else ''}", text, each.chosen.get(number, 0))
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+        (
+            f"{number + 1}{MARKED if number in each.right_options else ''}",
+            text,
+            each.choice_counts.get(number, 0),
+        )
         for number, text in enumerate(each.item.options)
     )
-    heads = (Column("", Style.TEXT), Column("option", Style.TEXT), Column("chose it"))
-    yield Table(f"item-{slug(each.item.id)}", f"{each.item.id}: the options", heads, rows)
+    heads = (TableColumn("", CellStyle.TEXT), TableColumn("option", CellStyle.TEXT), TableColumn("chose it"))
+    yield ReportTable(f"item-{slug(each.item.id)}", f"{each.item.id}: the options", heads, rows)

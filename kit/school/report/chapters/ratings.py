@@ -8,10 +8,18 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from kit.school.report.chapters.setting import SCALE, Setting, means_bars, means_table, slug, title_of, within
-from kit.school.report.document import Block, Caution, Cell, Chapter, Column, Style, Table
-from kit.school.report.inference import paired_test, present, summary
-from kit.school.report.measures import Measure
-from kit.school.survey.questions import Phase, Purpose
+from kit.school.report.document import (
+    CellStyle,
+    ReportBlock,
+    ReportChapter,
+    ReportTable,
+    ReportWarning,
+    TableCell,
+    TableColumn,
+)
+from kit.school.report.inference import non_blank, paired_test, summary_statistics
+from kit.school.report.measures import StudentMeasure
+from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 
 class _Kind(NamedTuple):
@@ -21,28 +29,30 @@ class _Kind(NamedTuple):
 
 
 _KINDS: Final = {
-    Purpose.DIFFICULTY: _Kind("difficulty", "How hard it was: 1 very easy, 7 very hard", "All topics"),
-    Purpose.EXPLANATION: _Kind(
+    QuestionPurpose.DIFFICULTY: _Kind(
+        "difficulty", "How hard it was: 1 very easy, 7 very hard", "All topics"
+    ),
+    QuestionPurpose.EXPLANATION: _Kind(
         "explanation", "How well it was explained: 1 not at all, 7 very well", "All topics"
     ),
 }
 
 
-def knowledge(setting: Setting) -> Chapter | None:
+def knowledge(setting: Setting) -> ReportChapter | None:
     """What they say they learned, and how their rating of themselves changed."""
     ratings = setting.data.ratings
-    blocks: list[Block] = []
-    gained = ratings.measures(Purpose.GAINED, Phase.AFTER)
+    blocks: list[ReportBlock] = []
+    gained = ratings.measures(QuestionPurpose.GAINED, SurveyPhase.AFTER)
     if gained:
-        everything = ratings.overall(Purpose.GAINED, Phase.AFTER)
+        everything = ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER)
         assert everything is not None  # there are ratings
-        rows = (*gained, Measure("all", "All of it", everything))
+        rows = (*gained, StudentMeasure("all", "All of it", everything))
         blocks.append(means_table("gained", "Learned, by their own account, 1 to 7", rows, setting))
         blocks.append(means_bars("gained-bars", "Learned, by their own account", gained, setting))
     blocks += _change(setting, _EXPERIENCE)
     if gained:
         blocks += _change(setting, _GAINED)
-    return Chapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
+    return ReportChapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
 
 
 class _Twice(NamedTuple):
@@ -50,9 +60,9 @@ class _Twice(NamedTuple):
 
     id: str
     title: str
-    purpose: Purpose
-    first: Phase
-    second: Phase
+    purpose: QuestionPurpose
+    first: SurveyPhase
+    second: SurveyPhase
     heads: tuple[str, str]
     nobody: str
 
@@ -60,9 +70,9 @@ class _Twice(NamedTuple):
 _EXPERIENCE: Final = _Twice(
     "change",
     "Experience before and after, rated the same way",
-    Purpose.EXPERIENCE,
-    Phase.BEFORE,
-    Phase.AFTER,
+    QuestionPurpose.EXPERIENCE,
+    SurveyPhase.BEFORE,
+    SurveyPhase.AFTER,
     ("before", "after"),
     "Nobody rated their experience both before and after: no change can be told.",
 )
@@ -70,24 +80,24 @@ _QUIZZED: Final = ("then", "quizzed")
 _GAINED: Final = _Twice(
     "gained-quizzed",
     "What they learned, before the quiz and once more after it",
-    Purpose.GAINED,
-    Phase.AFTER,
-    Phase.QUIZZED,
+    QuestionPurpose.GAINED,
+    SurveyPhase.AFTER,
+    SurveyPhase.QUIZZED,
     _QUIZZED,
     "Nobody rated what they learned once more after the quiz (`kit form quizzed`).",
 )
 _OUTCOME: Final = _Twice(
     "outcomes-quizzed",
     "Outcomes, before the quiz and once more after it",
-    Purpose.OUTCOME,
-    Phase.AFTER,
-    Phase.QUIZZED,
+    QuestionPurpose.OUTCOME,
+    SurveyPhase.AFTER,
+    SurveyPhase.QUIZZED,
     _QUIZZED,
     "Nobody rated the outcomes once more after the quiz (`kit form quizzed`).",
 )
 
 
-def _change(setting: Setting, asked: _Twice) -> Iterator[Block]:
+def _change(setting: Setting, asked: _Twice) -> Iterator[ReportBlock]:
     """The same rating at two times, of those who gave both."""
     ratings = setting.data.ratings
     after = {each.id: each for each in ratings.measures(asked.purpose, asked.second)}
@@ -96,10 +106,10 @@ def _change(setting: Setting, asked: _Twice) -> Iterator[Block]:
         for each in ratings.measures(asked.purpose, asked.first)
         if each.id in after
     ]
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for label, first, second in pairs:
         change = second - first
-        found = summary(change)
+        found = summary_statistics(change)
         if not found.n:
             continue
         both = ~np.isnan(change)
@@ -112,36 +122,36 @@ def _change(setting: Setting, asked: _Twice) -> Iterator[Block]:
                 float(second[both].mean()),
                 found.mean,
                 found.interval,
-                chance.p,
+                chance.p_value,
             )
         )
     if not rows and any((asked.second, each.id) in ratings.values for each in ratings.questions):
-        yield Caution(asked.nobody)  # the form does ask it twice
+        yield ReportWarning(asked.nobody)  # the form does ask it twice
     if not rows:
         return
-    yield Table(
+    yield ReportTable(
         asked.id,
         asked.title,
         (
-            Column("", Style.TEXT),
-            Column("n"),
-            Column(asked.heads[0]),
-            Column(asked.heads[1]),
-            Column("change"),
-            Column("95% of change"),
-            Column("p", Style.CHANCE, 3),
+            TableColumn("", CellStyle.TEXT),
+            TableColumn("n"),
+            TableColumn(asked.heads[0]),
+            TableColumn(asked.heads[1]),
+            TableColumn("change"),
+            TableColumn("95% of change"),
+            TableColumn("p", CellStyle.CHANCE, 3),
         ),
         tuple(rows),
         "Only who rated it twice. p: by the signs of the differences, all 2^n of them.",
     )
 
 
-def outcomes(setting: Setting) -> Chapter | None:
+def outcomes(setting: Setting) -> ReportChapter | None:
     """How far the lessons enabled them."""
     ratings = setting.data.ratings
-    blocks: list[Block] = []
-    for topic in ratings.topics(Purpose.OUTCOME, Phase.AFTER):
-        measures = ratings.of_topic(Purpose.OUTCOME, Phase.AFTER, topic)
+    blocks: list[ReportBlock] = []
+    for topic in ratings.topics(QuestionPurpose.OUTCOME, SurveyPhase.AFTER):
+        measures = ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
         name = title_of(topic)
         blocks.append(
             means_table(
@@ -151,50 +161,56 @@ def outcomes(setting: Setting) -> Chapter | None:
         blocks.append(means_bars(f"outcomes-{slug(topic)}-bars", f"Outcomes, {name}", measures, setting))
     if blocks:
         blocks += _change(setting, _OUTCOME)
-    return Chapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
+    return ReportChapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
 
 
-def difficulty(setting: Setting) -> Chapter | None:
+def difficulty(setting: Setting) -> ReportChapter | None:
     """How hard each topic was."""
-    return _by_topic(setting, Purpose.DIFFICULTY, "Difficulty")
+    return _by_topic(setting, QuestionPurpose.DIFFICULTY, "Difficulty")
 
 
-def explanation(setting: Setting) -> Chapter | None:
+def explanation(setting: Setting) -> ReportChapter | None:
     """How well each topic was explained."""
-    return _by_topic(setting, Purpose.EXPLANATION, "Explanation")
+    return _by_topic(setting, QuestionPurpose.EXPLANATION, "Explanation")
 
 
-def _by_topic(setting: Setting, purpose: Purpose, title: str) -> Chapter | None:
+def _by_topic(setting: Setting, purpose: QuestionPurpose, title: str) -> ReportChapter | None:
     ratings, kind = setting.data.ratings, _KINDS[purpose]
-    everything = ratings.overall(purpose, Phase.AFTER)
+    everything = ratings.overall(purpose, SurveyPhase.AFTER)
     if everything is None:
         return None
     topics = tuple(
-        Measure(each.id, title_of(each.id), each.values) for each in ratings.by_topic(purpose, Phase.AFTER)
+        StudentMeasure(each.id, title_of(each.id), each.values)
+        for each in ratings.by_topic(purpose, SurveyPhase.AFTER)
     )
-    single: tuple[tuple[Cell, ...], ...] = tuple(
+    single: tuple[tuple[TableCell, ...], ...] = tuple(
         (title_of(topic), each.label, found.n, found.mean, found.sd, within(found.interval, SCALE))
-        for topic in ratings.topics(purpose, Phase.AFTER)
-        for each in ratings.of_topic(purpose, Phase.AFTER, topic)
-        for found in [summary(present(each.values))]
+        for topic in ratings.topics(purpose, SurveyPhase.AFTER)
+        for each in ratings.of_topic(purpose, SurveyPhase.AFTER, topic)
+        for found in [summary_statistics(non_blank(each.values))]
     )
     heads = (
-        Column("topic", Style.TEXT),
-        Column("", Style.TEXT),
-        Column("n"),
-        Column("M"),
-        Column("SD"),
-        Column("95% of M"),
+        TableColumn("topic", CellStyle.TEXT),
+        TableColumn("", CellStyle.TEXT),
+        TableColumn("n"),
+        TableColumn("M"),
+        TableColumn("SD"),
+        TableColumn("95% of M"),
     )
     note = "All topics: each student's mean over the topics' means."
-    return Chapter(
+    return ReportChapter(
         kind.id,
         title,
         (
             means_table(
-                kind.id, kind.title, (*topics, Measure("all", kind.all, everything)), setting, SCALE, note
+                kind.id,
+                kind.title,
+                (*topics, StudentMeasure("all", kind.all, everything)),
+                setting,
+                SCALE,
+                note,
             ),
             means_bars(f"{kind.id}-bars", kind.title, topics, setting),
-            Table(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
+            ReportTable(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
         ),
     )

@@ -10,29 +10,29 @@ import numpy as np
 from kit.kernels.arrays import Float64Array
 from kit.school.report.chapters.setting import SCALE, SHARE, Setting
 from kit.school.report.document import (
-    Block,
-    Caution,
-    Cell,
-    Chapter,
-    Column,
-    Scatter,
-    Style,
-    Table,
-    Text,
-    chance_text,
+    CellStyle,
+    ReportBlock,
+    ReportChapter,
+    ReportTable,
+    ReportText,
+    ReportWarning,
+    ScatterPlot,
+    TableCell,
+    TableColumn,
+    p_value_text,
 )
 from kit.school.report.inference import (
-    MOST_ORDERS,
-    SHUFFLES,
+    MAX_PERMUTED,
+    SHUFFLE_COUNT,
     correlation,
     correlation_interval,
     correlation_test,
-    present,
+    fit_polynomial,
+    non_blank,
     rank_correlation,
-    trend,
 )
-from kit.school.report.robustness import Sensitivity, of_correlation, of_difference
-from kit.school.survey.questions import Phase, Purpose
+from kit.school.report.robustness import Sensitivity, correlation_sensitivity, difference_sensitivity
+from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 
 class Quantity(NamedTuple):
@@ -61,20 +61,40 @@ def quantities(setting: Setting) -> dict[str, Quantity]:
     data = setting.data
     found = (
         ("score", "expertise score", setting.score, SCALE),
-        ("prior", "experience before", data.ratings.overall(Purpose.EXPERIENCE, Phase.BEFORE), SCALE),
-        ("gained", "learned, as rated", data.ratings.overall(Purpose.GAINED, Phase.AFTER), SCALE),
-        ("difficulty", "difficulty", data.ratings.overall(Purpose.DIFFICULTY, Phase.AFTER), SCALE),
-        ("explanation", "explanation", data.ratings.overall(Purpose.EXPLANATION, Phase.AFTER), SCALE),
+        (
+            "prior",
+            "experience before",
+            data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE),
+            SCALE,
+        ),
+        (
+            "gained",
+            "learned, as rated",
+            data.ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER),
+            SCALE,
+        ),
+        (
+            "difficulty",
+            "difficulty",
+            data.ratings.overall(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER),
+            SCALE,
+        ),
+        (
+            "explanation",
+            "explanation",
+            data.ratings.overall(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER),
+            SCALE,
+        ),
         ("quiz", "quiz score", data.quiz.score if data.quiz.items else None, SHARE),
     )
     return {
         name: Quantity(name, title, values, bounds)
         for name, title, values, bounds in found
-        if values is not None and len(present(values))
+        if values is not None and len(non_blank(values))
     }
 
 
-def relations(setting: Setting) -> Chapter | None:
+def relations(setting: Setting) -> ReportChapter | None:
     """Correlations, with the plots they are of."""
     known = quantities(setting)
     pairs = [
@@ -84,42 +104,42 @@ def relations(setting: Setting) -> Chapter | None:
     ]
     if not pairs:
         return None
-    rows: tuple[tuple[Cell, ...], ...] = tuple(_row(a, b, setting.seed) for a, b in pairs)
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(_row(a, b, setting.seed) for a, b in pairs)
     heads = (
-        Column("", Style.TEXT),
-        Column("n"),
-        Column("r"),
-        Column("95% of r"),
-        Column("p", Style.CHANCE, 3),
-        Column("rho"),
+        TableColumn("", CellStyle.TEXT),
+        TableColumn("n"),
+        TableColumn("r"),
+        TableColumn("95% of r"),
+        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("rho"),
     )
     note = (
-        f"r: Pearson's, rho: Spearman's. p by every order of up to {MOST_ORDERS} students, else by {SHUFFLES:,} "
+        f"r: Pearson's, rho: Spearman's. p by every order of up to {MAX_PERMUTED} students, else by {SHUFFLE_COUNT:,} "
         "random ones. What goes together need not cause one another."
     )
-    blocks: list[Block] = [Table("relations", "Correlations", heads, rows, note)]
+    blocks: list[ReportBlock] = [ReportTable("relations", "Correlations", heads, rows, note)]
     for a, b in pairs:
         blocks.append(_scatter(a, b))
         if (a.id, b.id) == ("prior", "gained"):
             blocks += _bend(a, b)
-    return Chapter("relations", "What goes together", tuple(blocks))
+    return ReportChapter("relations", "What goes together", tuple(blocks))
 
 
 def _shared(x: Float64Array, y: Float64Array) -> int:
     return int((~(np.isnan(x) | np.isnan(y))).sum())
 
 
-def _row(a: Quantity, b: Quantity, seed: int) -> tuple[Cell, ...]:
+def _row(a: Quantity, b: Quantity, seed: int) -> tuple[TableCell, ...]:
     n, r = _shared(a.values, b.values), correlation(a.values, b.values)
     chance = correlation_test(a.values, b.values, np.random.default_rng(seed))
     rho = rank_correlation(a.values, b.values)
-    return (f"{a.title} and {b.title}", n, r, correlation_interval(r, n), chance.p, rho)
+    return (f"{a.title} and {b.title}", n, r, correlation_interval(r, n), chance.p_value, rho)
 
 
-def _scatter(a: Quantity, b: Quantity) -> Scatter:
+def _scatter(a: Quantity, b: Quantity) -> ScatterPlot:
     both = ~(np.isnan(a.values) | np.isnan(b.values))
-    line = trend(a.values, b.values)
-    return Scatter(
+    line = fit_polynomial(a.values, b.values)
+    return ScatterPlot(
         f"{a.id}-{b.id}",
         f"{b.title.capitalize()} by {a.title}",
         a.title,
@@ -131,82 +151,82 @@ def _scatter(a: Quantity, b: Quantity) -> Scatter:
     )
 
 
-def _bend(a: Quantity, b: Quantity) -> list[Block]:
+def _bend(a: Quantity, b: Quantity) -> list[ReportBlock]:
     """Whether a parabola has its top among the students."""
-    curve = trend(a.values, b.values, 2)
+    curve = fit_polynomial(a.values, b.values, 2)
     if curve is None or curve[0] >= 0:
         return []
     top = -curve[1] / (2 * curve[0])
-    if not present(a.values).min() < top < present(a.values).max():
+    if not non_blank(a.values).min() < top < non_blank(a.values).max():
         return []
     return [
-        Text(
+        ReportText(
             f"A parabola through these points is highest at {top:.1f} on '{a.title}'. With so few students that is "
             "an idea to test, not a finding."
         )
     ]
 
 
-def robustness(setting: Setting) -> Chapter | None:
+def robustness(setting: Setting) -> ReportChapter | None:
     """The results that a reader will quote, without each student in turn."""
     known = quantities(setting)
     found: list[tuple[str, Sensitivity]] = []
     if setting.division is not None:
         for name in ("quiz", "gained", "difficulty", "explanation"):
             if name in known:
-                result = of_difference(known[name].values, setting.division, setting.seed)
+                result = difference_sensitivity(known[name].values, setting.division, setting.seed)
                 if result is not None:
                     found.append((f"experts minus beginners, {known[name].title}", result))
     for a, b in PAIRS:
         if a in known and b in known:
-            result = of_correlation(known[a].values, known[b].values, setting.seed)
+            result = correlation_sensitivity(known[a].values, known[b].values, setting.seed)
             if result is not None:
                 found.append((f"r of {known[a].title} and {known[b].title}", result))
     if not found:
         return None
     names = setting.data.names
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             title,
             each.value,
-            each.chance.p,
-            each.least.value,
-            names[each.least.student],
-            each.greatest.value,
-            names[each.greatest.student],
+            each.test.p_value,
+            each.lowest.value,
+            names[each.lowest.student],
+            each.highest.value,
+            names[each.highest.student],
         )
         for title, each in found
     )
     heads = (
-        Column("result", Style.TEXT),
-        Column("value"),
-        Column("p", Style.CHANCE, 3),
-        Column("least"),
-        Column("without", Style.TEXT),
-        Column("most"),
-        Column("without", Style.TEXT),
+        TableColumn("result", CellStyle.TEXT),
+        TableColumn("value"),
+        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("least"),
+        TableColumn("without", CellStyle.TEXT),
+        TableColumn("most"),
+        TableColumn("without", CellStyle.TEXT),
     )
-    cautions = [_caution(title, each, names) for title, each in found if each.turning]
-    table = Table(
+    cautions = [_caution(title, each, names) for title, each in found if each.decisive]
+    table = ReportTable(
         "robustness",
         "The same without each student in turn (groups as they are)",
         heads,
         rows,
         "least, most: the smallest and greatest value, and who was left out for it.",
     )
-    text = Text("No result changes its side of p = 0.05 without any one student.")
-    return Chapter("robustness", "How much rests on one student", (table, *(cautions or (text,))))
+    text = ReportText("No result changes its side of p = 0.05 without any one student.")
+    return ReportChapter("robustness", "How much rests on one student", (table, *(cautions or (text,))))
 
 
-def _caution(title: str, each: Sensitivity, names: Sequence[str]) -> Caution:
+def _caution(title: str, each: Sensitivity, names: Sequence[str]) -> ReportWarning:
     """A result that is on the other side of the line without this student or that."""
-    most = sorted(each.turning, key=lambda one: -abs(one.chance.p - each.chance.p))
+    most = sorted(each.decisive, key=lambda one: -abs(one.test.p_value - each.test.p_value))
     shown = "; ".join(
-        f"without {names[one.student]} it is {one.value:.2f} ({chance_text(one.chance.p)})"
+        f"without {names[one.student]} it is {one.value:.2f} ({p_value_text(one.test.p_value)})"
         for one in most[:3]
     )
     more = f"; and so without {len(most) - 3} more" if len(most) > 3 else ""
-    return Caution(
-        f"{title}: {each.value:.2f}, {chance_text(each.chance.p)}; but {shown}{more}. One student decides on which side "
+    return ReportWarning(
+        f"{title}: {each.value:.2f}, {p_value_text(each.test.p_value)}; but {shown}{more}. One student decides on which side "
         "of 0.05 it lies."
     )

@@ -12,10 +12,10 @@ import numpy as np
 from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.class_data import ClassData
-from kit.school.report.document import Bars, Caution, Cell, Column, Style, Table
-from kit.school.report.expertise import SMALL, Division
-from kit.school.report.inference import Chance, difference_test, summary
-from kit.school.report.measures import Group, Measure
+from kit.school.report.document import BarChart, CellStyle, ReportTable, ReportWarning, TableCell, TableColumn
+from kit.school.report.expertise import MIN_GROUP_SIZE, ClassDivision
+from kit.school.report.inference import PermutationTestResult, difference_test, summary_statistics
+from kit.school.report.measures import StudentGroup, StudentMeasure
 from kit.school.survey.questions import HIGHEST, LOWEST
 
 SCALE: Final = (float(LOWEST), float(HIGHEST))
@@ -49,19 +49,19 @@ class Setting:
     data: ClassData
     score: Float64Array | None
     """Expertise by Algorithm 4; None where its six ratings were not asked."""
-    divisions: tuple[Division, ...]
+    divisions: tuple[ClassDivision, ...]
     """All that can be made."""
-    division: Division | None
+    division: ClassDivision | None
     """The one the tables use."""
     seed: int
 
     @property
-    def groups(self) -> tuple[Group, ...]:
+    def groups(self) -> tuple[StudentGroup, ...]:
         """Beginners and experts where there are such; then everybody."""
-        everybody = Group("overall", np.ones(len(self.data.names), dtype=np.bool_))
+        everybody = StudentGroup("overall", np.ones(len(self.data.names), dtype=np.bool_))
         return (*(self.division.groups if self.division is not None else ()), everybody)
 
-    def chance(self, values: Float64Array) -> Chance | None:
+    def chance(self, values: Float64Array) -> PermutationTestResult | None:
         """Of the difference between experts and beginners; None where the class is not divided."""
         if self.division is None:
             return None
@@ -72,37 +72,37 @@ class Setting:
 def means_table(
     identity: str,
     title: str,
-    measures: Sequence[Measure],
+    measures: Sequence[StudentMeasure],
     setting: Setting,
     bounds: tuple[float, float] = SCALE,
     note: str = "",
-) -> Table:
+) -> ReportTable:
     """For each measure and group: n, mean, SD, the mean's interval; and p of the groups' difference.
 
     An interval is cut off at ``bounds``, beyond which no mean can lie.
     """
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[TableCell, ...]] = []
     for measure in measures:
         chance = setting.chance(measure.values)
         for i, group in enumerate(setting.groups):
-            found = summary(measure.values[group.members])
+            found = summary_statistics(measure.values[group.members])
             last = i == len(setting.groups) - 1
-            p = chance.p if chance is not None and last else ""
+            p = chance.p_value if chance is not None and last else ""
             cut = within(found.interval, bounds)
             rows.append((measure.label, group.name, found.n, found.mean, found.sd, cut, p))
     columns = (
-        Column("", Style.TEXT),
-        Column("group", Style.TEXT),
-        Column("n"),
-        Column("M"),
-        Column("SD"),
-        Column("95% of M"),
-        Column("p", Style.CHANCE, 3),
+        TableColumn("", CellStyle.TEXT),
+        TableColumn("group", CellStyle.TEXT),
+        TableColumn("n"),
+        TableColumn("M"),
+        TableColumn("SD"),
+        TableColumn("95% of M"),
+        TableColumn("p", CellStyle.CHANCE, 3),
     )
     divided = setting.division is not None
-    if any(isinstance(row[2], int) and row[2] < SMALL for row in rows):
-        note = f"{note} Groups with n below {SMALL} are too small to speak for others.".strip()
-    return Table(
+    if any(isinstance(row[2], int) and row[2] < MIN_GROUP_SIZE for row in rows):
+        note = f"{note} Groups with n below {MIN_GROUP_SIZE} are too small to speak for others.".strip()
+    return ReportTable(
         identity,
         title,
         columns if divided else columns[:-1],
@@ -115,18 +115,18 @@ def means_table(
 def means_bars(
     identity: str,
     title: str,
-    measures: Sequence[Measure],
+    measures: Sequence[StudentMeasure],
     setting: Setting,
     bounds: tuple[float, float] = SCALE,
-) -> Bars:
+) -> BarChart:
     """The same means as bars: the groups', or everybody's where there are none."""
     groups = setting.groups[:-1] or setting.groups
-    return Bars(
+    return BarChart(
         identity,
         title,
         tuple(group.name for group in groups),
         tuple(
-            (each.label, tuple(summary(each.values[group.members]).mean for group in groups))
+            (each.label, tuple(summary_statistics(each.values[group.members]).mean for group in groups))
             for each in measures
         ),
         *bounds,
@@ -142,11 +142,11 @@ def within(interval: ConfidenceInterval, bounds: tuple[float, float]) -> Confide
     )
 
 
-def cautions_of(division: Division | None) -> tuple[Caution, ...]:
+def cautions_of(division: ClassDivision | None) -> tuple[ReportWarning, ...]:
     """What is doubtful about a division."""
     if division is None:
         return ()
-    return tuple(Caution(f"Division {division.title}: {text}.") for text in division.cautions)
+    return tuple(ReportWarning(f"Division {division.title}: {text}.") for text in division.warnings)
 
 
 def slug(text: str) -> str:

@@ -9,27 +9,27 @@ import numpy as np
 
 from kit.fields import adjacency
 from kit.fields.charges import ChargeField, LineCharge, PointCharge, TensionPoint
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
 RATIOS = {"A quarter of it": 0.25, "Half of it": 0.5, "The same as before": 1.0, "Twice as much": 2.0}
 
 
-def _ratio(item: Item, charge: PointCharge | TensionPoint) -> Finding:
+def _ratio(item: QuizItem, charge: PointCharge | TensionPoint) -> Finding:
     near, far = (float(np.hypot(*charge.force((r, 0.0)))) for r in (0.7, 1.4))
     means = {option.text: RATIOS[option.text] for option in item.options}
     return Finding(round(far / near, 9), means)
 
 
-def coulomb_ratio(item: Item, folder: Path) -> Finding:
+def coulomb_ratio(item: QuizItem, folder: Path) -> Finding:
     return _ratio(item, PointCharge(0, 0, 2.0))
 
 
-def hooke_ratio(item: Item, folder: Path) -> Finding:
+def hooke_ratio(item: QuizItem, folder: Path) -> Finding:
     return _ratio(item, TensionPoint(0, 0, 3.0))
 
 
-def line_strip(item: Item, folder: Path) -> Finding:
+def line_strip(item: QuizItem, folder: Path) -> Finding:
     here = (2.0, 1.0)
 
     def as_of(x: float) -> tuple[float, ...]:
@@ -46,7 +46,7 @@ def line_strip(item: Item, folder: Path) -> Finding:
     )
 
 
-def wall_or_target(item: Item, folder: Path) -> Finding:
+def wall_or_target(item: QuizItem, folder: Path) -> Finding:
     force = PointCharge(3, 0, 15.0).force((0.0, 0.0)) + LineCharge(0.5, -1, 0.5, 1, -1.0).force((0.0, 0.0))
     return Finding(
         int(np.sign(np.round(force[0], 9))),
@@ -58,7 +58,7 @@ def wall_or_target(item: Item, folder: Path) -> Finding:
     )
 
 
-def stuck_before_a_wall(item: Item, folder: Path) -> Finding:
+def stuck_before_a_wall(item: QuizItem, folder: Path) -> Finding:
     """Where the sum on the way to the target changes its sign, and what the target's pull is there: some, and the
     same with the wall as without it."""
     target, wall = PointCharge(4, 0, 15.0), LineCharge(2, -1, 2, 1, -1.0)
@@ -78,7 +78,7 @@ def stuck_before_a_wall(item: Item, folder: Path) -> Finding:
     )
 
 
-def arctangent(item: Item, folder: Path) -> Finding:
+def arctangent(item: QuizItem, folder: Path) -> Finding:
     dx, dy = -1.0, -1.0
     assert math.degrees(math.atan2(dy, dx)) == -135.0
     try:
@@ -95,13 +95,13 @@ def arctangent(item: Item, folder: Path) -> Finding:
     )
 
 
-def wrapped_difference(item: Item, folder: Path) -> Finding:
+def wrapped_difference(item: QuizItem, folder: Path) -> Finding:
     return nearest(
         item, abs(math.degrees(adjacency.wrap_angles(math.radians(179) - math.radians(-179)))), 1e-6
     )
 
 
-def side_by_side(item: Item, folder: Path) -> Finding:
+def side_by_side(item: QuizItem, folder: Path) -> Finding:
     """Near and facing the same way in both cases; abeam in one of them."""
     behind = bool(adjacency.is_adjacent_by_poses((0, 0, 0), (0.4, 0, 0)))
     abeam = bool(adjacency.is_adjacent_by_poses((0, 0, 0), (0, -0.4, 0)))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Finding:
     means: Mapping[str, Hashable]
 
 
-Derivation = Callable[[Item, Path], Finding]
+Derivation = Callable[[QuizItem, Path], Finding]
 """Gets the item and an empty folder."""
 
 
@@ -29,12 +29,12 @@ def number(text: str) -> float:
     return float(found[0])
 
 
-def numbers_of(item: Item) -> list[float]:
+def numbers_of(item: QuizItem) -> list[float]:
     """What the options say, where each is a number."""
     return [number(option.text) for option in item.options]
 
 
-def nearest(item: Item, measured: float, tolerance: float) -> Finding:
+def nearest(item: QuizItem, measured: float, tolerance: float) -> Finding:
     """Options that are numbers: the one that is meant lies within the tolerance of what was measured."""
     means = {option.text: number(option.text) for option in item.options}
     near = [value for value in means.values() if abs(value - measured) <= tolerance]

@@ -12,7 +12,7 @@ from kit.layers.examples import EXAMPLES
 from kit.layers.greedy import greedy
 from kit.layers.planning import solve
 from kit.layers.requirements import Case, Contact, Entity, Laser
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 from tests.sim.workshop import Workshop
@@ -26,13 +26,13 @@ EYE: dict[str, Any] = {
 }
 
 
-def _table(item: Item) -> dict[str, list[str]]:
+def _table(item: QuizItem) -> dict[str, list[str]]:
     """Rows of the picture such as ``cart  layers  a, c``."""
     rows = [row.split("layers") for row in item.picture]
     return {name.strip(): [layer.strip() for layer in layers.split(",")] for name, layers in rows}
 
 
-def _world(item: Item, folder: Path) -> CollisionRules:
+def _world(item: QuizItem, folder: Path) -> CollisionRules:
     """The picture as a world; ``laser`` is on a post that is in no layer, ``wall`` does not move."""
     shop, table = Workshop(folder), _table(item)
     watched = table.pop("laser", None)
@@ -46,7 +46,7 @@ def _world(item: Item, folder: Path) -> CollisionRules:
     return CollisionRules(shop.world(models, dict.fromkeys(names, ())))
 
 
-def collisions_in_picture(item: Item, folder: Path) -> Finding:
+def collisions_in_picture(item: QuizItem, folder: Path) -> Finding:
     pairs = frozenset(
         frozenset({a.model, b.model})
         for a, b, verdict in _world(item, folder).contact_rules()
@@ -65,7 +65,7 @@ def collisions_in_picture(item: Item, folder: Path) -> Finding:
     )
 
 
-def sight_in_picture(item: Item, folder: Path) -> Finding:
+def sight_in_picture(item: QuizItem, folder: Path) -> Finding:
     seen = frozenset(
         thing.model for _, thing, seeing in _world(item, folder).visibilities() if seeing.is_visible
     )
@@ -79,7 +79,7 @@ def sight_in_picture(item: Item, folder: Path) -> Finding:
     )
 
 
-def robot_and_wall(item: Item, folder: Path) -> Finding:
+def robot_and_wall(item: QuizItem, folder: Path) -> Finding:
     touching = _world(item, folder)
     found = touching.contact_rule(*touching.bodies).kind is ContactKind.COLLIDES
     return Finding(
@@ -92,7 +92,7 @@ def robot_and_wall(item: Item, folder: Path) -> Finding:
     )
 
 
-def laser_inside_hull(item: Item, folder: Path) -> Finding:
+def laser_inside_hull(item: QuizItem, folder: Path) -> Finding:
     """By the rule, and by the rays themselves: nothing else is in the world."""
     from kit.msg.sensor_msgs import LaserScan
     from kit.sim.simulation import Simulation
@@ -116,7 +116,7 @@ def laser_inside_hull(item: Item, folder: Path) -> Finding:
     )
 
 
-def laser_own_wheels(item: Item, folder: Path) -> Finding:
+def laser_own_wheels(item: QuizItem, folder: Path) -> Finding:
     shop = Workshop(folder)
     bodies = [
         {"name": "base", "footprints": [shop.circle(0.1, layers=["a"])]},
@@ -138,7 +138,7 @@ def laser_own_wheels(item: Item, folder: Path) -> Finding:
     )
 
 
-def static_crate(item: Item, folder: Path) -> Finding:
+def static_crate(item: QuizItem, folder: Path) -> Finding:
     shop = Workshop(folder)
     crate = shop.model(shop.circle(0.1, layers=["a"]), type="static")
     touching = CollisionRules(shop.world({"crate": crate}, {"a": [(0, -1, 0, 1)]}))
@@ -153,7 +153,7 @@ def static_crate(item: Item, folder: Path) -> Finding:
     )
 
 
-def one_model_two_bodies(item: Item, folder: Path) -> Finding:
+def one_model_two_bodies(item: QuizItem, folder: Path) -> Finding:
     """By the rule, and by a bumper in a run in which they overlap."""
     from kit.msg.flatland_msgs import Collisions
     from kit.sim.simulation import Simulation
@@ -179,7 +179,7 @@ def one_model_two_bodies(item: Item, folder: Path) -> Finding:
 # The fewest
 
 
-def _case(item: Item) -> Case:
+def _case(item: QuizItem) -> Case:
     """The picture as a case: rows ``collide:``, ``ghost:``, ``laser: NAME sees WHOM``."""
     pairs: list[tuple[str, str]] = []
     ghosts: list[str] = []
@@ -205,13 +205,13 @@ def _case(item: Item) -> Case:
     return Case(tuple(entities), tuple(Contact(a, b) for a, b in pairs), lasers=tuple(lasers))
 
 
-def fewest_in_picture(item: Item, folder: Path) -> Finding:
+def fewest_in_picture(item: QuizItem, folder: Path) -> Finding:
     plan = solve(_case(item))
     assert plan.optimal
     return nearest(item, plan.size, 0)
 
 
-def proof_of_fewest(item: Item, folder: Path) -> Finding:
+def proof_of_fewest(item: QuizItem, folder: Path) -> Finding:
     """What never contradicts the fewest there are: the certificate, of which no two fit one layer, and not the number
     that the method ends with. (Trying for long cannot be computed: it says nothing of what was not tried.)"""
     plans = {name: solve(case) for name, case in EXAMPLES.items()}
@@ -231,7 +231,7 @@ def proof_of_fewest(item: Item, folder: Path) -> Finding:
     )
 
 
-def greedy_promise(item: Item, folder: Path) -> Finding:
+def greedy_promise(item: QuizItem, folder: Path) -> Finding:
     """Random cases of collisions: does the method's plan always do what is asked, always with the fewest layers?"""
     chance = random.Random(1)
     works, fewest = True, True

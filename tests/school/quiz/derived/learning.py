@@ -19,7 +19,7 @@ from kit.learning.environment.transition import Transition
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from tests.learning.worlds import sampled
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -48,7 +48,7 @@ def _ends() -> dict[str, tuple[int, bool, bool]]:
     return found
 
 
-def action_space_owner(item: Item, folder: Path) -> Finding:
+def action_space_owner(item: QuizItem, folder: Path) -> Finding:
     """No agent is there, and the reward is another one; the actions are the same."""
     plain, paid = TurnEnv(), TurnEnv(reward=lambda transition: np.zeros(len(transition.step)))
     assert plain.action_space == paid.action_space
@@ -56,7 +56,7 @@ def action_space_owner(item: Item, folder: Path) -> Finding:
     return Finding(owner, {"The agent": "agent", "The reward": "reward", "The environment": "environment"})
 
 
-def terminal_outcomes(item: Item, folder: Path) -> Finding:
+def terminal_outcomes(item: QuizItem, folder: Path) -> Finding:
     outcomes = frozenset(how for how, (_, terminated, _) in _ends().items() if terminated)
     return Finding(
         outcomes,
@@ -68,7 +68,7 @@ def terminal_outcomes(item: Item, folder: Path) -> Finding:
     )
 
 
-def episode_lengths(item: Item, folder: Path) -> Finding:
+def episode_lengths(item: QuizItem, folder: Path) -> Finding:
     lengths = {steps for steps, _, _ in _ends().values()}
     return Finding(
         "differ" if len(lengths) > 1 else "max_steps" if lengths == {TURN.max_steps} else "made equal",
@@ -80,23 +80,23 @@ def episode_lengths(item: Item, folder: Path) -> Finding:
     )
 
 
-def step_values(item: Item, folder: Path) -> Finding:
+def step_values(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, len(next(_steps(TurnEnv(), LEFT))), 0)
 
 
-def timeout_flags(item: Item, folder: Path) -> Finding:
+def timeout_flags(item: QuizItem, folder: Path) -> Finding:
     steps, terminated, truncated = _ends()["timed out"]
     assert steps == 200
     found = f"terminated {terminated}, truncated {truncated}"
     return Finding(found, {option.text: option.text for option in item.options})
 
 
-def observation_size(item: Item, folder: Path) -> Finding:
+def observation_size(item: QuizItem, folder: Path) -> Finding:
     seen, _ = TurnEnv().reset(seed=0)
     return nearest(item, len(seen), 0)
 
 
-def discounted_return(item: Item, folder: Path) -> Finding:
+def discounted_return(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, _returned((1, 1, 8), 0.5), 1e-9)
 
 
@@ -121,7 +121,7 @@ def _transition(**changes: object) -> Transition:
     return Transition(**{**values, **still, **changes})
 
 
-def entering_loop(item: Item, folder: Path) -> Finding:
+def entering_loop(item: QuizItem, folder: Path) -> Finding:
     """What each behaviour earns in 200 steps, by the kit's own term."""
     reward = Reward("entering", (TermWeight("entering", 100.0),))
 
@@ -140,12 +140,12 @@ def entering_loop(item: Item, folder: Path) -> Finding:
     return Finding(max(returns.values()), returns)
 
 
-def reached_early(item: Item, folder: Path) -> Finding:
+def reached_early(item: QuizItem, folder: Path) -> Finding:
     terms = ALGORITHM_3.terms(_transition(in_target=np.array([True]), step=np.array(50)))
     return nearest(item, float(terms["reached"] + terms["time_left"]), 1e-6)
 
 
-def round_trip(item: Item, folder: Path) -> Finding:
+def round_trip(item: QuizItem, folder: Path) -> Finding:
     reward = Reward("progress", (TermWeight("progress", 1.0),))
     to_go = [3.0, 2.5, 2.0, 2.5, 3.0]
     earned = sum(
@@ -157,7 +157,7 @@ def round_trip(item: Item, folder: Path) -> Finding:
     )
 
 
-def crash_pays(item: Item, folder: Path) -> Finding:
+def crash_pays(item: QuizItem, folder: Path) -> Finding:
     returns = {
         "To crash into the wall at once": -1 * 2 - 10,
         "To drive to the target": -1 * 30,
@@ -168,7 +168,7 @@ def crash_pays(item: Item, folder: Path) -> Finding:
     return Finding(max(returns.values()), returns)
 
 
-def terms_in_info(item: Item, folder: Path) -> Finding:
+def terms_in_info(item: QuizItem, folder: Path) -> Finding:
     seen, reward, _, _, info = next(_steps(TurnEnv(), FORWARD))
     assert math.isclose(sum(info["terms"].values()), reward, abs_tol=1e-6)
     places = {
@@ -199,19 +199,19 @@ def _updated(
     return float(learner._values[0, 0])
 
 
-def q_update(item: Item, folder: Path) -> Finding:
+def q_update(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, _updated(QLearning, 0, 1.0), 1e-9)
 
 
-def sarsa_update(item: Item, folder: Path) -> Finding:
+def sarsa_update(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, _updated(Sarsa, 1, 1.0), 1e-9)
 
 
-def terminal_update(item: Item, folder: Path) -> Finding:
+def terminal_update(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, _updated(QLearning, 0, -10.0, terminated=True), 1e-9)
 
 
-def timeout_update(item: Item, folder: Path) -> Finding:
+def timeout_update(item: QuizItem, folder: Path) -> Finding:
     """The future that an update has counted: value 2, rate 0.5, so new = 1 + (reward + 0.9 future) / 2."""
     future = (2 * (_updated(QLearning, 0, 1.0, truncated=True) - 1) - 1.0) / 0.9
     return Finding(
@@ -224,11 +224,11 @@ def timeout_update(item: Item, folder: Path) -> Finding:
     )
 
 
-def twenty_of_twenty(item: Item, folder: Path) -> Finding:
+def twenty_of_twenty(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, wilson_interval(20, 20, 0.95).low, 0.01)
 
 
-def lucky_test(item: Item, folder: Path) -> Finding:
+def lucky_test(item: QuizItem, folder: Path) -> Finding:
     """In per cent, exactly."""
     one = sum(math.comb(20, k) * 0.7**k * 0.3 ** (20 - k) for k in range(16, 21))
     assert any(

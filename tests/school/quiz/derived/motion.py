@@ -12,7 +12,7 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.run.scenario import place_on_map
 from kit.run.session import Session
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
@@ -38,7 +38,7 @@ def drive(
     return simulation
 
 
-def turn_in_place(item: Item, folder: Path) -> Finding:
+def turn_in_place(item: QuizItem, folder: Path) -> Finding:
     pose = drive(folder, 0.0, 1.0, 1.0).pose("serp")
     way, side = math.hypot(pose.x, pose.y), "left" if pose.theta > 0 else "right"
     return Finding(
@@ -51,7 +51,7 @@ def turn_in_place(item: Item, folder: Path) -> Finding:
     )
 
 
-def command_holds(item: Item, folder: Path) -> Finding:
+def command_holds(item: QuizItem, folder: Path) -> Finding:
     at = [drive(folder, 0.5, 0.0, seconds).pose("serp").x for seconds in (0.1, 1.0, 4.0, 5.0)]
     speeds = (at[1] / 1.0, at[3] - at[2])
     found = "goes on" if min(speeds) > 0.49 else "stands" if max(speeds) < 0.1 else "slows down"
@@ -65,7 +65,7 @@ def command_holds(item: Item, folder: Path) -> Finding:
     )
 
 
-def no_sideways(item: Item, folder: Path) -> Finding:
+def no_sideways(item: QuizItem, folder: Path) -> Finding:
     pose = drive(folder, 0.0, 0.0, 2.0, y=0.3).pose("serp")
     found = "turns" if abs(pose.theta) > 0.01 else "slides" if math.hypot(pose.x, pose.y) > 0.01 else "stays"
     return Finding(
@@ -78,13 +78,13 @@ def no_sideways(item: Item, folder: Path) -> Finding:
     )
 
 
-def circle_radius(item: Item, folder: Path) -> Finding:
+def circle_radius(item: QuizItem, folder: Path) -> Finding:
     """Half the distance of two opposite points."""
     there = drive(folder, 0.5, 0.25, math.pi / 0.25).pose("serp")
     return nearest(item, math.hypot(there.x, there.y) / 2, 0.05)
 
 
-def forward_from_a_heading(item: Item, folder: Path) -> Finding:
+def forward_from_a_heading(item: QuizItem, folder: Path) -> Finding:
     pose = drive(folder, 0.5, 0.0, 1.0, theta=math.radians(90)).pose("serp")
     return Finding(
         (round(2 * pose.x), round(2 * pose.y)),
@@ -92,7 +92,7 @@ def forward_from_a_heading(item: Item, folder: Path) -> Finding:
     )
 
 
-def teleop_home(item: Item, folder: Path) -> Finding:
+def teleop_home(item: QuizItem, folder: Path) -> Finding:
     """Drives with the keys until it bumps, and looks where it is then."""
     with Session(place_on_map(find_map("simple")), seed=1) as session:
         start = session.place.start
@@ -125,7 +125,7 @@ def teleop_home(item: Item, folder: Path) -> Finding:
 # Lesson 9
 
 
-def ray_ahead(item: Item, folder: Path) -> Finding:
+def ray_ahead(item: QuizItem, folder: Path) -> Finding:
     """A wall stands ahead alone: which entry is the shortest?"""
     simulation = Simulation(Workshop(folder).serp([(1.0, -0.02, 1.0, 0.02)], lidar={"noise_std_dev": 0}))
     ranges = _scan(simulation).ranges
@@ -135,19 +135,19 @@ def ray_ahead(item: Item, folder: Path) -> Finding:
     return nearest(item, hits[0], 0)
 
 
-def laser_misses(item: Item, folder: Path) -> Finding:
+def laser_misses(item: QuizItem, folder: Path) -> Finding:
     value = _scan(Simulation(Workshop(folder).serp([(50, -1, 50, 1)]))).ranges[45]
     found = "nan" if math.isnan(value) else str(value)
     return Finding(found, {option.text: option.text for option in item.options})
 
 
-def nan_comparison(item: Item, folder: Path) -> Finding:
+def nan_comparison(item: QuizItem, folder: Path) -> Finding:
     ahead = _scan(Simulation(Workshop(folder).serp([(50, -1, 50, 1)]))).ranges[45]
     found = "turns" if ahead < 1.0 else "drives"
     return Finding(found, {"It turns": "turns", "It drives": "drives", "It stops": "stops"})
 
 
-def way_between_scans(item: Item, folder: Path) -> Finding:
+def way_between_scans(item: QuizItem, folder: Path) -> Finding:
     """In metres; the options are in mm and cm."""
     scale = {"mm": 0.001, "cm": 0.01}
     simulation = Simulation(Workshop(folder).serp([(50, -1, 50, 1)]))
@@ -164,12 +164,12 @@ def way_between_scans(item: Item, folder: Path) -> Finding:
     return Finding(round(way, 4), {text: round(value, 4) for text, value in means.items()})
 
 
-def quarter_turn(item: Item, folder: Path) -> Finding:
+def quarter_turn(item: QuizItem, folder: Path) -> Finding:
     """Scans come at 10 Hz, so ten of them are one second."""
     return nearest(item, math.degrees(drive(folder, 0.0, 1.5708, 1.0).pose("serp").theta), 1.0)
 
 
-def sign_at_left_wall(item: Item, folder: Path) -> Finding:
+def sign_at_left_wall(item: QuizItem, folder: Path) -> Finding:
     wall = 0.6
     left = {
         sign: wall - drive(folder, 0.3, sign * 0.5, 1.0, walls=[(-5, wall, 5, wall)]).pose("serp").y
@@ -202,7 +202,7 @@ class Driver(Node):
 """
 
 
-def endless_loop(item: Item, folder: Path) -> Finding:
+def endless_loop(item: QuizItem, folder: Path) -> Finding:
     file = folder / "driver.py"
     file.write_text(ENDLESS)
     with Session(place_on_map(find_map("simple"))) as session:

@@ -28,7 +28,7 @@ from kit.ros.node.qos import QoSProfile, ReliabilityPolicy
 from kit.ros.parameters.parameter import Parameter
 from kit.run.scenario import place_on_map
 from kit.run.session import Session
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.world.catalogue import find_map
 from tests.school.quiz.derived.finding import Derivation, Finding
 
@@ -44,7 +44,7 @@ def _node(graph: Graph, *arguments: str, **options: Any) -> Node:
 # Topics
 
 
-def drive_listens(item: Item, folder: Path) -> Finding:
+def drive_listens(item: QuizItem, folder: Path) -> Finding:
     """By what the kit's own drive is told its speed."""
     with Session(place_on_map(find_map("simple"))) as session:
         directory = session.graph.directory
@@ -64,7 +64,7 @@ def drive_listens(item: Item, folder: Path) -> Finding:
     )
 
 
-def three_publishers(item: Item, folder: Path) -> Finding:
+def three_publishers(item: QuizItem, folder: Path) -> Finding:
     graph, heard = _graph(), []
     create_graph_node(graph, "drive").create_subscription(
         Int32, "/cmd_vel", lambda message: heard.append(message.data), 10
@@ -84,7 +84,7 @@ def three_publishers(item: Item, folder: Path) -> Finding:
     )
 
 
-def nobody_spins(item: Item, folder: Path) -> Finding:
+def nobody_spins(item: QuizItem, folder: Path) -> Finding:
     """On the system's time, as a program that stands alone."""
     graph, heard = Graph(None, log_sink=[].append), []
     create_graph_node(graph, "deaf").create_subscription(Int32, "x", heard.append, 100)
@@ -101,7 +101,7 @@ def nobody_spins(item: Item, folder: Path) -> Finding:
     )
 
 
-def queue_depth(item: Item, folder: Path) -> Finding:
+def queue_depth(item: QuizItem, folder: Path) -> Finding:
     graph, heard = _graph(), []
     create_graph_node(graph, "busy").create_subscription(
         Int32, "x", lambda message: heard.append(message.data), 5
@@ -114,7 +114,7 @@ def queue_depth(item: Item, folder: Path) -> Finding:
     return Finding(tuple(heard), means)
 
 
-def qos_mismatch(item: Item, folder: Path) -> Finding:
+def qos_mismatch(item: QuizItem, folder: Path) -> Finding:
     lines: list[LogRecord] = []
     graph, heard = _graph(lines), []
     offered = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -135,7 +135,7 @@ def qos_mismatch(item: Item, folder: Path) -> Finding:
     )
 
 
-def int_for_float(item: Item, folder: Path) -> Finding:
+def int_for_float(item: QuizItem, folder: Path) -> Finding:
     command = Twist()
     try:
         command.linear.x = 1
@@ -152,7 +152,7 @@ def int_for_float(item: Item, folder: Path) -> Finding:
     )
 
 
-def latecomer(item: Item, folder: Path) -> Finding:
+def latecomer(item: QuizItem, folder: Path) -> Finding:
     graph, heard = _graph(), []
     create_graph_node(graph, "talker").create_publisher(Int32, "x", 10).publish(Int32(data=7))
     graph.run_due()
@@ -174,7 +174,7 @@ def latecomer(item: Item, folder: Path) -> Finding:
 # Services and parameters
 
 
-def move_answers(item: Item, folder: Path) -> Finding:
+def move_answers(item: QuizItem, folder: Path) -> Finding:
     """By what the kit's world is asked to move a robot, and whether it says how that went."""
     from kit.msg.flatland_msgs import MoveModel
 
@@ -198,7 +198,7 @@ def move_answers(item: Item, folder: Path) -> Finding:
     )
 
 
-def call_deadlock(item: Item, folder: Path) -> Finding:
+def call_deadlock(item: QuizItem, folder: Path) -> Finding:
     graph = Graph(None, log_sink=[].append)
     node = create_graph_node(graph, "node")
     node.create_service(Trigger, "s", lambda request, response: Trigger.Response(message="done"))
@@ -222,7 +222,7 @@ def call_deadlock(item: Item, folder: Path) -> Finding:
     )
 
 
-def nobody_serves(item: Item, folder: Path) -> Finding:
+def nobody_serves(item: QuizItem, folder: Path) -> Finding:
     graph = _graph()
     try:
         future = (
@@ -243,7 +243,7 @@ def nobody_serves(item: Item, folder: Path) -> Finding:
     )
 
 
-def undeclared_parameter(item: Item, folder: Path) -> Finding:
+def undeclared_parameter(item: QuizItem, folder: Path) -> Finding:
     try:
         found: object = create_graph_node(_graph(), "node").get_parameter("speed").value
     except ParameterNotDeclaredException:
@@ -258,7 +258,7 @@ def undeclared_parameter(item: Item, folder: Path) -> Finding:
     )
 
 
-def parameter_type(item: Item, folder: Path) -> Finding:
+def parameter_type(item: QuizItem, folder: Path) -> Finding:
     node = create_graph_node(_graph(), "node")
     node.declare_parameter("speed", 0.5)
     try:
@@ -273,7 +273,7 @@ def parameter_type(item: Item, folder: Path) -> Finding:
 # Launch files
 
 
-def one_graph(item: Item, folder: Path) -> Finding:
+def one_graph(item: QuizItem, folder: Path) -> Finding:
     """Two programs, each with a context of its own, as the processes of two launches have."""
     graph, heard = _graph(), []
     contexts = [Context(graph), Context(graph)]
@@ -299,7 +299,7 @@ def _topics(node: Node, *names: str) -> frozenset[str]:
     return frozenset(node.create_publisher(Int32, name, 10).topic_name for name in names)
 
 
-def remapping(item: Item, folder: Path) -> Finding:
+def remapping(item: QuizItem, folder: Path) -> Finding:
     found = _topics(_node(_graph(), "-r", "cmd_vel:=/second/cmd_vel"), "cmd_vel")
     return Finding(
         found,
@@ -311,7 +311,7 @@ def remapping(item: Item, folder: Path) -> Finding:
     )
 
 
-def namespace(item: Item, folder: Path) -> Finding:
+def namespace(item: QuizItem, folder: Path) -> Finding:
     found = _topics(_node(_graph(), "-r", "__ns:=/left"), "scan", "/alarm")
     return Finding(found, {option.text: frozenset(option.text.split(" and ")) for option in item.options})
 
@@ -321,14 +321,14 @@ def _launched(*entities: Any, **arguments: str) -> list[Any]:
     return service.begin(LaunchDescription(list(entities)))
 
 
-def launch_argument(item: Item, folder: Path) -> Finding:
+def launch_argument(item: QuizItem, folder: Path) -> Finding:
     shown = LogInfo(msg=LaunchConfiguration("world"))
     requests = _launched(DeclareLaunchArgument("world", default_value="maze"), shown, world="house")
     (said,) = [content[1] for kind, *content in requests if kind == "log"]
     return Finding(said, {option.text: option.text for option in item.options})
 
 
-def parameter_override(item: Item, folder: Path) -> Finding:
+def parameter_override(item: QuizItem, folder: Path) -> Finding:
     seen: list[float] = []
     node = _node(_graph(), "-p", "speed:=0.3")
     seen.append(node.declare_parameter("speed", 0.5).value)
@@ -343,7 +343,7 @@ def parameter_override(item: Item, folder: Path) -> Finding:
     )
 
 
-def launch_side_by_side(item: Item, folder: Path) -> Finding:
+def launch_side_by_side(item: QuizItem, folder: Path) -> Finding:
     """Both are asked for before anything has happened to either."""
     requests = _launched(ExecuteProcess(cmd=["driver"]), ExecuteProcess(cmd=["logger"]))
     started = sum(kind == "process" for kind, *_ in requests)

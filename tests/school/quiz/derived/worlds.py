@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from kit.msg.geometry_msgs import Twist
-from kit.school.quiz.items import Item
+from kit.school.quiz.items import QuizItem
 from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import find_map
 from kit.world.collision_rules import CollisionRules, ContactKind
@@ -21,7 +21,7 @@ from tests.school.quiz.derived.finding import Derivation, Finding
 from tests.sim.workshop import Workshop
 
 
-def image_named_in(item: Item, folder: Path) -> Finding:
+def image_named_in(item: QuizItem, folder: Path) -> Finding:
     """Of the maze's files, the one with the line; and what its reader says that the walls come from."""
     card = find_map("maze")
     (layer,) = load_world(card.world_file, root=card.root).layers
@@ -40,14 +40,14 @@ def image_named_in(item: Item, folder: Path) -> Finding:
     )
 
 
-def map_size(item: Item, folder: Path) -> Finding:
+def map_size(item: QuizItem, folder: Path) -> Finding:
     """A dark frame shows how far the picture reaches."""
     walls = _frame(folder, 200, 100, 0.5)
     width, height = (walls[:, i::2].max() - walls[:, i::2].min() for i in (0, 1))
     return Finding(f"{width:g} m by {height:g} m", {option.text: option.text for option in item.options})
 
 
-def map_origin(item: Item, folder: Path) -> Finding:
+def map_origin(item: QuizItem, folder: Path) -> Finding:
     _frame(folder, 20, 10, 0.5)
     (folder / "map.yaml").write_text(
         json.dumps({"image": "map.png", "resolution": 0.5, "origin": [-1, -2, 0], "occupied_thresh": 0.65})
@@ -67,14 +67,14 @@ def map_origin(item: Item, folder: Path) -> Finding:
     return Finding((-1.0, -2.0), corners)
 
 
-def white_picture(item: Item, folder: Path) -> Finding:
+def white_picture(item: QuizItem, folder: Path) -> Finding:
     Image.fromarray(np.full((20, 20), 255, dtype=np.uint8)).save(folder / "white.png")
     walls = walls_from_image(folder / "white.png", resolution=0.1, occupied_thresh=0.65)
     found = {0: "none", 4: "rim"}.get(len(walls), "other")
     return Finding(found, {"Four, along its rim": "rim", "None at all": "none", "One large block": "block"})
 
 
-def sixteen_names(item: Item, folder: Path) -> Finding:
+def sixteen_names(item: QuizItem, folder: Path) -> Finding:
     """Names that nothing uses, in a world without anything."""
 
     def takes(count: int) -> bool:
@@ -97,7 +97,7 @@ def sixteen_names(item: Item, folder: Path) -> Finding:
     )
 
 
-def relative_path(item: Item, folder: Path) -> Finding:
+def relative_path(item: QuizItem, folder: Path) -> Finding:
     """A model of the same name in each of the folders, each with a body of another name."""
     places = {
         "In the one you start the program in": folder / "here",
@@ -125,7 +125,7 @@ def relative_path(item: Item, folder: Path) -> Finding:
 # Models and plugins
 
 
-def plugin_subscribes(item: Item, folder: Path) -> Finding:
+def plugin_subscribes(item: QuizItem, folder: Path) -> Finding:
     """Each plugin alone on a robot: what its endpoints are."""
     shop = Workshop(folder)
     extra = {
@@ -144,7 +144,7 @@ def plugin_subscribes(item: Item, folder: Path) -> Finding:
     return Finding(subscriber, {option.text: option.text for option in item.options})
 
 
-def default_layers(item: Item, folder: Path) -> Finding:
+def default_layers(item: QuizItem, folder: Path) -> Finding:
     shop = Workshop(folder)
     world = shop.world({"robot": shop.model(shop.circle(0.1))}, {"first": (), "second": ()})
     (footprint,) = world.models[0].bodies[0].footprints
@@ -154,7 +154,7 @@ def default_layers(item: Item, folder: Path) -> Finding:
     )
 
 
-def footprint_kind(item: Item, folder: Path) -> Finding:
+def footprint_kind(item: QuizItem, folder: Path) -> Finding:
     """The key that the question shows, on a footprint that shares a layer with a robot and its laser."""
     key = {"sensor: true": {"sensor": True}, "collision: false": {"collision": False}}
     (setting,) = [value for words, value in key.items() if words in item.question]
@@ -172,7 +172,7 @@ def footprint_kind(item: Item, folder: Path) -> Finding:
     )
 
 
-def welded_bodies(item: Item, folder: Path) -> Finding:
+def welded_bodies(item: QuizItem, folder: Path) -> Finding:
     """Joined, they do not collide; unjoined, they do, so it is not the model that keeps them apart."""
     joined, loose = (_two_bodies(folder / name, joint=name == "joined") for name in ("joined", "loose"))
     reason = "collide" if joined else "joined" if loose else "one model"
@@ -186,7 +186,7 @@ def welded_bodies(item: Item, folder: Path) -> Finding:
     )
 
 
-def two_namespaces(item: Item, folder: Path) -> Finding:
+def two_namespaces(item: QuizItem, folder: Path) -> Finding:
     shop = Workshop(folder)
     drive = {"type": "DiffDrive", "name": "drive", "body": "base", "twist_sub": "cmd_vel"}
     model = shop.model(shop.circle(0.1), plugins=[drive])
