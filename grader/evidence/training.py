@@ -236,7 +236,7 @@ class _TrainingMonitor:
     learner: Learner
 
     def __init__(self, settings: TrainingSettings, budget: TrainingBudget, seed: int) -> None:
-        self._examiner = Evaluator(budget.choice.resolve())
+        self._evaluator = Evaluator(budget.choice.resolve())
         self._strategy = _strategy(settings, len(budget.cases))
         self._every, self._seed = settings.batch, seed
         self._next, self._test_count = settings.batch, 0
@@ -247,7 +247,7 @@ class _TrainingMonitor:
 
     @property
     def cases(self) -> int:
-        return len(self._examiner.cases)
+        return len(self._evaluator.cases)
 
     def between_updates(self) -> None:
         if self.learner.steps >= self._next:
@@ -273,15 +273,15 @@ class _TrainingMonitor:
 
     def examine(self, policy: Policy, episodes: int, seed: int) -> CaseCounts:
         """(policy, episodes of each case, seed) -> what came of them."""
-        result = self._examiner.test(policy, episodes, seed)
+        result = self._evaluator.test(policy, episodes, seed)
         return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
 
     def _run_test(self) -> None:
-        verdict = self._strategy.evaluate(self.learner.steps, self._memory, self)
-        self._memory = verdict.memory
-        self.tests.append(TrainingTest(self.learner.steps, verdict.counts, verdict.keep))
-        self.last_accuracy = accuracy(verdict.counts)
-        if verdict.keep:
+        decision = self._strategy.evaluate(self.learner.steps, self._memory, self)
+        self._memory = decision.memory
+        self.tests.append(TrainingTest(self.learner.steps, decision.counts, decision.is_best))
+        self.last_accuracy = accuracy(decision.counts)
+        if decision.is_best:
             self.best, self.best_accuracy = self.learner.policy(), self.last_accuracy
-        if verdict.stop:
-            raise StopLearning(verdict.reason)
+        if decision.stop:
+            raise StopLearning(decision.reason)

@@ -145,7 +145,7 @@ def covers(drive: FieldDrive, params: CoverageParams) -> float:
     """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
     assert drive.course is not None
     own = _line_charges(drive.course.layout.charges)
-    wanted = _line_charges(derive_charges(drive.course.floor))
+    wanted = _line_charges(derive_charges(drive.course.grid))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
         length
@@ -245,7 +245,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
     course = ControllerSetup.open(
         place.world.file, place.partners, case.target, case.target_radius, derived=True
     )
-    course = replace(course, layout=_check_limits(read_layout(file, course.floor)))
+    course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
     simulation = Simulation(place.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
     field_run = _FieldRun(place, course, simulation)
     field_run.run(trial)

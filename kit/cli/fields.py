@@ -258,7 +258,7 @@ def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
     yield "intensities: " + ", ".join(
         f"{name} {value:g}" for name, value in asdict(layout.intensities).items()
     )
-    for difference in course.hand_drawn_differences():
+    for difference in course.layout_differences():
         yield f"unlike the walls: {difference}"
     for trap in traps:
         yield f"trap (!) at ({trap.x:.2f}, {trap.y:.2f}): {trap.share:.0%} of the floor leads there"

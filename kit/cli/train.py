@@ -225,5 +225,5 @@ def _list() -> list[str]:
             groups.setdefault(case.group or "(no group)", []).append(case.name)
         lines += [f"  {task.name:12} {group:12} {', '.join(cases)}" for group, cases in groups.items()]
     lines.append("\nAlgorithms:")
-    lines += [f"  {row.name:20} {row.title} ({row.maker})" for row in ALGORITHMS.values()]
+    lines += [f"  {row.name:20} {row.title} ({row.library})" for row in ALGORITHMS.values()]
     return [*lines, "\nRewards:", *(f"  {name}" for name in REWARDS)]

@@ -46,7 +46,7 @@ class DrivenRobot:
 class ControllerSetup:
     """One task for the first two robots of a world, or for one."""
 
-    floor: OccupancyGrid
+    grid: OccupancyGrid
     layout: ChargeLayout
     robots: tuple[DrivenRobot, ...]
     target: tuple[float, float]
@@ -68,18 +68,18 @@ class ControllerSetup:
 
         Raises WorldError for a wrong file, ValueError for a world without walls, LookupError for a missing model.
         """
-        world, floor = load_occupancy_grid(world_file)
+        world, grid = load_occupancy_grid(world_file)
         if charges is not None:
-            layout = read_layout(charges, floor)
+            layout = read_layout(charges, grid)
         else:
-            layout = derived_layout(floor) if derived else load_layout(world_file, floor)
+            layout = derived_layout(grid) if derived else load_layout(world_file, grid)
         robots = tuple(_driven_robot(_find_model(world, name)) for name in models[:2])
-        return cls(floor, layout, robots, target, target_radius)
+        return cls(grid, layout, robots, target, target_radius)
 
     @cached_property
     def flow(self) -> ForceFlow:
         """Where the charges' forces lead."""
-        return ForceFlow.of(self.layout, self.floor, self.target, self.target_radius)
+        return ForceFlow.of(self.layout, self.grid, self.target, self.target_radius)
 
     @property
     def size(self) -> VehicleSize:
@@ -91,7 +91,7 @@ class ControllerSetup:
 
     def cost_to_go(self, start: tuple[float, float]) -> CostToGo:
         """Ways to the target. Raises Unreachable if none leads there from ``start``."""
-        ways = CostToGo.to(self.floor, self.target, self.size, start)
+        ways = CostToGo.to(self.grid, self.target, self.size, start)
         ways.check(start)
         return ways
 
@@ -101,10 +101,10 @@ class ControllerSetup:
         way = self.cost_to_go(start).way(start, _common_heading(poses))
         return plan_trajectory(way, poses, PAIR_GAP, limits)
 
-    def hand_drawn_differences(self) -> tuple[str, ...]:
+    def layout_differences(self) -> tuple[str, ...]:
         """Where the layout differs from the one derived from the walls, in words."""
         return (
-            layout_differences(self.layout.charges, derive_charges(self.floor)) if self.layout.source else ()
+            layout_differences(self.layout.charges, derive_charges(self.grid)) if self.layout.source else ()
         )
 
 

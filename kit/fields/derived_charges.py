@@ -28,9 +28,9 @@ MATCH_DISTANCE: Final = 0.05
 """And when nearer than this [m] meant to be."""
 
 
-def derive_charges(floor: OccupancyGrid) -> tuple[Charge, ...]:
+def derive_charges(grid: OccupancyGrid) -> tuple[Charge, ...]:
     """Charges of strength 1 for all walls that the floor's inside ends at."""
-    faces: list[list[float]] = floor.faces().tolist()
+    faces: list[list[float]] = grid.wall_faces().tolist()
     meeting: dict[Point, list[int]] = defaultdict(list)
     for number, (ax, ay, bx, by) in enumerate(faces):
         meeting[_rounded_point(ax, ay)].append(number)
@@ -38,7 +38,7 @@ def derive_charges(floor: OccupancyGrid) -> tuple[Charge, ...]:
     group = list(range(len(faces)))
     corners: dict[Point, int] = {}
     for place, numbers in meeting.items():
-        if _is_convex_corner(place, [faces[number] for number in numbers], floor):
+        if _is_convex_corner(place, [faces[number] for number in numbers], grid):
             for number in numbers[1:]:
                 _merge_groups(group, numbers[0], number)
             corners[place] = numbers[0]
@@ -82,7 +82,7 @@ def _build_charges(
             yield from those
 
 
-def _is_convex_corner(place: Point, walls: list[list[float]], floor: OccupancyGrid) -> bool:
+def _is_convex_corner(place: Point, walls: list[list[float]], grid: OccupancyGrid) -> bool:
     """Whether more than half a turn around the place is free, and floor."""
     directions = sorted(_direction_from(place, wall) for wall in walls)
     gaps = [
@@ -93,9 +93,9 @@ def _is_convex_corner(place: Point, walls: list[list[float]], floor: OccupancyGr
     if widest <= math.pi + MIN_CORNER_ANGLE:
         return False
     middle = before + 0.5 * widest
-    aside = 2.0 * floor.cell
+    aside = 2.0 * grid.cell_size
     return bool(
-        floor.inside[floor.cell_at(place[0] + aside * math.cos(middle), place[1] + aside * math.sin(middle))]
+        grid.inside[grid.cell_at(place[0] + aside * math.cos(middle), place[1] + aside * math.sin(middle))]
     )
 
 

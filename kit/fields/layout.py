@@ -87,20 +87,20 @@ class ChargeLayout:
         return self.wall_forces(points) + pull
 
 
-def load_layout(world_file: Path, floor: OccupancyGrid) -> ChargeLayout:
+def load_layout(world_file: Path, grid: OccupancyGrid) -> ChargeLayout:
     """The layout beside a world file, or the one derived from its walls. Raises WorldError."""
     file = world_file.parent / LAYOUT_FILE
-    return read_layout(file, floor) if file.is_file() else derived_layout(floor)
+    return read_layout(file, grid) if file.is_file() else derived_layout(grid)
 
 
-def derived_layout(floor: OccupancyGrid) -> ChargeLayout:
+def derived_layout(grid: OccupancyGrid) -> ChargeLayout:
     """From the walls that the floor is bounded by, with the dissertation's intensities."""
-    charges = derive_charges(floor)
+    charges = derive_charges(grid)
     return ChargeLayout(charges, Intensities(), None, ChargeField.of(charges))
 
 
-def read_layout(file: Path, floor: OccupancyGrid | None = None) -> ChargeLayout:
-    """What a charge file describes; with ``floor`` also whether its charges lie where charges can.
+def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
+    """What a charge file describes; with ``grid`` also whether its charges lie where charges can.
 
     Raises WorldError with all that is wrong.
     """
@@ -112,7 +112,7 @@ def read_layout(file: Path, floor: OccupancyGrid | None = None) -> ChargeLayout:
     intensities = Intensities()
     if section is not None:
         intensities = _read_intensities(section.section("intensities"))
-        ground = None if floor is None else _WallSurface(floor, floor.faces())
+        ground = None if grid is None else _WallSurface(grid, grid.wall_faces())
         charges = tuple(_read_charges(section.sections("charges"), ground))
         section.finish()
     problems.raise_if_any()
@@ -123,8 +123,8 @@ def read_layout(file: Path, floor: OccupancyGrid | None = None) -> ChargeLayout:
 class _WallSurface:
     """Where charges may stand."""
 
-    floor: OccupancyGrid
-    faces: FloatArray
+    grid: OccupancyGrid
+    wall_faces: FloatArray
 
 
 def _read_intensities(section: Section) -> Intensities:
@@ -218,7 +218,7 @@ def _check_not_in_wall(
     section: Section, key: str, places: list[tuple[float, float]], ground: _WallSurface
 ) -> None:
     for x, y in places:
-        depth = wall_depth(ground.floor, ground.faces, x, y)
+        depth = wall_depth(ground.grid, ground.wall_faces, x, y)
         if depth > MAX_WALL_DEPTH:
             section.error(
                 f"the charge lies inside a wall: {_format_numbers(x, y)} is {depth:.2f} m behind its face. "

@@ -34,7 +34,7 @@ class Trap(NamedTuple):
 class ForceFlow:
     """Where one ends who follows the forces, from every cell of the floor."""
 
-    floor: OccupancyGrid
+    grid: OccupancyGrid
     ends: NDArray[np.int64]
     """(rows, columns): the number of the cell; -1 off the floor."""
     target: tuple[float, float]
@@ -42,52 +42,52 @@ class ForceFlow:
 
     @classmethod
     def of(
-        cls, layout: ChargeLayout, floor: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
+        cls, layout: ChargeLayout, grid: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
         """``radius`` [m]: how near to the target counts as there."""
-        return cls.following(layout.forces(floor.cell_centers, target), floor, target, radius)
+        return cls.following(layout.forces(grid.cell_centers, target), grid, target, radius)
 
     @classmethod
     def following(
-        cls, forces: FloatArray, floor: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
+        cls, forces: FloatArray, grid: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
         """The same for any forces (rows, columns, 2) at the floor's cells.
 
         Every cell points to the one a step along its force; pointing twice as far again and again leads to the end.
         """
-        rows, columns = floor.shape
+        rows, columns = grid.shape
         here = np.arange(rows * columns).reshape(rows, columns)
         strength = np.hypot(forces[..., 0], forces[..., 1])
         step = np.rint(STEP_CELLS * forces / np.where(strength > 0, strength, 1.0)[..., None]).astype(int)
         row = np.clip(here // columns + step[..., 1], 0, rows - 1)
         column = np.clip(here % columns + step[..., 0], 0, columns - 1)
         after = row * columns + column
-        away = np.hypot(floor.cell_centers[..., 0] - target[0], floor.cell_centers[..., 1] - target[1])
-        stays = ~floor.inside | ~floor.inside[row, column] | (away <= radius)
+        away = np.hypot(grid.cell_centers[..., 0] - target[0], grid.cell_centers[..., 1] - target[1])
+        stays = ~grid.inside | ~grid.inside[row, column] | (away <= radius)
         ends = np.where(stays, here, after).ravel()
         for _ in range(DOUBLINGS):
             ends = ends[ends]
-        return cls(floor, np.where(floor.inside, ends.reshape(rows, columns), -1), target, radius)
+        return cls(grid, np.where(grid.inside, ends.reshape(rows, columns), -1), target, radius)
 
     def end(self, x: float, y: float) -> tuple[float, float] | None:
         """Where the forces lead from a place; None off the floor."""
-        number = int(self.ends[self.floor.cell_at(x, y)])
-        return None if number < 0 else self.floor.middle(divmod(number, self.floor.shape[1]))
+        number = int(self.ends[self.grid.cell_at(x, y)])
+        return None if number < 0 else self.grid.cell_center(divmod(number, self.grid.shape[1]))
 
     def reaches(self, x: float, y: float) -> bool:
         """Whether they lead to the target."""
         end = self.end(x, y)
-        return end is not None and math.dist(end, self.target) <= self.radius + self.floor.cell
+        return end is not None and math.dist(end, self.target) <= self.radius + self.grid.cell_size
 
     def traps(self, least: float = 0.01) -> tuple[Trap, ...]:
         """Where else they lead, the widest trap first; without those that hold less than a share of ``least``."""
         numbers, counts = np.unique(self.ends[self.ends >= 0], return_counts=True)
-        columns = self.floor.shape[1]
-        places = np.array([self.floor.middle(divmod(number, columns)) for number in numbers.tolist()])
+        columns = self.grid.shape[1]
+        places = np.array([self.grid.cell_center(divmod(number, columns)) for number in numbers.tolist()])
         shares = counts / max(1, counts.sum())
         if not len(places):
             return ()
-        elsewhere = np.hypot(*(places - self.target).T) > self.radius + self.floor.cell
+        elsewhere = np.hypot(*(places - self.target).T) > self.radius + self.grid.cell_size
         return tuple(
             sorted(
                 (trap for trap in _merge_ends(places[elsewhere], shares[elsewhere]) if trap.share >= least),

@@ -36,9 +36,9 @@ class OccupancyGrid:
 
     walls: FloatArray
     """(n, 4) ``x1 y1 x2 y2`` [m]"""
-    corner: tuple[float, float]
+    origin: tuple[float, float]
     """The middle of the first cell."""
-    cell: float
+    cell_size: float
     clearance: FloatArray
     inside: BoolArray
     """(rows, columns): where something thin gets to from where the models stand."""
@@ -62,11 +62,11 @@ class OccupancyGrid:
             )
             near = clearance[rows, columns]
             np.minimum(near, _segment_distance(x[columns], y[rows], ax, ay, bx, by), out=near)
-        floor = cls(walls, (float(low[0]), float(low[1])), cell, clearance, np.zeros(shape, dtype=np.bool_))
+        grid = cls(walls, (float(low[0]), float(low[1])), cell, clearance, np.zeros(shape, dtype=np.bool_))
         for start in starts:
-            if not floor.inside[floor.cell_at(*start)]:
-                floor.inside[floor.reached(start, 0.0)] = True
-        return floor
+            if not grid.inside[grid.cell_at(*start)]:
+                grid.inside[grid.reachable_from(start, 0.0)] = True
+        return grid
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -77,21 +77,24 @@ class OccupancyGrid:
     def cell_centers(self) -> FloatArray:
         """(rows, columns, 2): the cells' places."""
         rows, columns = self.shape
-        x, y = (self.corner[0] + self.cell * np.arange(columns), self.corner[1] + self.cell * np.arange(rows))
+        x, y = (
+            self.origin[0] + self.cell_size * np.arange(columns),
+            self.origin[1] + self.cell_size * np.arange(rows),
+        )
         return np.stack(np.meshgrid(x, y), axis=-1)
 
-    def faces(self) -> FloatArray:
+    def wall_faces(self) -> FloatArray:
         """(m, 4): the walls that have the inside on one of their sides, each once."""
         return np.array(
-            [wall for wall in np.unique(self.walls, axis=0).tolist() if self._looks_inside(wall)]
+            [wall for wall in np.unique(self.walls, axis=0).tolist() if self._borders_inside(wall)]
         ).reshape(-1, 4)
 
-    def _looks_inside(self, wall: list[float]) -> bool:
+    def _borders_inside(self, wall: list[float]) -> bool:
         ax, ay, bx, by = wall
         length = math.hypot(bx - ax, by - ay)
         if length == 0:
             return False
-        aside = 1.5 * self.cell
+        aside = 1.5 * self.cell_size
         nx, ny = -(by - ay) / length * aside, (bx - ax) / length * aside
         return any(
             self.inside[self.cell_at(ax + share * (bx - ax) + side * nx, ay + share * (by - ay) + side * ny)]
@@ -101,19 +104,19 @@ class OccupancyGrid:
 
     def cell_at(self, x: float, y: float) -> Cell:
         """The cell that holds a place; the nearest one for a place off the grid."""
-        column, row = (x - self.corner[0]) / self.cell, (y - self.corner[1]) / self.cell
+        column, row = (x - self.origin[0]) / self.cell_size, (y - self.origin[1]) / self.cell_size
         return (
             min(max(round(row), 0), self.clearance.shape[0] - 1),
             min(max(round(column), 0), self.clearance.shape[1] - 1),
         )
 
-    def middle(self, cell: Cell) -> tuple[float, float]:
-        return self.corner[0] + self.cell * cell[1], self.corner[1] + self.cell * cell[0]
+    def cell_center(self, cell: Cell) -> tuple[float, float]:
+        return self.origin[0] + self.cell_size * cell[1], self.origin[1] + self.cell_size * cell[0]
 
-    def reached(self, start: tuple[float, float], radius: float) -> BoolArray:
+    def reachable_from(self, start: tuple[float, float], radius: float) -> BoolArray:
         """(rows, columns): where a disc of that radius [m] gets to from ``start``."""
         # Nothing slips through a wall where cells that it crosses are blocked.
-        free = self.clearance > max(radius, self.cell * 0.75)
+        free = self.clearance > max(radius, self.cell_size * 0.75)
         been = np.zeros_like(free)
         first = self.cell_at(*start)
         been[first] = free[first]
@@ -127,16 +130,16 @@ class OccupancyGrid:
                     waiting.append(beside)
         return been
 
-    def widest_way(self, start: tuple[float, float], goal: tuple[float, float]) -> float:
+    def widest_passage(self, start: tuple[float, float], goal: tuple[float, float]) -> float:
         """The radius [m] of the largest disc that gets from start to goal; 0 if not even the smallest does."""
         low, high = 0.0, MAX_CLEARANCE
         for _ in range(8):
             middle = 0.5 * (low + high)
-            if self.reached(start, middle)[self.cell_at(*goal)]:
+            if self.reachable_from(start, middle)[self.cell_at(*goal)]:
                 low = middle
             else:
                 high = middle
-        return low if low > self.cell else 0.0
+        return low if low > self.cell_size else 0.0
 
 
 def load_occupancy_grid(world_file: Path) -> tuple[World, OccupancyGrid]:
@@ -153,9 +156,9 @@ def occupancy_grid_of(world: World) -> OccupancyGrid:
     return OccupancyGrid.of(np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models])
 
 
-def wall_depth(floor: OccupancyGrid, faces: FloatArray, x: float, y: float) -> float:
-    """How far [m] a place lies behind the nearest of the floor's ``faces``; 0 before it, or on it."""
-    if floor.inside[floor.cell_at(x, y)] or not len(faces):
+def wall_depth(grid: OccupancyGrid, faces: FloatArray, x: float, y: float) -> float:
+    """How far [m] a place lies behind the nearest of the floor's ``wall_faces``; 0 before it, or on it."""
+    if grid.inside[grid.cell_at(x, y)] or not len(faces):
         return 0.0
     ax, ay, bx, by = faces.T
     dx, dy = bx - ax, by - ay
@@ -166,12 +169,12 @@ def wall_depth(floor: OccupancyGrid, faces: FloatArray, x: float, y: float) -> f
     depth = float(distance[nearest])
     if depth < 1e-9:
         return 0.0
-    beyond = 1.5 * floor.cell / depth
+    beyond = 1.5 * grid.cell_size / depth
     before = (
         x + (beyond - 1.0) * float(away_x[nearest]),
         y + (beyond - 1.0) * float(away_y[nearest]),
     )
-    return 0.0 if floor.inside[floor.cell_at(*before)] else depth
+    return 0.0 if grid.inside[grid.cell_at(*before)] else depth
 
 
 def _index_range(low: float, high: float, origin: float, cell: float, count: int) -> slice:

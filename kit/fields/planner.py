@@ -52,10 +52,10 @@ class VehicleSize:
 
     radius: float
     """Of the disc that holds it in whatever direction it drives [m]."""
-    shortest: float
+    min_radius: float
     """And of the one it needs at least, to stand at the ends of its way: several side by side are less long than
     wide [m]."""
-    who: str = "the robot"
+    label: str = "the robot"
     """What messages call it."""
 
 
@@ -63,24 +63,24 @@ class VehicleSize:
 class CostToGo:
     """The least cost to one target from every cell, for something of some size; inf where no way leads."""
 
-    floor: OccupancyGrid
+    grid: OccupancyGrid
     target: tuple[float, float]
     size: VehicleSize
     cost: FloatArray
     """(rows, columns): metres, dearer ones near walls counted for more."""
-    after: NDArray[np.int32]
+    next_cell: NDArray[np.int32]
     """(rows, columns): the number of the next cell on the way; the target's is its own."""
 
     @classmethod
     def to(
-        cls, floor: OccupancyGrid, target: tuple[float, float], size: VehicleSize, start: tuple[float, float]
+        cls, grid: OccupancyGrid, target: tuple[float, float], size: VehicleSize, start: tuple[float, float]
     ) -> CostToGo:
         """``start``: where it stands now, and so fits."""
-        price = _travel_price(floor, size, (start, target)).tolist()
-        rows, columns = floor.shape
+        price = _travel_price(grid, size, (start, target)).tolist()
+        rows, columns = grid.shape
         cost = [math.inf] * (rows * columns)
         after = np.full((rows, columns), -1, dtype=np.int32)
-        goal = floor.cell_at(*target)
+        goal = grid.cell_at(*target)
         first = goal[0] * columns + goal[1]
         if price[goal[0]][goal[1]] < math.inf:
             cost[first] = 0.0
@@ -96,18 +96,18 @@ class CostToGo:
                 y, x = row + down, column + right
                 if not (0 <= y < rows and 0 <= x < columns):
                     continue
-                through = so_far + 0.5 * length * floor.cell * (here + price[y][x])
+                through = so_far + 0.5 * length * grid.cell_size * (here + price[y][x])
                 if through < cost[y * columns + x]:
                     cost[y * columns + x] = through
                     after[y, x] = number
                     heapq.heappush(waiting, (through, y * columns + x))
-        return cls(floor, target, size, np.array(cost).reshape(rows, columns), after)
+        return cls(grid, target, size, np.array(cost).reshape(rows, columns), after)
 
     def directions(self) -> FloatArray:
         """(rows, columns, 2): the unit vector from each cell to the next; zero where no way leads on."""
-        rows, columns = self.floor.shape
+        rows, columns = self.grid.shape
         here = np.arange(rows * columns).reshape(rows, columns)
-        there = np.where(self.after >= 0, self.after, here)
+        there = np.where(self.next_cell >= 0, self.next_cell, here)
         step = np.stack((there % columns - here % columns, there // columns - here // columns), axis=-1)
         length = np.hypot(step[..., 0], step[..., 1])[..., None]
         unit: FloatArray = step / np.where(length > 0, length, 1.0)
@@ -115,20 +115,20 @@ class CostToGo:
 
     def check(self, start: tuple[float, float]) -> None:
         """Raises Unreachable if no way leads from ``start``, and says where it fails."""
-        floor = self.floor
+        grid = self.grid
         for place, name in ((self.target, "The target"), (start, "The start")):
-            if floor.clearance[floor.cell_at(*place)] < self.size.shortest - 0.5 * floor.cell:
+            if grid.clearance[grid.cell_at(*place)] < self.size.min_radius - 0.5 * grid.cell_size:
                 raise Unreachable(
-                    f"{name} ({place[0]:g}, {place[1]:g}) is too near to a wall for {self.size.who}."
+                    f"{name} ({place[0]:g}, {place[1]:g}) is too near to a wall for {self.size.label}."
                 )
-        if math.isfinite(self.cost[floor.cell_at(*start)]):
+        if math.isfinite(self.cost[grid.cell_at(*start)]):
             return
-        widest = floor.widest_way(start, self.target)
+        widest = grid.widest_passage(start, self.target)
         way = f"from ({start[0]:g}, {start[1]:g}) to the target ({self.target[0]:g}, {self.target[1]:g})"
         if widest == 0.0:
             raise Unreachable(f"No way leads {way}: walls close it off, or it lies inside one.")
         raise Unreachable(
-            f"No way {way} is wide enough for {self.size.who}, {2 * self.size.radius:.2f} m wide: "
+            f"No way {way} is wide enough for {self.size.label}, {2 * self.size.radius:.2f} m wide: "
             f"where it is narrowest, the widest leaves {2 * widest:.2f} m."
         )
 
@@ -137,13 +137,13 @@ class CostToGo:
 
         Call ``check`` first.
         """
-        columns = self.floor.shape[1]
-        cell = self.floor.cell_at(*start)
+        columns = self.grid.shape[1]
+        cell = self.grid.cell_at(*start)
         cells: list[Cell] = [cell]
-        while (number := int(self.after[cell])) != cell[0] * columns + cell[1]:
+        while (number := int(self.next_cell[cell])) != cell[0] * columns + cell[1]:
             cell = divmod(number, columns)
             cells.append(cell)
-        corners = np.array([start, *(self.floor.middle(each) for each in cells[1:-1]), self.target])
+        corners = np.array([start, *(self.grid.cell_center(each) for each in cells[1:-1]), self.target])
         spacing = max(POINT_SPACING, float(np.hypot(*np.diff(corners, axis=0).T).sum()) / MAX_POINTS)
         rough = resample_path(corners, spacing)
         if len(rough) <= STRAIGHT_START_POINTS + 2:
@@ -162,9 +162,11 @@ class CostToGo:
     def _fits(self, way: FloatArray) -> bool:
         """Whether all along the way there is as much room as it was planned with."""
         near_end = np.minimum(*(np.hypot(*(way - way[end]).T) for end in (0, -1))) < END_RADIUS
-        needed = np.where(near_end, self.size.shortest, self.size.radius)
+        needed = np.where(near_end, self.size.min_radius, self.size.radius)
         return bool(
-            (interpolate_grid(self.floor, self.floor.clearance, way) >= needed - 0.5 * self.floor.cell).all()
+            (
+                interpolate_grid(self.grid, self.grid.clearance, way) >= needed - 0.5 * self.grid.cell_size
+            ).all()
         )
 
     def _bent(self, rough: FloatArray, fixed: int, stiffness: float) -> FloatArray:
@@ -181,32 +183,32 @@ class CostToGo:
         held[free] = False
         inverse = np.linalg.inv(np.eye(size)[free, free] + own[free, free])
         from_held = own[free][:, held] @ way[held]
-        wanted = min(self.size.radius + COMFORTABLE_ROOM, MAX_CLEARANCE - self.floor.cell)
-        slopes = np.gradient(self.floor.clearance, self.floor.cell)
+        wanted = min(self.size.radius + COMFORTABLE_ROOM, MAX_CLEARANCE - self.grid.cell_size)
+        slopes = np.gradient(self.grid.clearance, self.grid.cell_size)
         for _ in range(SMOOTHING_ROUNDS):
             some = way[free]
-            lack = np.clip(1.0 - interpolate_grid(self.floor, self.floor.clearance, some) / wanted, 0.0, 1.0)
-            away = np.column_stack([interpolate_grid(self.floor, slope, some) for slope in slopes[::-1]])
+            lack = np.clip(1.0 - interpolate_grid(self.grid, self.grid.clearance, some) / wanted, 0.0, 1.0)
+            away = np.column_stack([interpolate_grid(self.grid, slope, some) for slope in slopes[::-1]])
             way[free] = inverse @ (some + WALL_PUSH * lack[:, None] * away - from_held)
         return way
 
 
-def _travel_price(floor: OccupancyGrid, size: VehicleSize, ends: Iterable[tuple[float, float]]) -> FloatArray:
+def _travel_price(grid: OccupancyGrid, size: VehicleSize, ends: Iterable[tuple[float, float]]) -> FloatArray:
     """(rows, columns): what a metre costs there; inf where it does not fit."""
-    lack = np.clip(1.0 - (floor.clearance - size.radius) / COMFORTABLE_ROOM, 0.0, 1.0)
+    lack = np.clip(1.0 - (grid.clearance - size.radius) / COMFORTABLE_ROOM, 0.0, 1.0)
     price: FloatArray = 1.0 + (MAX_PRICE - 1.0) * lack**2
-    needed = np.full(floor.shape, size.radius)
+    needed = np.full(grid.shape, size.radius)
     for end in ends:
-        needed[np.hypot(*np.moveaxis(floor.cell_centers - end, -1, 0)) < END_RADIUS] = size.shortest
-    price[(floor.clearance < np.maximum(needed, 0.75 * floor.cell)) | ~floor.inside] = math.inf
+        needed[np.hypot(*np.moveaxis(grid.cell_centers - end, -1, 0)) < END_RADIUS] = size.min_radius
+    price[(grid.clearance < np.maximum(needed, 0.75 * grid.cell_size)) | ~grid.inside] = math.inf
     return price
 
 
-def interpolate_grid(floor: OccupancyGrid, values: FloatArray, places: FloatArray) -> FloatArray:
+def interpolate_grid(grid: OccupancyGrid, values: FloatArray, places: FloatArray) -> FloatArray:
     """(k): a grid's values at places (k, 2), between the four nearest cells."""
     rows, columns = values.shape
-    u = np.clip((places[:, 0] - floor.corner[0]) / floor.cell, 0.0, columns - 1.001)
-    v = np.clip((places[:, 1] - floor.corner[1]) / floor.cell, 0.0, rows - 1.001)
+    u = np.clip((places[:, 0] - grid.origin[0]) / grid.cell_size, 0.0, columns - 1.001)
+    v = np.clip((places[:, 1] - grid.origin[1]) / grid.cell_size, 0.0, rows - 1.001)
     column, row = u.astype(int), v.astype(int)
     u, v = u - column, v - row
     below = (1 - u) * values[row, column] + u * values[row, column + 1]

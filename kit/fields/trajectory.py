@@ -28,14 +28,14 @@ class ComfortLimits:
     """m/s: of the faster robot; the dissertation's."""
     acceleration: float = 0.2
     """m/s^2: of the faster robot."""
-    easing: float = 0.8
+    smoothing_time: float = 0.8
     """s: an acceleration comes and goes over so long: jerk stays below 2 * acceleration / easing where the way is
     straight, and below twice that where two robots take a bend."""
     turn_rate: float = 0.8
     """rad/s"""
     turn_acceleration: float = 1.0
     """rad/s^2"""
-    sideways: float = 0.15
+    lateral_acceleration: float = 0.15
     """m/s^2, towards the outside of a bend."""
 
 
@@ -49,7 +49,7 @@ class TrackingGains:
     """rad/m^2"""
     heading: float = 2.0
     """1/s"""
-    waits_at: float = 0.1
+    wait_distance: float = 0.1
     """A robot farther [m] from its place makes all wait for it."""
 
 
@@ -78,14 +78,14 @@ class TrajectoryTracker:
         self.tick = 0
 
     @property
-    def is_over(self) -> bool:
+    def is_done(self) -> bool:
         return self.tick >= len(self._ride.poses) - 1
 
     def commands(self, poses: Sequence[Pose]) -> tuple[VelocityCommand, ...]:
         """For the tick that begins now, with the robots where they are."""
         here = [Pose(*place) for place in self._ride.poses[self.tick].tolist()]
         late = max(math.dist(pose[:2], place[:2]) for pose, place in zip(poses, here, strict=True))
-        moves = not self.is_over and late <= self._gains.waits_at
+        moves = not self.is_done and late <= self._gains.wait_distance
         there = [Pose(*place) for place in self._ride.poses[self.tick + 1].tolist()] if moves else here
         self.tick += moves
         return tuple(self._command(pose, *places) for pose, *places in zip(poses, here, there, strict=True))
@@ -138,12 +138,12 @@ def _time_path(way: FloatArray, aside: float, limits: ComfortLimits) -> FloatArr
         [
             limits.speed / wider,
             limits.turn_rate / (np.abs(bend) + small),
-            np.sqrt(limits.sideways / (np.abs(bend) + small)),
+            np.sqrt(limits.lateral_acceleration / (np.abs(bend) + small)),
             np.sqrt(limits.turn_acceleration / (change + small)),
         ]
     )
     speeds = _limit_acceleration(along, speed, limits.acceleration / wider)
-    at = _smooth_speed(along, speeds, limits.easing)
+    at = _smooth_speed(along, speeds, limits.smoothing_time)
     return np.column_stack([np.interp(at, along, values) for values in (way[:, 0], way[:, 1], heading)])
 
 
@@ -159,13 +159,13 @@ def _limit_acceleration(along: FloatArray, most: FloatArray, acceleration: Float
     return np.array(speeds)
 
 
-def _smooth_speed(along: FloatArray, speeds: FloatArray, easing: float) -> FloatArray:
-    """Where along the way one is at each tick. Speed over time is averaged over ``easing``, which leaves the way as
+def _smooth_speed(along: FloatArray, speeds: FloatArray, smoothing_time: float) -> FloatArray:
+    """Where along the way one is at each tick. Speed over time is averaged over ``smoothing_time``, which leaves the way as
     long as it is and takes the corners off the acceleration."""
     length = np.diff(along)
     mean = np.maximum(0.5 * (speeds[1:] + speeds[:-1]), 1e-3)
     times = np.concatenate(([0.0], np.cumsum(length / mean)))
-    window = max(1, round(easing / STEP_S))
+    window = max(1, round(smoothing_time / STEP_S))
     ticks = np.arange(0.0, times[-1] + STEP_S, STEP_S)
     at = np.interp(ticks, times, along)
     padded = np.concatenate((np.zeros(window), at, np.full(window, along[-1])))
@@ -187,7 +187,7 @@ def _line_up(robot: Pose, place: Pose, limits: ComfortLimits) -> FloatArray:
         towards = math.atan2(place.y - robot.y, place.x - robot.x)
         poses += _turn_on_spot(poses[-1], towards, limits)
         x, y, heading = poses[-1]
-        for way in _rest_to_rest(away, limits.speed, limits.acceleration, limits.easing):
+        for way in _rest_to_rest(away, limits.speed, limits.acceleration, limits.smoothing_time):
             poses.append((x + way * math.cos(towards), y + way * math.sin(towards), heading))
     if abs(wrap_angle(place.theta - heading)) > ALIGNMENT_TOLERANCE:
         poses += _turn_on_spot(poses[-1], place.theta, limits)
@@ -199,15 +199,15 @@ def _turn_on_spot(pose: tuple[float, ...], to: float, limits: ComfortLimits) -> 
     x, y, theta = pose
     angle = wrap_angle(to - theta)
     sign = math.copysign(1.0, angle)
-    turns = _rest_to_rest(abs(angle), limits.turn_rate, limits.turn_acceleration, limits.easing)
+    turns = _rest_to_rest(abs(angle), limits.turn_rate, limits.turn_acceleration, limits.smoothing_time)
     return [(x, y, theta + sign * turn) for turn in turns]
 
 
-def _rest_to_rest(length: float, speed: float, acceleration: float, easing: float) -> list[float]:
+def _rest_to_rest(length: float, speed: float, acceleration: float, smoothing_time: float) -> list[float]:
     """How far one is at each tick after the first, from rest to rest."""
     along = np.linspace(0.0, length, 50)
     speeds = _limit_acceleration(along, np.full(50, speed), np.full(50, acceleration))
-    return [float(way) for way in _smooth_speed(along, speeds, easing)[1:]]
+    return [float(way) for way in _smooth_speed(along, speeds, smoothing_time)[1:]]
 
 
 def twist_between(here: Pose, there: Pose, seconds: float) -> VelocityCommand:

@@ -33,7 +33,7 @@ class FieldPicture:
 
     def __init__(self, course: ControllerSetup) -> None:
         self._course = course
-        places = course.floor.cell_centers
+        places = course.grid.cell_centers
         self._walls = course.layout.field.forces(places)
         self._pull = PointCharge(*course.target).force(places)
         self._ways: FloatArray | None = None
@@ -53,7 +53,7 @@ class FieldPicture:
     def traps(self) -> tuple[Trap, ...]:
         """Where the forces lead, but for the target."""
         course = self._course
-        return ForceFlow.following(self.forces, course.floor, course.target, course.target_radius).traps()
+        return ForceFlow.following(self.forces, course.grid, course.target, course.target_radius).traps()
 
     def directions(self, start: tuple[float, float]) -> FloatArray:
         """(rows, columns, 2): along the planner's ways, unit vectors. Raises Unreachable."""
@@ -63,14 +63,14 @@ class FieldPicture:
 
     def arrows(self, vectors: FloatArray, camera: Camera) -> FloatArray:
         """(a, 5): for ``Scene.arrows``, where characters of the camera lie on the floor."""
-        floor = self._course.floor
+        grid = self._course.grid
         columns = np.arange(0, camera.columns, SPARSE) + 0.5 - camera.columns / 2
         rows = camera.rows / 2 - np.arange(camera.rows) - 0.5
         x, y = np.meshgrid(camera.x + columns * camera.cell, camera.y + rows * camera.cell_height)
-        column = np.rint((x - floor.corner[0]) / floor.cell).astype(int)
-        row = np.rint((y - floor.corner[1]) / floor.cell).astype(int)
-        known = (column >= 0) & (column < floor.shape[1]) & (row >= 0) & (row < floor.shape[0])
-        known[known] = floor.inside[row[known], column[known]]
+        column = np.rint((x - grid.origin[0]) / grid.cell_size).astype(int)
+        row = np.rint((y - grid.origin[1]) / grid.cell_size).astype(int)
+        known = (column >= 0) & (column < grid.shape[1]) & (row >= 0) & (row < grid.shape[0])
+        known[known] = grid.inside[row[known], column[known]]
         found = vectors[row[known], column[known]]
         strength = np.hypot(found[:, 0], found[:, 1])
         middling = MIDDLING * float(np.median(strength)) if len(strength) else 1.0

@@ -77,7 +77,9 @@ def print_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
 
 def unexplained_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
     """Those that are not known as slips, or are known with another value."""
-    known = {(slip.table, cell.row, cell.column): cell.ours for slip in study.slips for cell in slip.cells}
+    known = {
+        (slip.table, cell.row, cell.column): cell.ours for slip in study.misprints for cell in slip.cells
+    }
     return tuple(
         each
         for each in print_differences(study)
@@ -206,7 +208,7 @@ def is_slip(study: EvaluationData, table: PrintedTable, row: str) -> tuple[str, 
     """The columns of a row in which the print is known to be wrong."""
     return tuple(
         cell.column
-        for slip in study.slips
+        for slip in study.misprints
         if slip.table == table.id
         for cell in slip.cells
         if cell.row == row

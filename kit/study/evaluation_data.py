@@ -66,7 +66,7 @@ class EvaluationData:
     ratings: ClassRatings
     quiz: AnswerSheet
     printed: tuple[PrintedTable, ...]
-    slips: tuple[Misprint, ...]
+    misprints: tuple[Misprint, ...]
 
 
 def read_evaluation_data(file: Path = DATA_FILE) -> EvaluationData:

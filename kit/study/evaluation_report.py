@@ -140,7 +140,7 @@ def _misprint_chapter(study: EvaluationData) -> ReportChapter:
         )
     ]
     rows: list[tuple[TableCell, ...]] = []
-    for slip in study.slips:
+    for slip in study.misprints:
         cells = [each for each in wrong if each.table == slip.table]
         rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
     blocks.append(
@@ -158,8 +158,8 @@ def _misprint_chapter(study: EvaluationData) -> ReportChapter:
         )
     )
     blocks += [
-        ReportText(f"{'ReportTable ' if slip.table != 'text' else ''}{slip.table}: {slip.why}")
-        for slip in study.slips
+        ReportText(f"{'Table ' if slip.table != 'text' else ''}{slip.table}: {slip.why}")
+        for slip in study.misprints
     ]
     blocks += [
         ReportWarning(

@@ -38,7 +38,7 @@ class PairRunResult:
     """One run."""
 
     end: str
-    """How it ended: ``reached`` (every robot's hull within the target's radius), ``collided``, ``stuck``, ``late``, ``failed``."""
+    """How it ended: ``reachable_from`` (every robot's hull within the target's radius), ``collided``, ``stuck``, ``late``, ``failed``."""
     why: str
     time_s: float
     by_geometry: float

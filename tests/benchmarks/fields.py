@@ -62,7 +62,7 @@ def print_map(name: str) -> None:
     target, world = place.case.target, place.world.file
     course = ControllerSetup.open(world, place.partners, target)
     opening = milliseconds(lambda: ControllerSetup.open(world, place.partners, target), 3)
-    flowing = milliseconds(lambda: ForceFlow.of(course.layout, course.floor, target), 3)
+    flowing = milliseconds(lambda: ForceFlow.of(course.layout, course.grid, target), 3)
     riding = milliseconds(lambda: course.plan_trajectory(place.starts), 3)
     print(f"{name}: floor and layout {opening:.0f} ms, traps {flowing:.0f} ms, a ride {riding:.0f} ms")
 
@@ -74,16 +74,16 @@ def main() -> int:
     kept = taken < PROMISED_MS
     print(f"{GRID} x {GRID} places, 500 walls: {taken:.1f} ms (promised: below {PROMISED_MS:.0f})")
     for name in ("house", "roundabout", "forest"):
-        floor = load_occupancy_grid(find_place(name).world.file)[1]
-        field = derived_layout(floor).field
-        across, up = floor.walls.reshape(-1, 2).max(axis=0)
+        occupancy = load_occupancy_grid(find_place(name).world.file)[1]
+        field = derived_layout(occupancy).field
+        across, up = occupancy.walls.reshape(-1, 2).max(axis=0)
         taken = milliseconds(partial(field.forces, grid(across, up)))
-        print(f"{GRID} x {GRID} places, {name}, {len(floor.walls)} walls: {taken:.1f} ms")
+        print(f"{GRID} x {GRID} places, {name}, {len(occupancy.walls)} walls: {taken:.1f} ms")
     place = find_place("pair_turn_180")
     assert place.case is not None
     course = ControllerSetup.open(place.world.file, place.partners, place.case.target)
     picture = FieldPicture(course)
-    walls = Scene(walls=course.floor.walls)
+    walls = Scene(walls=course.grid.walls)
     camera = Camera.fit(walls.bounds, 58, 20)
 
     def slide() -> None:

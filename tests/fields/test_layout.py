@@ -19,7 +19,7 @@ DRAWN = sorted(name for name, card in CARDS.items() if (card.folder / LAYOUT_FIL
 GOOD = "intensities: {walls: -1, target: 15}\n"
 
 
-def floor(name: str) -> OccupancyGrid:
+def grid(name: str) -> OccupancyGrid:
     return load_occupancy_grid(CARDS[name].world_file)[1]
 
 
@@ -31,12 +31,12 @@ def problems(tmp_path: Path, text: str) -> list[str]:
     file = tmp_path / LAYOUT_FILE
     file.write_text(text)
     with pytest.raises(WorldError) as error:
-        read_layout(file, floor("pair_turn"))
+        read_layout(file, grid("pair_turn"))
     return [str(problem).removeprefix(f"{file}:") for problem in error.value.problems]
 
 
 def test_tutorial_3_as_its_author_drew_it() -> None:
-    layout = load_layout(CARDS["pair_turn"].world_file, floor("pair_turn"))
+    layout = load_layout(CARDS["pair_turn"].world_file, grid("pair_turn"))
     assert layout.intensities == Intensities(walls=-1, target=15, robot=-1, tension=100)
     lines = [charge for charge in layout.charges if isinstance(charge, LineCharge)]
     (composite,) = (charge for charge in layout.charges if isinstance(charge, CompositeCharge))
@@ -49,7 +49,7 @@ def test_tutorial_3_as_its_author_drew_it() -> None:
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_a_layout_drawn_by_hand_says_what_the_walls_say_to_the_centimetre(name: str) -> None:
-    ground = floor(name)
+    ground = grid(name)
     layout = load_layout(CARDS[name].world_file, ground)
     said = layout_differences(layout.charges, derive_charges(ground))
     assert all("0.010 m off" in each for each in said)
@@ -58,7 +58,7 @@ def test_a_layout_drawn_by_hand_says_what_the_walls_say_to_the_centimetre(name: 
 
 @pytest.mark.parametrize("name", CARDS)
 def test_every_map_has_a_layout_that_pushes_off_its_walls(name: str) -> None:
-    ground = floor(name)
+    ground = grid(name)
     layout = derived_layout(ground)
     near = ground.inside & (ground.clearance < 0.06) & (ground.clearance > 0.03)
     rows, columns = np.gradient(ground.clearance)
@@ -125,7 +125,7 @@ def test_all_mistakes_come_at_once(tmp_path: Path) -> None:
 
 
 def test_an_intensity_scales_the_field_without_a_new_one() -> None:
-    layout = derived_layout(floor("pair_turn"))
+    layout = derived_layout(grid("pair_turn"))
     stronger = layout.with_intensities(Intensities(walls=-3))
     assert stronger.field is layout.field
     assert stronger.wall_forces((0.1, 0.3)) == pytest.approx(3 * layout.wall_forces((0.1, 0.3)))

@@ -19,10 +19,10 @@ ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
 
 def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
     """A target of 4 at (0, 2) behind a line along y = 1: 4 / (2 - y)^2 = 1 / (1 - y)^2 at y = 0."""
-    floor = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    grid = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
     charges = (LineCharge(-1.9, 1, 1.9, 1),)
     flow = ForceFlow.of(
-        ChargeLayout(charges, Intensities(target=4), None, ChargeField.of(charges)), floor, (0.0, 2.0)
+        ChargeLayout(charges, Intensities(target=4), None, ChargeField.of(charges)), grid, (0.0, 2.0)
     )
     (trap,) = flow.traps(least=0.2)
     assert trap[:2] == pytest.approx((0, 0), abs=0.06)
@@ -32,8 +32,8 @@ def test_a_trap_where_pull_and_push_are_equal_by_hand() -> None:
 
 
 def test_a_target_alone_has_no_trap() -> None:
-    floor = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
-    flow = ForceFlow.of(ChargeLayout((), Intensities(), None, ChargeField.of(())), floor, (0.5, 2.0))
+    grid = OccupancyGrid.of(np.array(ROOM, dtype=float), [(0.0, 0.0)])
+    flow = ForceFlow.of(ChargeLayout((), Intensities(), None, ChargeField.of(())), grid, (0.5, 2.0))
     assert flow.traps() == ()
     assert flow.reaches(-1.5, -1.5)
     assert flow.end(5, 5) is None
@@ -60,7 +60,7 @@ def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
     assert place.case is not None
     course = ControllerSetup.open(place.world.file, ["left"], place.case.target)
     ways = course.cost_to_go((0.63, 0.5))
-    flow = ForceFlow.following(ways.directions(), course.floor, place.case.target)
+    flow = ForceFlow.following(ways.directions(), course.grid, place.case.target)
     reachable = np.argwhere(np.isfinite(ways.cost))
-    ends = [flow.end(*course.floor.middle((int(row), int(column)))) for row, column in reachable[::37]]
+    ends = [flow.end(*course.grid.cell_center((int(row), int(column)))) for row, column in reachable[::37]]
     assert all(end is not None and math.dist(end, place.case.target) < 0.3 for end in ends)

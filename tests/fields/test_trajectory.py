@@ -61,8 +61,8 @@ def test_on_every_map_a_ride_leads_to_the_target_and_never_near_a_wall(name: str
         assert abs(wrap_angle(first[2] - start.theta)) < 0.06
     for robot, track in zip(here.robots, ride.tracks(), strict=True):
         assert (
-            interpolate_grid(here.floor, here.floor.clearance, track).min()
-            > robot.reach - 0.5 * here.floor.cell
+            interpolate_grid(here.grid, here.grid.clearance, track).min()
+            > robot.reach - 0.5 * here.grid.cell_size
         )
     assert math.dist(ride.poses[-1, :, :2].mean(axis=0), place.case.target) < 0.02
 
@@ -85,18 +85,18 @@ def test_two_stay_side_by_side_within_a_passengers_limits(name: str, case: str) 
     assert np.abs(turn).max() <= LIMITS.turn_rate * 1.1
     assert np.abs(np.diff(speed, axis=0)).max() / STEP_S <= LIMITS.acceleration * 1.6
     jerk = np.diff(speed, 2, axis=0) / STEP_S**2
-    assert np.abs(jerk).max() <= 2 * LIMITS.acceleration / LIMITS.easing * 2
+    assert np.abs(jerk).max() <= 2 * LIMITS.acceleration / LIMITS.smoothing_time * 2
 
 
 def test_a_way_round_a_wall_is_about_as_short_as_can_be() -> None:
-    floor = room((2, 0, 2, 3))
-    ways = CostToGo.to(floor, (3.5, 0.5), SMALL, (0.5, 0.5))
+    grid = room((2, 0, 2, 3))
+    ways = CostToGo.to(grid, (3.5, 0.5), SMALL, (0.5, 0.5))
     ways.check((0.5, 0.5))
     way = ways.way((0.5, 0.5))
     length = float(np.hypot(*np.diff(way, axis=0).T).sum())
     shortest = 2 * math.hypot(1.5, 2.5)
     assert shortest < length < 1.12 * shortest
-    assert interpolate_grid(floor, floor.clearance, way).min() >= 0.125
+    assert interpolate_grid(grid, grid.clearance, way).min() >= 0.125
 
 
 @pytest.mark.parametrize(
@@ -116,20 +116,20 @@ def test_a_goal_that_cannot_be_reached_is_said_to_be_so(
 
 
 def test_a_target_inside_a_wall_or_at_one_is_said_to_be_so() -> None:
-    floor = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
+    grid = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
     with pytest.raises(Unreachable, match="lies inside one"):
-        CostToGo.to(floor, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.to(grid, (2.5, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
     with pytest.raises(Unreachable, match=r"The target \(1\.9, 2\.5\) is too near to a wall for the robot"):
-        CostToGo.to(floor, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
+        CostToGo.to(grid, (1.9, 2.5), SMALL, (0.5, 0.5)).check((0.5, 0.5))
 
 
 def test_how_deep_inside_a_wall() -> None:
-    floor = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
-    faces = floor.faces()
-    assert wall_depth(floor, faces, 2.5, 2.6) == pytest.approx(0.4)
-    assert wall_depth(floor, faces, 2.01, 2.6) == pytest.approx(0.01)
+    grid = room((2, 2, 3, 2), (3, 2, 3, 3), (3, 3, 2, 3), (2, 3, 2, 2))
+    faces = grid.wall_faces()
+    assert wall_depth(grid, faces, 2.5, 2.6) == pytest.approx(0.4)
+    assert wall_depth(grid, faces, 2.01, 2.6) == pytest.approx(0.01)
     for x, y in ((0.5, 0.5), (2.0, 2.6), (1.99, 2.6), (3.99, 1.0)):
-        assert wall_depth(floor, faces, x, y) == 0
+        assert wall_depth(grid, faces, x, y) == 0
 
 
 def test_who_stands_elsewhere_lines_up_first() -> None:
@@ -158,9 +158,9 @@ def test_a_follower_comes_back_to_the_ride(x: float, y: float, theta: float) -> 
             pose.y + step * math.sin(half.theta),
             pose.theta + command.turn * STEP_S,
         )
-        if follower.is_over:
+        if follower.is_done:
             break
-    assert follower.is_over
+    assert follower.is_done
     assert math.dist(pose[:2], (3.0, 0.5)) < 0.03
 
 

@@ -86,7 +86,7 @@ def test_the_others_differ_in_the_known_cells_and_nowhere_else() -> None:
 
 
 def test_a_slip_that_nobody_knows_is_unexplained() -> None:
-    assert len(unexplained_differences(replace(study(), slips=study().slips[:1]))) == 2
+    assert len(unexplained_differences(replace(study(), misprints=study().misprints[:1]))) == 2
 
 
 @pytest.mark.parametrize("subject", range(1, 13))

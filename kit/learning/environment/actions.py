@@ -43,7 +43,7 @@ class Actions:
     moves: tuple[Move, ...]
     speed: float
     """m/s"""
-    turn: float
+    turn_rate: float
     """rad/s"""
     one_number: bool = True
     """Whether a pair's moves are chosen as one number (49, 16); else each robot has a number of its own."""
@@ -69,7 +69,7 @@ class Actions:
             raise ValueError(f"an action is outside {self.space(robots)}: {actions}")
         return choices
 
-    def mirrored(self) -> IntArray:
+    def mirror_table(self) -> IntArray:
         """(k,) which of the moves each one is in a mirror. Raises ValueError where that is none of them."""
         other = [MIRRORED_MOVES.get(move, move) for move in self.moves]
         if not set(other) <= set(self.moves):
@@ -77,14 +77,14 @@ class Actions:
         return np.array([self.moves.index(move) for move in other], dtype=np.int64)
 
     @property
-    def codes(self) -> IntArray:
+    def move_codes(self) -> IntArray:
         """(k,) the moves as numbers."""
         return np.array(self.moves, dtype=np.int64)
 
     @property
     def twists(self) -> NDArray[np.float64]:
         """(k, 2) forward [m/s] and turn [rad/s] of each move."""
-        return MOVE_DIRECTIONS[list(self.moves)] * (self.speed, self.turn)
+        return MOVE_DIRECTIONS[list(self.moves)] * (self.speed, self.turn_rate)
 
 
 QUARTER_TURN = 1.57079632679

@@ -113,7 +113,7 @@ class BatchEnv:
 
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
     every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
-    ``reward``: instead of the task's own. ``restart``: whether a world whose episode has ended begins its next one
+    ``reward``: instead of the task's own. ``autoreset``: whether a world whose episode has ended begins its next one
     in the same step; else it waits for ``reset``. Raises Unsupported for a map that it cannot represent.
     """
 
@@ -128,7 +128,7 @@ class BatchEnv:
         *,
         reward: RewardFunction | None = None,
         first: int = 0,
-        restart: bool = True,
+        autoreset: bool = True,
         fixed_cases: bool = False,
     ) -> None:
         self.task = task
@@ -138,10 +138,10 @@ class BatchEnv:
         self.action_space = task.actions.space(task.robots)
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
-        self._single_rays, self._sectors = task.observation.tables(task.robots)
-        self._codes, self._twists = task.actions.codes, task.actions.twists
+        self._single_rays, self._sectors = task.observation.ray_tables(task.robots)
+        self._codes, self._twists = task.actions.move_codes, task.actions.twists
         self._first_world = first
-        self._restart = restart
+        self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
         self._random_keys = self._seed(seed)
         self._state = BatchState.of(n, task.robots)
@@ -201,11 +201,11 @@ class BatchEnv:
 
     def _begin_episodes(self, which: IntArray, cases: IntArray | None = None) -> None:
         """Puts the worlds ``which`` at the start of their present episodes."""
-        state, courses = self._state, self._case_arrays
+        state, case_arrays = self._state, self._case_arrays
         turns = (self._first_world + which + state.episode[which]) % len(self.cases)
         dealt = turns if self._assigned is None else self._assigned[which]
         case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
-        start = courses.draw_starts(
+        start = case_arrays.draw_starts(
             case, self._random_keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS
         )
         state.case[which] = case
@@ -213,7 +213,7 @@ class BatchEnv:
         state.step[which] = 0
         state.pose[which] = start.poses
         state.clearance[which] = 0.0
-        state.to_go[which] = courses.to_go(case, start.poses)
+        state.to_go[which] = case_arrays.to_go(case, start.poses)
         state.rotation[which] = 0.0
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
@@ -234,21 +234,21 @@ class BatchEnv:
         if self.task.timeout_terminal:
             terminated, truncated = terminated | truncated, np.zeros_like(truncated)
         over = np.flatnonzero(transition.ended)
-        observations = self._reset_done(over, final) if len(over) and self._restart else final
+        observations = self._reset_done(over, final) if len(over) and self._autoreset else final
         return BatchStep(observations, rewards, terminated, truncated, final, transition, terms)
 
     def _simulate(self, choices: IntArray) -> tuple[Transition, SingleArray]:
         """Moves every world by ``choices`` (n, robots); what happened, and what agents see then."""
-        task, courses, old = self.task, self._case_arrays, self._state
+        task, case_arrays, old = self.task, self._case_arrays, self._state
         twists = self._twists[choices]
         pose, clearance, hit = (
             old.pose.copy(),
             old.clearance.copy(),
             np.zeros(old.clearance.shape, dtype=np.bool_),
         )
-        maps, dt = courses.map_of[old.case], task.step_time / task.checks
-        for _ in range(task.checks):
-            kernels.step_worlds(courses.fleet, maps, twists, dt, pose, clearance, hit)
+        maps, dt = case_arrays.map_of[old.case], task.step_time / task.collision_checks
+        for _ in range(task.collision_checks):
+            kernels.step_worlds(case_arrays.fleet, maps, twists, dt, pose, clearance, hit)
         turn, move = twists[:, :, 1] * task.step_time, self._codes[choices]
         self._state = new = BatchState(
             episode=old.episode,
@@ -257,7 +257,7 @@ class BatchEnv:
             step=old.step + 1,
             pose=pose,
             clearance=clearance,
-            to_go=courses.to_go(old.case, pose),
+            to_go=case_arrays.to_go(old.case, pose),
             rotation=np.where(old.rotation * turn < 0.0, turn, old.rotation + turn),
             forward_steps=old.forward_steps + FORWARD_SHARE[move],
             move=move,
@@ -306,13 +306,13 @@ class BatchEnv:
     def _observe(self, which: IntArray | slice) -> tuple[SingleArray, SingleArray]:
         """(m, robots, rays) what the lidars of the worlds ``which`` read, as far as agents see, and (m, size) what agents
         see of it."""
-        seen, state, courses = self.task.observation, self._state, self._case_arrays
-        maps, poses = courses.map_of[state.case[which]], state.pose[which]
+        seen, state, case_arrays = self.task.observation, self._state, self._case_arrays
+        maps, poses = case_arrays.map_of[state.case[which]], state.pose[which]
         ranges = np.empty((*poses.shape[:2], SCAN_LENGTH), dtype=np.float32)
         sensed = np.empty((*poses.shape[:2], seen.size), dtype=np.float32)
         drawn = (state.episode[which] << EPISODE_BITS) + state.step[which] * ranges.shape[1]
         kernels.scan_worlds(
-            *(courses.fleet, maps, poses, self._random_keys[which], drawn),
+            *(case_arrays.fleet, maps, poses, self._random_keys[which], drawn),
             *(seen.clip, self._single_rays, self._sectors, ranges, sensed),
         )
         sensed *= np.float32(seen.scale)

@@ -38,9 +38,9 @@ class BatchRobot:
 
     hull: tuple[CornerPoints, ...]
     """Convex polygons, counter-clockwise, in the robot's frame [m]."""
-    seen: tuple[bool, ...]
+    visible_parts: tuple[bool, ...]
     """Which of them the other robot's lidar sees."""
-    directions: tuple[float, ...]
+    ray_angles: tuple[float, ...]
     """Of the lidar's rays, in the robot's frame [rad]."""
     reach: float
     noise: float
@@ -77,7 +77,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     for model in world.models:
         if model not in driving:
             _check_scenery(model)
-    made = [_robot(model, watcher) for model, watcher in zip(driving, reversed(driving), strict=True)]
+    made = [_robot(model, callback) for model, callback in zip(driving, reversed(driving), strict=True)]
     if made[1:] and made[0] != made[1]:
         raise UnsupportedWorld(f"{driving[1].location}: the batch engine wants two robots alike")
     touched = [_walls(world, footprint.mask) for model in driving for footprint in _body(model).footprints]
@@ -96,19 +96,19 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     return BatchMap(name, walls, made[0], starts)
 
 
-def build_fleet(grounds: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
+def build_fleet(batch_maps: Sequence[BatchMap], noise: float | None = None) -> kernels.BatchGeometry:
     """All maps for the compiled loops. ``noise`` [m]: of the lidars, instead of the robots' own.
 
     Raises Unsupported if the robots differ.
     """
-    first = grounds[0]
-    for other in grounds[1:]:
+    first = batch_maps[0]
+    for other in batch_maps[1:]:
         if other.robot != first.robot or len(other.starts) != len(first.starts):
             raise UnsupportedWorld(
                 f"the batch engine wants robots alike: those of {first.name} and {other.name} differ"
             )
     parts = [
-        make_wall_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in grounds
+        make_wall_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in batch_maps
     ]
     offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
     starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
@@ -121,13 +121,13 @@ def build_fleet(grounds: Sequence[BatchMap], noise: float | None = None) -> kern
         ),
         map_blocks=np.cumsum([0, *(len(part.starts) - 1 for part in parts)], dtype=np.int64),
         visibility=make_visibility_cells(
-            each.walls if len(each.walls) <= FEW_WALLS else None for each in grounds
+            each.walls if len(each.walls) <= FEW_WALLS else None for each in batch_maps
         ),
         hulls=hulls,
-        lidar_bits=np.where(first.robot.seen * len(first.starts), hulls.polygon_bits, 0),
+        lidar_bits=np.where(first.robot.visible_parts * len(first.starts), hulls.polygon_bits, 0),
         corner_robot=robot_of,
         hull_radius=float(np.hypot(*np.array([c for part in first.robot.hull for c in part]).T).max()),
-        beams=make_beams(first.robot.directions),
+        beams=make_beams(first.robot.ray_angles),
         max_range=first.robot.reach,
         noise_std=first.robot.noise if noise is None else noise,
     )
@@ -178,8 +178,8 @@ def _laser(model: Model) -> LaserParams:
     return lasers[0]
 
 
-def _robot(model: Model, watcher: Model) -> BatchRobot:
-    """``watcher``: whose lidar may see it."""
+def _robot(model: Model, callback: Model) -> BatchRobot:
+    """``callback``: whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose() or laser.mount.origin != Pose():
         raise UnsupportedWorld(
@@ -203,7 +203,7 @@ def _robot(model: Model, watcher: Model) -> BatchRobot:
     assert isinstance(params, DiffDriveParams)
     if (params.linear, params.angular) != (SpeedLimits(), SpeedLimits()):
         raise UnsupportedWorld(f"{drives[0].location}: the batch engine's motors have no limits")
-    sight = _laser(watcher).mount.bits
+    sight = _laser(callback).mount.bits
     seen = tuple(bool(footprint.category & sight) for footprint in body.footprints)
     return BatchRobot(tuple(_polygons(body)), seen, laser.directions, laser.max_range, laser.noise)
 

@@ -14,7 +14,7 @@ ROBOT_NAMES = ("left", "right")
 def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:
     """What there is to see of one world now. ``trails``: (k, 2) per robot, where each has been."""
     state = batch.state
-    card, ground = batch.map_of_case(int(state.case[world]))
+    card, batch_map = batch.map_of_case(int(state.case[world]))
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]
     names = (card.robot,) if len(poses) == 1 else ROBOT_NAMES
     bodies = tuple(
@@ -23,7 +23,7 @@ def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...
             pose,
             tuple(
                 np.array([pose.transform_point(*corner) for corner in corners])
-                for corners in ground.robot.hull
+                for corners in batch_map.robot.hull
             ),
             robot=True,
         )
@@ -31,4 +31,4 @@ def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...
     )
     x, y = state.target[world].tolist()
     target = Disc(x, y, batch.task.target_radius)
-    return Scene(walls=ground.walls, bodies=bodies, targets=(target,), trails=trails)
+    return Scene(walls=batch_map.walls, bodies=bodies, targets=(target,), trails=trails)

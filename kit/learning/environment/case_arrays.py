@@ -38,22 +38,22 @@ class CaseArrays:
         """Raises Unsupported for a map that the batch engine cannot represent."""
         courses = task.map_cases()
         cards = list(dict.fromkeys(card for card, _ in courses))
-        grounds = [load_batch_map(card) for card in cards]
-        for each in grounds:
+        batch_maps = [load_batch_map(card) for card in cards]
+        for each in batch_maps:
             if len(each.starts) != task.robots:
                 raise UnsupportedWorld(
                     f"{each.name} has {len(each.starts)} robots, task {task.name} {task.robots}"
                 )
-            if len(each.robot.directions) != RAY_COUNT:
-                rays = len(each.robot.directions)
+            if len(each.robot.ray_angles) != RAY_COUNT:
+                rays = len(each.robot.ray_angles)
                 raise UnsupportedWorld(
                     f"{each.name}: observations are made of {RAY_COUNT} rays, its lidar has {rays}"
                 )
         self.task = task
-        self.fleet = build_fleet(grounds, task.lidar_noise)
+        self.fleet = build_fleet(batch_maps, task.lidar_noise)
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)
         """(cases): the number of each case's map in ``fleet``."""
-        self.maps = [(cards[number], grounds[number]) for number in self.map_of]
+        self.maps = [(cards[number], batch_maps[number]) for number in self.map_of]
         """(cases): each case's map."""
         cases = [case for _, case in courses]
         self._starts = np.array([_start_poses(case, task) for case in cases])
@@ -63,7 +63,7 @@ class CaseArrays:
         self._target_shift = np.array([case.target_shift for case in cases]) * shifted
         self._any_heading = np.array([case.is_heading_random and shifted for case in cases])
         tables = [
-            compute_distance_field(grounds[number], case.target)
+            compute_distance_field(batch_maps[number], case.target)
             for number, case in zip(self.map_of, cases, strict=True)
         ]
         self._corners = np.array([table.corner for table in tables])
@@ -82,7 +82,7 @@ class CaseArrays:
         poses = self._starts[cases]
         poses[:, :, :2] += (drawn[:, 0:2] * self._start_shift[cases])[:, None, :]
         turned = math.pi * drawn[:, 2] * self._any_heading[cases]
-        noise, most = self.task.start.noise, self.task.start.turned
+        noise, most = self.task.start.noise, self.task.start.max_rotation
         poses += drawn[:, SHARED_DRAWS:].reshape(-1, robots, 3) * (noise, noise, most)
         poses[:, :, 2] += turned[:, None]
         return EpisodeStarts(poses, self._targets[cases] + drawn[:, 3:5] * self._target_shift[cases])

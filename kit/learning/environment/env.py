@@ -30,7 +30,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
     """One world of a task. Subclasses are the registered environments; their docstrings are their task cards."""
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 5}  # noqa: RUF012 as gymnasium has it
-    default: ClassVar[LearningTask] = TURN
+    default_task: ClassVar[LearningTask] = TURN
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             raise ValueError(
                 f"there is no render mode {quoted(render_mode)}: {suggestion(render_mode, modes)}"
             )
-        self.task = self.default if task is None else task
+        self.task = self.default_task if task is None else task
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": round(1.0 / self.task.step_time)}
         self._reward = reward
@@ -60,12 +60,12 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
         super().reset(seed=seed)
-        batch = self._begun(seed)
-        case = self._number((options or {}).get("case"))
+        batch = self._get_batch(seed)
+        case = self._case_number((options or {}).get("case"))
         observations = batch.reset(seed, cases=None if case is None else np.array([case]))
         for trail in self._trails:
             trail.clear()
-        self._leave_trail()
+        self._extend_trails()
         return observations[0], {"case": batch.cases[int(batch.state.case[0])].name}
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -73,7 +73,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         if self._batch is None:
             raise gymnasium.error.ResetNeeded("call reset() before the first step()")
         step = self._batch.step(np.asarray(action)[None])
-        self._leave_trail()
+        self._extend_trails()
         transition = step.transition
         info: dict[str, Any] = {
             "case": self._batch.cases[int(transition.case[0])].name,
@@ -96,14 +96,14 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             return draw(scene, image_camera(scene.bounds, *IMAGE_SIZE))
         return "\n".join((*plain_rows(scene, *TEXT_SIZE), report(scene), ""))
 
-    def _begun(self, seed: int | None) -> BatchEnv:
+    def _get_batch(self, seed: int | None) -> BatchEnv:
         """The world, which is built when it is first needed: an unseeded one by a seed of chance."""
         if self._batch is None:
             seed = int(self.np_random.integers(2**31)) if seed is None else seed
-            self._batch = BatchEnv(self.task, 1, seed, reward=self._reward, restart=False)
+            self._batch = BatchEnv(self.task, 1, seed, reward=self._reward, autoreset=False)
         return self._batch
 
-    def _number(self, case: object) -> int | None:
+    def _case_number(self, case: object) -> int | None:
         names = [each.name for _, each in self.task.map_cases()] if case is not None else []
         if case is not None and case not in names:
             raise UnknownTask(
@@ -111,7 +111,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             )
         return None if case is None else names.index(str(case))
 
-    def _leave_trail(self) -> None:
+    def _extend_trails(self) -> None:
         assert self._batch is not None
         for trail, (x, y, _) in zip(self._trails, self._batch.state.pose[0].tolist(), strict=True):
             trail.add(x, y)

@@ -14,8 +14,8 @@ class TaskMirror:
 
     def __init__(self, task: LearningTask) -> None:
         try:
-            self._order, self._signs = task.observation.mirrored(task.robots)
-            self._moves = task.actions.mirrored()
+            self._order, self._signs = task.observation.mirror_table(task.robots)
+            self._moves = task.actions.mirror_table()
         except ValueError as error:
             raise UnsupportedWorld(f"task {task.name} has no mirror image: {error}") from None
         self._task = task

@@ -43,7 +43,7 @@ class ObservationSpec:
         sectors = max(self.sectors) + 1
         return len(self.rays) + sectors + 2 * self.side_rays + 2 * self.target + self.arrived
 
-    def tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def ray_tables(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """(robots, single) the rays that each robot's numbers start with; (m, 3) sector, first ray and end of every
         stretch of rays in one sector."""
         single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
@@ -53,7 +53,7 @@ class ObservationSpec:
         stretches = np.stack([sectors[starts], starts, ends], axis=1)
         return np.array(single, dtype=np.int64).reshape(robots, -1), stretches
 
-    def mirrored(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+    def mirror_table(self, robots: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """(robots * size,) each: which number stands here in a mirror, and by what it is multiplied.
 
         Raises ValueError where the two sides are not alike.

@@ -29,7 +29,7 @@ class BatchVecEnv(VecEnv):
 
     def __init__(self, batch: BatchEnv) -> None:
         self.batch = batch
-        self._tally = EpisodeStatsRecorder(batch)
+        self._recorder = EpisodeStatsRecorder(batch)
         self._actions: NDArray[np.integer] = np.zeros(0, dtype=np.int64)
         self._started = time.perf_counter()
         super().__init__(batch.n, batch.observation_space, batch.action_space)
@@ -39,7 +39,7 @@ class BatchVecEnv(VecEnv):
         seed = self._seeds[0]
         self._reset_seeds()
         self._reset_options()
-        self._tally = EpisodeStatsRecorder(self.batch)
+        self._recorder = EpisodeStatsRecorder(self.batch)
         return self.batch.reset(None if seed is None else int(seed))
 
     def step_async(self, actions: NDArray[np.integer]) -> None:
@@ -48,7 +48,7 @@ class BatchVecEnv(VecEnv):
     def step_wait(self) -> VecEnvStepReturn:
         step = self.batch.step(self._actions)
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        for episode in self._tally.add(step):
+        for episode in self._recorder.add(step):
             info = infos[episode.world]
             info |= self._told(episode)
             info["terminal_observation"] = step.final_observations[episode.world]

@@ -41,7 +41,7 @@ class StartVariation:
     """Whether start and target are shifted, and headings any, as the case allows."""
     noise: float = 0.0
     """m: up to this much along x and y, for every robot by itself."""
-    turned: float = 0.0
+    max_rotation: float = 0.0
     """rad: up to this much to either side, likewise."""
     gap: float | None = None
     """m between two robots; None: as on the card."""
@@ -63,7 +63,7 @@ class LearningTask:
     """Names of cases of these maps; all of them where empty."""
     step_time: float = 0.2
     """s"""
-    checks: int = 2
+    collision_checks: int = 2
     """Into how many equal moves a step is divided; after each one, collisions are looked for."""
     max_steps: int = 200
     start: StartVariation = StartVariation()
@@ -130,9 +130,9 @@ TURN = LearningTask(
     observation=NINE_NUMBERS,
     reward=replace(ALGORITHM_3, scale=REWARD_SCALE),
     step_time=0.1,
-    checks=1,
+    collision_checks=1,
     target_radius=0.2,
-    start=StartVariation(noise=0.05, turned=0.2),
+    start=StartVariation(noise=0.05, max_rotation=0.2),
 )
 TURN_SEED = replace(
     TURN,
@@ -161,7 +161,7 @@ WHEELCHAIRS = LearningTask(
     observation=replace(NINETEEN_NUMBERS, scale=6.0),  # a centimetre decides whether two are side by side
     reward=SIDE_BY_SIDE,
     max_steps=300,
-    start=StartVariation(gap=0.4, noise=0.05, turned=0.1),
+    start=StartVariation(gap=0.4, noise=0.05, max_rotation=0.1),
     target_radius=0.4,
     path_end=0.3,
 )

@@ -39,7 +39,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._tally = EpisodeStatsRecorder(self.batch)
+        self._recorder = EpisodeStatsRecorder(self.batch)
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
@@ -47,7 +47,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
         """Begins new episodes. One seed is enough: each world has its own randomness by its number."""
         if isinstance(seed, list):
             raise ValueError("give one seed: each world has its own randomness by its number")
-        self._tally = EpisodeStatsRecorder(self.batch)
+        self._recorder = EpisodeStatsRecorder(self.batch)
         return self.batch.reset(seed), {}
 
     def step(
@@ -55,7 +55,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
     ) -> tuple[ObservationArray, NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         step = self.batch.step(np.asarray(actions))
         info: dict[str, Any] = {}
-        for episode in self._tally.add(step):
+        for episode in self._recorder.add(step):
             final = {
                 "episode": {"r": episode.reward, "l": episode.steps},
                 "case": episode.case,

@@ -73,15 +73,15 @@ class Demonstration:
         assert self._policy is not None
         batch = self._batch
         if batch is None:
-            batch = self._batch = BatchEnv(self._policy.trained_on.resolve(), 1, self._seed, restart=False)
+            batch = self._batch = BatchEnv(self._policy.trained_on.resolve(), 1, self._seed, autoreset=False)
         names = [case.name for case in batch.cases]
         cases = np.array([names.index(self.case)]) if self.case in names else None
         self._observations = batch.reset(cases=cases)
-        self._player = self._policy.player(1, self._rng)
+        self._player = self._policy.make_player(1, self._rng)
         self._fresh = np.ones(1, dtype=np.bool_)
         self._trails = [Trail() for _ in range(batch.task.robots)]
         self._outcome = None
-        self._leave_trail(batch)
+        self._extend_trails(batch)
         return True
 
     def step(self) -> None:
@@ -90,7 +90,7 @@ class Demonstration:
         assert self._player is not None
         step = self._batch.step(self._player.act(self._observations, self._fresh))
         self._observations, self._fresh = step.observations, np.zeros(1, dtype=np.bool_)
-        self._leave_trail(self._batch)
+        self._extend_trails(self._batch)
         if step.ended[0]:
             self._outcome = EpisodeOutcome.of(step.transition, 0)
 
@@ -122,6 +122,6 @@ class Demonstration:
                 return True
         return False
 
-    def _leave_trail(self, batch: BatchEnv) -> None:
+    def _extend_trails(self, batch: BatchEnv) -> None:
         for trail, (x, y, _) in zip(self._trails, batch.state.pose[0].tolist(), strict=True):
             trail.add(x, y)

@@ -158,13 +158,13 @@ class Evaluator:
         Every world drives the same number of episodes, so short ones do not count more often than long ones.
         Raises PolicyError if the policy does not fit the task.
         """
-        policy.fits(self.task)
+        policy.check_fits(self.task)
         rounds = -(-episodes * len(self._cases) // PARALLEL_WORLDS)
         n = len(self._cases) * -(-episodes // rounds)
         batch = self._batch(n)
-        player = policy.player(n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
+        player = policy.make_player(n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
         left, sums = np.full(n, rounds), {case.name: _CaseSums() for case in self._cases}
-        observations, fresh, tally = (
+        observations, fresh, recorder = (
             batch.reset(seed=seed),
             np.ones(n, dtype=np.bool_),
             EpisodeStatsRecorder(batch),
@@ -172,7 +172,7 @@ class Evaluator:
         with threadpool_limits(1, user_api="blas"):
             while left.any():
                 step = batch.step(player.act(observations, fresh))
-                for episode in tally.add(step):
+                for episode in recorder.add(step):
                     if left[episode.world]:
                         left[episode.world] -= 1
                         sums[episode.case].add(episode)

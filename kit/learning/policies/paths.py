@@ -35,11 +35,17 @@ def record_paths(
 
     PolicyError if the policy does not fit.
     """
-    policy.fits(task)
+    policy.check_fits(task)
     batch = BatchEnv(task, episodes * len(task.map_cases()), seed)
-    player = policy.player(batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves")))
+    player = policy.make_player(
+        batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves"))
+    )
     observations, fresh = batch.reset(seed=seed), np.ones(batch.n, dtype=np.bool_)
-    starts, targets, tally = batch.state.pose.copy(), batch.state.target.copy(), EpisodeStatsRecorder(batch)
+    starts, targets, recorder = (
+        batch.state.pose.copy(),
+        batch.state.target.copy(),
+        EpisodeStatsRecorder(batch),
+    )
     trails = [[start] for start in starts]
     ways: dict[int, EpisodePath] = {}
     while len(ways) < batch.n:
@@ -47,7 +53,7 @@ def record_paths(
         for world in range(batch.n):
             if world not in ways:
                 trails[world].append(step.transition.pose[world].copy())
-        for episode in tally.add(step):
+        for episode in recorder.add(step):
             if episode.world not in ways:
                 world, (x, y) = episode.world, targets[episode.world].tolist()
                 ways[world] = EpisodePath(episode.case, episode.outcome, np.array(trails[world]), (x, y))

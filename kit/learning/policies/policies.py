@@ -43,18 +43,23 @@ class LinearLayer:
 class LstmLayer:
     """A layer with memory (Hochreiter and Schmidhuber 1997), its gates in torch's order: in, forget, cell, out."""
 
-    seen: LinearLayer
+    input_layer: LinearLayer
     """(inputs, 4 * h)"""
-    kept: LinearLayer
+    recurrent_layer: LinearLayer
     """(h, 4 * h)"""
 
     @property
     def size(self) -> int:
-        return len(self.kept.weights)
+        return len(self.recurrent_layer.weights)
 
     def step(self, x: SingleArray, memory: SingleArray) -> tuple[SingleArray, SingleArray]:
         """(n, h) outputs and the next memory, from inputs (n, inputs) and memory (n, 2, h): hidden, cell."""
-        gates = x @ self.seen.weights + self.seen.bias + memory[:, 0] @ self.kept.weights + self.kept.bias
+        gates = (
+            x @ self.input_layer.weights
+            + self.input_layer.bias
+            + memory[:, 0] @ self.recurrent_layer.weights
+            + self.recurrent_layer.bias
+        )
         enter, forget, cell, out = np.split(gates, 4, axis=1)
         kept = _sigmoid(forget) * memory[:, 1] + _sigmoid(enter) * np.tanh(cell)
         hidden = _sigmoid(out) * np.tanh(kept)
@@ -78,7 +83,7 @@ class PolicyNetwork:
 
     @property
     def inputs(self) -> int:
-        return len((self.lstm.seen if self.lstm else self.layers[0]).weights)
+        return len((self.lstm.input_layer if self.lstm else self.layers[0]).weights)
 
     @property
     def outputs(self) -> int:
@@ -145,26 +150,26 @@ class ActionSampling:
 class Policy:
     """Which actions for which observations."""
 
-    brain: PolicyNetwork | ActionValueTable
+    model: PolicyNetwork | ActionValueTable
     choices: tuple[int, ...]
     """How many actions there are to choose from: one number, or one for each robot."""
-    chance: ActionSampling
+    sampling: ActionSampling
     trained_on: TaskSpec
     steps: int
     """How long it has learned."""
 
-    def fits(self, task: Any) -> None:
+    def check_fits(self, task: Any) -> None:
         """PolicyError if it cannot play ``task`` (a ``Task``)."""
         sees = task.observation.size * task.robots
         choices = action_counts(task.actions.space(task.robots))
-        if (sees, choices) != (self.brain.inputs, self.choices):
+        if (sees, choices) != (self.model.inputs, self.choices):
             raise PolicyError(
-                f"this policy was trained on {self.trained_on.title}: it sees {self.brain.inputs} numbers and chooses "
+                f"this policy was trained on {self.trained_on.title}: it sees {self.model.inputs} numbers and chooses "
                 f"from {_product_text(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
                 f"{_product_text(choices)}. Play it on the task it was trained on, or train another."
             )
 
-    def player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
+    def make_player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
         """One who plays ``n`` worlds: greedily, or, given a source of chance, sampled."""
         return PolicyPlayer(self, n, rng)
 
@@ -188,14 +193,14 @@ class PolicyPlayer:
     def __init__(self, policy: Policy, n: int, rng: np.random.Generator | None = None) -> None:
         self.policy = policy
         self._rng = rng
-        self.memory: SingleArray = np.zeros((n, 2, policy.brain.memory), dtype=np.float32)
+        self.memory: SingleArray = np.zeros((n, 2, policy.model.memory), dtype=np.float32)
         """(n, 2, h)"""
 
     def act(self, observations: SingleArray, fresh: NDArray[np.bool_] | None = None) -> IntArray:
         """(n,) actions, or (n, robots) of them; ``fresh`` (n,): where an episode has just begun."""
         if fresh is not None:
             self.memory[fresh] = 0.0
-        scores, self.memory = self.policy.brain.scores(
+        scores, self.memory = self.policy.model.scores(
             np.asarray(observations, dtype=np.float32), self.memory
         )
         choices = self.policy.choices
@@ -207,7 +212,7 @@ class PolicyPlayer:
         best: IntArray = scores.argmax(axis=1)
         if self._rng is None:
             return best
-        chance = self.policy.chance
+        chance = self.policy.sampling
         if chance.kind == "epsilon":
             anything = self._rng.integers(scores.shape[1], size=len(scores))
             return np.where(self._rng.random(len(scores)) < chance.amount, anything, best)
@@ -229,26 +234,26 @@ def policy_bytes(policy: Policy) -> bytes:
     about = {
         "format": FORMAT_VERSION,
         "choices": policy.choices,
-        "chance": [policy.chance.kind, policy.chance.amount],
+        "chance": [policy.sampling.kind, policy.sampling.amount],
         "task": policy.trained_on.as_dict(),
         "steps": policy.steps,
-        "activation": getattr(policy.brain, "activation", None),
-        "inputs": policy.brain.inputs,
+        "activation": getattr(policy.model, "activation", None),
+        "inputs": policy.model.inputs,
     }
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
-        for name, array in {"about": text, **_arrays_of(policy.brain)}.items():
+        for name, array in {"about": text, **_arrays_of(policy.model)}.items():
             with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
                 np.lib.format.write_array(member, array, allow_pickle=False)
     return buffer.getvalue()
 
 
-def _arrays_of(brain: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any]]:
-    if isinstance(brain, ActionValueTable):
-        return {"used": brain.used, "edges": brain.edges, "values": brain.values}
-    layers = [*((brain.lstm.seen, brain.lstm.kept) if brain.lstm else ()), *brain.layers]
-    names = [*(("seen", "kept") if brain.lstm else ()), *(str(number) for number in range(len(brain.layers)))]
+def _arrays_of(model: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any]]:
+    if isinstance(model, ActionValueTable):
+        return {"used": model.used, "edges": model.edges, "values": model.values}
+    layers = [*((model.lstm.input_layer, model.lstm.recurrent_layer) if model.lstm else ()), *model.layers]
+    names = [*(("seen", "kept") if model.lstm else ()), *(str(number) for number in range(len(model.layers)))]
     named: dict[str, NDArray[Any]] = {}
     for name, layer in zip(names, layers, strict=True):
         named[f"weights_{name}"], named[f"bias_{name}"] = layer.weights, layer.bias

@@ -30,7 +30,7 @@ def format_policy_node(policy: Policy) -> str:
             "this policy is told where the target is or who has arrived, which no lidar sees: a node cannot know it. "
             "Train one without --tell-target and --tell-arrived."
         )
-    if not isinstance(policy.brain, PolicyNetwork):
+    if not isinstance(policy.model, PolicyNetwork):
         raise PolicyError(
             "a table cannot be written as a node yet: it has a row for every state. Train a network."
         )
@@ -42,7 +42,7 @@ def format_policy_node(policy: Policy) -> str:
 
 def _format_constants(policy: Policy, task: LearningTask) -> str:
     """What the template's constants become."""
-    seen, (single, _) = task.observation, task.observation.tables(task.robots)
+    seen, (single, _) = task.observation, task.observation.ray_tables(task.robots)
     title = f"{policy.trained_on.title}, {policy.steps:,} steps"
     values = {
         "TRAINED_ON": title,

@@ -77,7 +77,7 @@ class PolicyNode(Node):
 
     def __init__(self) -> None:
         super().__init__("policy")
-        self.brain = Brain()
+        self.model = Brain()
         self.scans: dict[int, np.ndarray] = {}
         self.next_step = -math.inf
         self.drives = [self.create_publisher(Twist, f"{prefix}cmd_vel", 10) for prefix in TOPICS]
@@ -100,7 +100,7 @@ class PolicyNode(Node):
         if len(self.scans) < len(TOPICS):
             return
         seen = np.concatenate([self.scans[each] for each in range(len(TOPICS))]).astype(np.float32)
-        for drive, move in zip(self.drives, self.brain.moves(seen), strict=True):
+        for drive, move in zip(self.drives, self.model.moves(seen), strict=True):
             command = Twist()
             command.linear.x, command.angular.z = TWISTS[move]
             drive.publish(command)

@@ -31,11 +31,11 @@ class Algorithm:
     title: str
     family: AlgorithmFamily
     module: str
-    cls: str
+    class_name: str
     policy: str = "MlpPolicy"
-    several: bool = True
+    supports_multi_discrete: bool = True
     """Whether it can choose several numbers at once, one for each robot."""
-    maker: Literal["stable-baselines3", "sb3-contrib", "kit"] = "stable-baselines3"
+    library: Literal["stable-baselines3", "sb3-contrib", "kit"] = "stable-baselines3"
 
     @property
     def neural(self) -> bool:
@@ -44,7 +44,7 @@ class Algorithm:
 
     def load(self) -> Any:
         """The class. ImportError without the extra ``learn``."""
-        return getattr(import_module(self.module), self.cls)
+        return getattr(import_module(self.module), self.class_name)
 
 
 _SB3, _CONTRIB = "stable_baselines3", "sb3_contrib"
@@ -55,46 +55,58 @@ ALGORITHMS: Mapping[str, Algorithm] = MappingProxyType(
         for row in (
             Algorithm("ppo", "Proximal policy optimisation", "rollouts", _SB3, "PPO"),
             Algorithm("a2c", "Advantage actor-critic", "rollouts", _SB3, "A2C"),
-            Algorithm("dqn", "Deep Q-network, any action now and then", "replay", _SB3, "DQN", several=False),
+            Algorithm(
+                "dqn",
+                "Deep Q-network, any action now and then",
+                "replay",
+                _SB3,
+                "DQN",
+                supports_multi_discrete=False,
+            ),
             Algorithm(
                 *("boltzmann-dqn", "Deep Q-network, better actions more often (the seed's)", "replay"),
                 *("kit.learning.training.exploration", "BoltzmannDQN"),
-                several=False,
-                maker="kit",
+                supports_multi_discrete=False,
+                library="kit",
             ),
             Algorithm(
                 *("qrdqn", "Deep Q-network that learns how returns are spread", "replay", _CONTRIB, "QRDQN"),
-                several=False,
-                maker="sb3-contrib",
+                supports_multi_discrete=False,
+                library="sb3-contrib",
             ),
             Algorithm(
-                "trpo", "Trust region policy optimisation", "rollouts", _CONTRIB, "TRPO", maker="sb3-contrib"
+                "trpo",
+                "Trust region policy optimisation",
+                "rollouts",
+                _CONTRIB,
+                "TRPO",
+                library="sb3-contrib",
             ),
             Algorithm(
                 *("recurrent-ppo", "PPO with a memory", "rollouts", _CONTRIB, "RecurrentPPO"),
                 policy="MlpLstmPolicy",
-                maker="sb3-contrib",
+                library="sb3-contrib",
             ),
             Algorithm(
                 *("maskable-ppo", "PPO that can be forbidden actions", "rollouts", _CONTRIB, "MaskablePPO"),
-                maker="sb3-contrib",
+                library="sb3-contrib",
             ),
             Algorithm(
                 *("ars", "Augmented random search, no gradients", "search", _CONTRIB, "ARS"),
-                several=False,
-                maker="sb3-contrib",
+                supports_multi_discrete=False,
+                library="sb3-contrib",
             ),
             Algorithm(
                 *("q-learning", "A table, learned from the best next action", "table"),
                 *("kit.learning.training.tabular", "QLearning"),
-                several=False,
-                maker="kit",
+                supports_multi_discrete=False,
+                library="kit",
             ),
             Algorithm(
                 *("sarsa", "A table, learned from the next action really taken", "table"),
                 *("kit.learning.training.tabular", "Sarsa"),
-                several=False,
-                maker="kit",
+                supports_multi_discrete=False,
+                library="kit",
             ),
         )
     }

@@ -109,8 +109,8 @@ def _group_result(run: TrainingRun, config: RunConfig, episodes: int) -> GroupRe
     if file.exists():
         stored: dict[str, Any] = json.loads(file.read_bytes())
     else:
-        examiner = Evaluator(config.choice.resolve())
-        result = examiner.test(run.policy(), episodes, derive_seed(config.seed, "crosstable"))
+        evaluator = Evaluator(config.choice.resolve())
+        result = evaluator.test(run.policy(), episodes, derive_seed(config.seed, "crosstable"))
         stored = {case.case: case.share for case in result.cases}
         write_atomically(file, json.dumps(stored).encode())
     summary = run.summary()

@@ -45,16 +45,16 @@ LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking"
 class _EpisodeReporter(VecEnvWrapper):
     """Tells the watcher of every episode that ends."""
 
-    watcher: TrainingCallback | None = None
+    callback: TrainingCallback | None = None
 
     def reset(self) -> Any:
         return self.venv.reset()
 
     def step_wait(self) -> Any:
         observations, rewards, dones, infos = self.venv.step_wait()
-        if self.watcher is not None:
+        if self.callback is not None:
             for number in np.flatnonzero(dones):
-                self.watcher.on_episode_end(_episode_of(int(number), infos[number]))
+                self.callback.on_episode_end(_episode_of(int(number), infos[number]))
         return observations, rewards, dones, infos
 
 
@@ -74,15 +74,15 @@ def _episode_of(world: int, info: Mapping[str, Any]) -> EpisodeStats:
 class _RolloutCallback(BaseCallback):
     """Calls the watcher where the policy stands still: before each stretch of driving."""
 
-    def __init__(self, watcher: TrainingCallback, entropy: LinearSchedule | None) -> None:
+    def __init__(self, callback: TrainingCallback, entropy: LinearSchedule | None) -> None:
         super().__init__()
-        self._watcher = watcher
+        self._callback = callback
         self._entropy = entropy
 
     def _on_rollout_start(self) -> None:
         if self._entropy is not None:
-            self.model.ent_coef = self._entropy.at(self.model._current_progress_remaining)
-        self._watcher.between_updates()
+            self.model.ent_coef = self._entropy.value_at(self.model._current_progress_remaining)
+        self._callback.between_updates()
 
     def _on_step(self) -> bool:
         return True
@@ -110,11 +110,11 @@ class DeepLearner:
         network: dict[str, Any] = {"net_arch": list(preset.layers)}
         if preset.activation is not None:
             network["activation_fn"] = ACTIVATIONS[preset.activation]
-        if preset.memory is not None:
-            network["lstm_hidden_size"] = preset.memory
+        if preset.lstm_size is not None:
+            network["lstm_hidden_size"] = preset.lstm_size
         if algorithm.name in OPTIMIZER_OPTIONS:
             network["optimizer_kwargs"] = dict(OPTIMIZER_OPTIONS[algorithm.name])
-        keywords = preset.keywords()
+        keywords = preset.learner_arguments()
         if preset.learning_rate is not None:
             keywords["learning_rate"] = self._rate
         self._model = algorithm.load()(
@@ -128,19 +128,19 @@ class DeepLearner:
 
     def _rate(self, left: float) -> float:
         assert self._preset.learning_rate is not None
-        return self._slower * self._preset.learning_rate.at(left)
+        return self._slower * self._preset.learning_rate.value_at(left)
 
     @property
     def steps(self) -> int:
         return int(self._model.num_timesteps)
 
-    def learn(self, steps: int, watcher: TrainingCallback) -> None:
+    def learn(self, steps: int, callback: TrainingCallback) -> None:
         settings = self._preset.settings
         entropy = settings.ent_coef if isinstance(settings, OnPolicyParams) else None
-        self._env.watcher = watcher
+        self._env.callback = callback
         self._model.learn(
             max(0, steps - self.steps),
-            _RolloutCallback(watcher, entropy),
+            _RolloutCallback(callback, entropy),
             reset_num_timesteps=False,
             tb_log_name="training",
             **LEARN_OPTIONS.get(self._algorithm.name, {}),

@@ -33,7 +33,7 @@ class Learner(Protocol):
     def steps(self) -> int:
         """Steps of all worlds so far."""
 
-    def learn(self, steps: int, watcher: TrainingCallback) -> None:
+    def learn(self, steps: int, callback: TrainingCallback) -> None:
         """Learns until there have been ``steps`` in all, or a little longer. Lets Halt through."""
 
     def assign_cases(self, shares: NDArray[np.float64]) -> None:

@@ -21,12 +21,12 @@ PRESETS = ("kit", "seed")
 class LinearSchedule:
     """A value that falls in a straight line from the first to the last step of training."""
 
-    first: float
-    last: float
+    initial: float
+    final: float
 
-    def at(self, left: float) -> float:
+    def value_at(self, left: float) -> float:
         """``left``: the share of training that is still to come, 1 to 0."""
-        return self.last + (self.first - self.last) * left
+        return self.final + (self.initial - self.final) * left
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Preset:
     fixed_cases: bool = False
     """Whether worlds stay with their cases, if there are enough: then a case that is over soon gets as many steps as
     the others."""
-    hard: float = 0.0
+    hard_case_share: float = 0.0
     """This part of the worlds that stay goes to the cases in proportion to how often they went wrong in the last test
     (as prioritised level replay does: Jiang and others 2021)."""
     mirrored: bool = False
@@ -109,19 +109,19 @@ class Preset:
     """Sizes of the hidden layers."""
     activation: Activation | None = None
     """None: as the library has it, tanh for rollouts and relu for replay."""
-    memory: int | None = None
+    lstm_size: int | None = None
     """Size of a recurrent layer in front of the others, for algorithms that have one."""
 
-    def keywords(self) -> dict[str, Any]:
+    def learner_arguments(self) -> dict[str, Any]:
         """What the learner's class is called with, schedules as plain first values where it takes no others."""
         values = {each.name: getattr(self.settings, each.name) for each in fields(self.settings)}
         given = {
-            name: value.first if isinstance(value, LinearSchedule) else value
+            name: value.initial if isinstance(value, LinearSchedule) else value
             for name, value in values.items()
             if value is not None
         }
         if self.learning_rate is not None:
-            given["learning_rate"] = self.learning_rate.at
+            given["learning_rate"] = self.learning_rate.value_at
         return given
 
 
@@ -130,7 +130,7 @@ class Preset:
 SEED_PPO = Preset(
     OnPolicyParams(),  # tutorial 2 uses every default
     TrainUntilGoal(
-        every=5_000, episodes=20, goal=0.8, greedy=False
+        test_interval=5_000, episodes=20, goal=0.8, greedy=False
     ),  # its test draws actions, as the tutorial's
     steps=200_000,  # not given; its longest run took 45,000
 )
@@ -146,14 +146,14 @@ SEED_DQN = Preset(
         gamma=0.99,
         temperature=1.0,
     ),
-    TrainUntilGoal(every=10_000, episodes=100, goal=0.8),
+    TrainUntilGoal(test_interval=10_000, episodes=100, goal=0.8),
     steps=1_000_000,  # where chapter 4 gives up
     learning_rate=LinearSchedule(0.01, 0.01),  # the text's; its code has 0.001
     layers=(24, 24),
     activation="relu",
 )
 SEED_DEFAULT = replace(
-    SEED_PPO, stopping_rule=TrainUntilGoal(every=10_000, episodes=100, goal=0.8), steps=1_000_000
+    SEED_PPO, stopping_rule=TrainUntilGoal(test_interval=10_000, episodes=100, goal=0.8), steps=1_000_000
 )
 
 # The kit's.
@@ -167,7 +167,7 @@ KIT_PPO_TURN = Preset(
         # learns to turn on the spot until the time is up, before it has ever arrived.
         ent_coef=LinearSchedule(0.2, 0.0),
     ),
-    TrainUntilSure(every=16_384, goal=0.95, screening=100, confirming=500),
+    TrainUntilSure(test_interval=16_384, goal=0.95, screening_episodes=100, confirming_episodes=500),
     steps=500_000,
     worlds=64,
     learning_rate=LinearSchedule(1e-3, 1e-4),
@@ -182,11 +182,11 @@ KIT_PPO_HALLWAY = Preset(
         ),  # at first it keeps trying both sides of a door, in the end it aims
     ),
     TrainUntilSure(
-        every=307_200, goal=0.965, screening=40, confirming=500
+        test_interval=307_200, goal=0.965, screening_episodes=40, confirming_episodes=500
     ),  # surely 0.965 is 0.985 and more measured
     steps=3_600_000,  # with three a door is not always learned well; half of the runs are sure before two
     worlds=480,  # thirty-two of each case; with twice as many and rollouts half as long, one seed in seven never learned
-    hard=0.5,  # what is left to learn in the end is one door or curve, a different one for every seed
+    hard_case_share=0.5,  # what is left to learn in the end is one door or curve, a different one for every seed
     fixed_cases=True,  # behind a door episodes are short: dealt by episodes, doors got half the steps of long curves
     learning_rate=LinearSchedule(1e-3, 3e-5),  # the end of training is for precision
     activation="relu",  # no worse than tanh in the few seeds compared, and tanh takes a fifth of the time
@@ -198,7 +198,14 @@ KIT_PPO_WHEELCHAIRS = Preset(
         n_epochs=12,  # with 4 they are side by side in 0.89 of the steps on the straight, however long it takes
         ent_coef=LinearSchedule(0.01, 0.001),  # sampled moves leave the 0.05 m that side by side allows
     ),
-    TrainUntilSure(every=460_800, goal=0.95, screening=40, confirming=300, to_the_end=True, enough=0.955),
+    TrainUntilSure(
+        test_interval=460_800,
+        goal=0.95,
+        screening_episodes=40,
+        confirming_episodes=300,
+        use_all_steps=True,
+        sufficient_share=0.955,
+    ),
     steps=12_000_000,  # being side by side goes on getting better long after every target is reached
     worlds=225,  # twenty-five of each case
     fixed_cases=True,
@@ -206,22 +213,22 @@ KIT_PPO_WHEELCHAIRS = Preset(
 )
 KIT_A2C = Preset(
     OnPolicyParams(n_steps=32, ent_coef=LinearSchedule(0.02, 0.0)),
-    TrainUntilSure(every=50_000),
+    TrainUntilSure(test_interval=50_000),
     steps=2_000_000,
     worlds=64,
     learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_TRPO = Preset(
     OnPolicyParams(n_steps=128, batch_size=1024, target_kl=0.02),
-    TrainUntilSure(every=50_000),
+    TrainUntilSure(test_interval=50_000),
     steps=2_000_000,
     worlds=64,
     learning_rate=LinearSchedule(1e-3, 1e-4),
 )
 KIT_RECURRENT = Preset(
     OnPolicyParams(n_steps=128, batch_size=1024, n_epochs=4, ent_coef=LinearSchedule(0.03, 0.0)),
-    TrainUntilSure(every=50_000),
-    memory=64,  # four times as fast as the library's 256
+    TrainUntilSure(test_interval=50_000),
+    lstm_size=64,  # four times as fast as the library's 256
     steps=1_000_000,  # a step costs ten times that of PPO
     worlds=64,
     learning_rate=LinearSchedule(1e-3, 1e-4),
@@ -238,7 +245,7 @@ _DQN_PARAMS = ReplayParams(
 )
 KIT_DQN = Preset(
     _DQN_PARAMS,
-    TrainUntilSure(every=20_000),  # it forgets, so the best policy is kept
+    TrainUntilSure(test_interval=20_000),  # it forgets, so the best policy is kept
     steps=500_000,
     worlds=16,
     learning_rate=LinearSchedule(1e-3, 1e-4),
@@ -254,12 +261,12 @@ KIT_BOLTZMANN = replace(
 )
 KIT_ARS = Preset(
     ARSSettings(n_delta=16, n_top=8, delta_std=0.05, n_eval_episodes=16),
-    TrainUntilSure(every=100_000),
+    TrainUntilSure(test_interval=100_000),
     steps=3_000_000,
     worlds=16,
     learning_rate=LinearSchedule(0.02, 0.02),
 )
-KIT_TABLE = Preset(TabularParams(), TrainUntilSure(every=50_000), steps=1_000_000, worlds=16)
+KIT_TABLE = Preset(TabularParams(), TrainUntilSure(test_interval=50_000), steps=1_000_000, worlds=16)
 
 _LIBRARY_DEFAULTS: Mapping[str, AlgorithmSettings] = MappingProxyType(
     {

@@ -74,10 +74,10 @@ class StoppingDecision:
     counts: CaseCounts
     """Of the test that counted most."""
     memory: StoppingMemory
-    keep: bool
+    is_best: bool
     """This policy is the best so far."""
     stop: bool = False
-    go_back: bool = False
+    restore_best: bool = False
     """Training goes on from the policy kept: this one has forgotten."""
     reason: str = ""
 
@@ -86,7 +86,7 @@ class StoppingRule(Protocol):
     """How a run is watched over."""
 
     @property
-    def every(self) -> int:
+    def test_interval(self) -> int:
         """Steps of training between two looks."""
 
     @property
@@ -103,18 +103,18 @@ def _worst_lower_bound(counts: CaseCounts) -> float:
     return min((lower_bound(count.reached, count.episodes) for count in counts.values()), default=0.0)
 
 
-def _policy_rank(counts: CaseCounts, enough: float = 1.0) -> tuple[float, ...]:
-    """How good a policy is. The worst case counts first, up to ``enough``; then how much two robots are side by side;
+def _policy_rank(counts: CaseCounts, sufficient_share: float = 1.0) -> tuple[float, ...]:
+    """How good a policy is. The worst case counts first, up to ``sufficient_share``; then how much two robots are side by side;
     then all episodes."""
     beside = sum(count.adjacency for count in counts.values()) / max(1, len(counts))
-    return min(_worst_lower_bound(counts), enough), beside, accuracy(counts)
+    return min(_worst_lower_bound(counts), sufficient_share), beside, accuracy(counts)
 
 
 def _with_best(
-    counts: CaseCounts, steps: int, memory: StoppingMemory, enough: float = 1.0
+    counts: CaseCounts, steps: int, memory: StoppingMemory, sufficient_share: float = 1.0
 ) -> tuple[StoppingMemory, bool]:
     """The memory with this test in it, and whether this policy is the best so far. Ties go to the newer one."""
-    mark = _policy_rank(counts, enough)
+    mark = _policy_rank(counts, sufficient_share)
     if memory.best is not None and mark < memory.best:
         return memory, False
     low = _pooled_interval(counts).low
@@ -134,14 +134,14 @@ class TrainThenTest:
     Tested every so often nevertheless, as in its figures 3.5 to 3.8. The newest policy counts, not the best.
     """
 
-    every: int
+    test_interval: int
     episodes: int = 100
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
         counts = test(self.episodes)
         return StoppingDecision(
-            counts, replace(memory, best=_policy_rank(counts), best_steps=steps), keep=True
+            counts, replace(memory, best=_policy_rank(counts), best_steps=steps), is_best=True
         )
 
 
@@ -149,7 +149,7 @@ class TrainThenTest:
 class TrainUntilGoal:
     """The dissertation's second strategy: train a batch, test, stop at the first accuracy that is high enough."""
 
-    every: int
+    test_interval: int
     episodes: int = 100
     goal: float = 0.8
     greedy: bool = True
@@ -172,48 +172,48 @@ class TrainUntilSure:
     among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that trying often does not help.
     """
 
-    every: int
+    test_interval: int
     goal: float = 0.95
-    screening: int = 40
+    screening_episodes: int = 40
     """Episodes of each case in a short test."""
-    confirming: int = 500
+    confirming_episodes: int = 500
     """And in a long one."""
     confidence: float = 0.95
-    go_back_after: float = 0.3
+    restore_margin: float = 0.3
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
     patience: int = 3
     """So often it goes back at most: else a learner could be held for ever where it cannot get better."""
-    to_the_end: bool = False
+    use_all_steps: bool = False
     """Train on all the same: where two robots drive, success comes first and side by side last."""
-    enough: float = 1.0
+    sufficient_share: float = 1.0
     """Of two policies whose worst case is likely not below this, the one that keeps robots side by side is better."""
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        counts = test(self.screening * test.cases)
+        counts = test(self.screening_episodes * test.cases)
         if worst_share(counts) >= self.goal:
-            counts = test(self.confirming * test.cases)
+            counts = test(self.confirming_episodes * test.cases)
             memory = replace(memory, confirmations=memory.confirmations + 1)
-            low = self._surely(counts, memory.confirmations)
-            if low >= self.goal and not self.to_the_end:
+            low = self._confident_share(counts, memory.confirmations)
+            if low >= self.goal and not self.use_all_steps:
                 memory, _ = _with_best(counts, steps, replace(memory, best=None))
                 return StoppingDecision(
                     counts, memory, True, stop=True, reason=f"every case surely reaches {low:.3f} or more"
                 )
-        remembered, keep = _with_best(counts, steps, memory, self.enough)
-        if not keep and self._forgotten(counts, memory):
+        remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
+        if not keep and self._has_forgotten(counts, memory):
             return StoppingDecision(
                 *(counts, replace(memory, returns=memory.returns + 1), False),
-                go_back=True,
+                restore_best=True,
                 reason=f"accuracy fell to {accuracy(counts):.2f}: back to the policy of step {memory.best_steps}",
             )
         return StoppingDecision(counts, remembered, keep)
 
-    def _surely(self, counts: CaseCounts, attempt: int) -> float:
+    def _confident_share(self, counts: CaseCounts, attempt: int) -> float:
         """What no case's share is below, all in all with the wanted confidence."""
         wrong = (1 - self.confidence) / (attempt * (attempt + 1)) / len(counts)
         return min(lower_bound(count.reached, count.episodes, 1 - wrong) for count in counts.values())
 
-    def _forgotten(self, counts: CaseCounts, memory: StoppingMemory) -> bool:
-        far_below = _pooled_interval(counts).high < memory.best_low - self.go_back_after
+    def _has_forgotten(self, counts: CaseCounts, memory: StoppingMemory) -> bool:
+        far_below = _pooled_interval(counts).high < memory.best_low - self.restore_margin
         return memory.returns < self.patience and far_below

@@ -56,19 +56,19 @@ class TableLearner(ABC):
 
     # The lesson
 
-    def learn(self, steps: int, watcher: TrainingCallback) -> None:
+    def learn(self, steps: int, callback: TrainingCallback) -> None:
         """Drives all worlds and learns from every step."""
-        state, tally = self._table.states(self._batch.reset()), EpisodeStatsRecorder(self._batch)
+        state, recorder = self._table.states(self._batch.reset()), EpisodeStatsRecorder(self._batch)
         action = self._choose(state, steps)
         while self._steps < steps:
-            watcher.between_updates()
+            callback.between_updates()
             step = self._batch.step(action)
             reached_state = self._table.states(step.final_observations)
             next_action = self._choose(reached_state, steps)
             self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
             self._steps += self._batch.n
-            for episode in tally.add(step):
-                watcher.on_episode_end(episode)
+            for episode in recorder.add(step):
+                callback.on_episode_end(episode)
             state = self._table.states(step.observations)
             action = np.where(step.ended, self._choose(state, steps), next_action)
 
@@ -89,7 +89,9 @@ class TableLearner(ABC):
         alike = np.bincount(pair)[
             pair
         ]  # worlds that did the same in the same state move its value by their mean
-        np.add.at(self._values, (state, action), self._slower * self._settings.rate.at(left) * error / alike)
+        np.add.at(
+            self._values, (state, action), self._slower * self._settings.rate.value_at(left) * error / alike
+        )
 
     @abstractmethod
     def future(self, state: IntArray, action: IntArray) -> FloatArray:
@@ -97,7 +99,7 @@ class TableLearner(ABC):
 
     def _choose(self, state: IntArray, steps: int) -> IntArray:
         """The best action, or now and then any."""
-        epsilon = self._settings.epsilon.at(max(0.0, 1 - self._steps / steps))
+        epsilon = self._settings.epsilon.value_at(max(0.0, 1 - self._steps / steps))
         anything = self._rng.integers(self._values.shape[1], size=len(state))
         best = self._values[state].argmax(axis=1)
         chosen: IntArray = np.where(self._rng.random(len(state)) < epsilon, anything, best)

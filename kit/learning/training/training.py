@@ -64,7 +64,7 @@ def resolve_preset(config: RunConfig) -> Preset:
     preset = find_preset(config.preset, find_algorithm(config.algorithm), config.choice.task)
     strategy = preset.stopping_rule
     if config.keep_training:
-        strategy = TrainThenTest(strategy.every, greedy=strategy.greedy)
+        strategy = TrainThenTest(strategy.test_interval, greedy=strategy.greedy)
     elif config.goal is not None and isinstance(strategy, TrainUntilGoal | TrainUntilSure):
         strategy = replace(strategy, goal=config.goal)
     rate = config.learning_rate
@@ -81,7 +81,7 @@ def resolve_preset(config: RunConfig) -> Preset:
 def fit_task_spec(choice: TaskSpec, algorithm: Algorithm) -> TaskSpec:
     """The choice, as the algorithm can take it: many choose one number only, so a pair's moves become one."""
     several = choice.resolve().actions.one_number is False
-    return replace(choice, one_number=True) if several and not algorithm.several else choice
+    return replace(choice, one_number=True) if several and not algorithm.supports_multi_discrete else choice
 
 
 def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) -> TrainingEnded:
@@ -97,7 +97,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
         try:
             with _student_reward(run, config) as reward:
                 training = _TrainingLoop(run, config, events, reward, interrupted)
-                ended = training.go()
+                ended = training.run()
         except (GuestError, RewardError, RewardFileError, UnsupportedWorld) as error:
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
@@ -156,14 +156,14 @@ class _TrainingLoop:
         algorithm = find_algorithm(config.algorithm)
         choice = fit_task_spec(config.choice, algorithm)
         self._task = choice.resolve()
-        self._examiner = Evaluator(self._task)
+        self._evaluator = Evaluator(self._task)
         self._memory = StoppingMemory()
         self._seconds = 0.0
-        self._looks = 0
+        self._test_count = 0
         self._resumed = 0
-        self._looked_at, self._next_look = 0, self._preset.stopping_rule.every
-        self._known: Any = None
-        parts = self._restored()
+        self._evaluated_at, self._next_evaluation = 0, self._preset.stopping_rule.test_interval
+        self._best_snapshot: Any = None
+        parts = self._load_checkpoint()
         self._learner = make_learner(
             *(algorithm, self._preset, choice, self._task),
             seed=derive_seed(config.seed, "training", self._resumed),
@@ -177,16 +177,16 @@ class _TrainingLoop:
 
     # From start to end
 
-    def go(self) -> TrainingEnded:
+    def run(self) -> TrainingEnded:
         self._write(TrainingStarted(time.time(), self._learner.steps, versions()))
         stopped, reason = False, "all steps are done"
         try:
             self._learner.learn(self._preset.steps, self)
-            if self._learner.steps > self._looked_at:
+            if self._learner.steps > self._evaluated_at:
                 self._evaluate(last=True)
         except StopLearning as halt:
             stopped, reason = isinstance(halt, _StopRequested), str(halt)
-        self._tell_progress()
+        self._report_progress()
         self._checkpoint()
         return TrainingEnded(
             "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
@@ -195,18 +195,18 @@ class _TrainingLoop:
     def between_updates(self) -> None:
         now = time.monotonic()
         if now - self._control_at >= CONTROL_S:
-            self._obey()
-        if self._learner.steps >= self._next_look:
+            self._follow_command()
+        if self._learner.steps >= self._next_evaluation:
             self._evaluate()
         if now - self._batch.since >= PROGRESS_S:
-            self._tell_progress()
+            self._report_progress()
         if now - self._checkpoint_at >= CHECKPOINT_S:
             self._checkpoint()
 
     def on_episode_end(self, episode: EpisodeStats) -> None:
         self._batch.add(episode)
 
-    def _obey(self) -> None:
+    def _follow_command(self) -> None:
         """Does what the control file says; does not come back while that is to pause."""
         paused = time.monotonic()
         told = False
@@ -232,26 +232,26 @@ class _TrainingLoop:
 
     def _evaluate(self, last: bool = False) -> None:
         """Lets the strategy judge the present policy."""
-        self._tell_progress()
+        self._report_progress()
         policy, steps = self._learner.policy(), self._learner.steps
         test = _SeededPolicyTest(
-            self._examiner, policy, self._config.seed, self._looks, self._preset.stopping_rule.greedy
+            self._evaluator, policy, self._config.seed, self._test_count, self._preset.stopping_rule.greedy
         )
-        verdict = self._preset.stopping_rule.evaluate(steps, self._memory, test)
-        self._looks, self._memory = test.looks, verdict.memory
-        self._looked_at, self._next_look = steps, steps + self._preset.stopping_rule.every
+        decision = self._preset.stopping_rule.evaluate(steps, self._memory, test)
+        self._test_count, self._memory = test.test_count, decision.memory
+        self._evaluated_at, self._next_evaluation = steps, steps + self._preset.stopping_rule.test_interval
         save_policy(policy, self._run.newest_policy)
-        if verdict.keep:
+        if decision.is_best:
             save_policy(policy, self._run.best_policy)
-            self._known = self._learner.snapshot()
-        self._write(_evaluation_event(steps, self._elapsed(), verdict, test))
-        if verdict.go_back and self._known is not None and not last:
-            self._learner.restore(self._known)
-        if self._preset.hard and not last:
-            self._learner.assign_cases(practice_shares(verdict.counts, self._preset.hard))
+            self._best_snapshot = self._learner.snapshot()
+        self._write(_evaluation_event(steps, self._elapsed(), decision, test))
+        if decision.restore_best and self._best_snapshot is not None and not last:
+            self._learner.restore(self._best_snapshot)
+        if self._preset.hard_case_share and not last:
+            self._learner.assign_cases(practice_shares(decision.counts, self._preset.hard_case_share))
         self._batch = _ProgressBatch(steps)
-        if verdict.stop and not last:
-            raise StopLearning(verdict.reason)
+        if decision.stop and not last:
+            raise StopLearning(decision.reason)
 
     # Writing
 
@@ -261,7 +261,7 @@ class _TrainingLoop:
     def _write(self, event: TrainingEvent) -> None:
         self._events.write(event)
 
-    def _tell_progress(self) -> None:
+    def _report_progress(self) -> None:
         if self._learner.steps > self._batch.steps:
             self._write(self._batch.progress(self._learner.steps, self._elapsed()))
             self._batch = _ProgressBatch(self._learner.steps)
@@ -270,15 +270,15 @@ class _TrainingLoop:
         state = {
             "memory": asdict(self._memory),
             "seconds": self._elapsed(),
-            "looks": self._looks,
+            "looks": self._test_count,
             "resumed": self._resumed,
-            "next_look": self._next_look,
+            "next_look": self._next_evaluation,
         }
         save_policy(self._learner.policy(), self._run.newest_policy)
         self._run.save_checkpoint({"training.json": json.dumps(state).encode(), **self._learner.save()})
         self._checkpoint_at = time.monotonic()
 
-    def _restored(self) -> dict[str, bytes] | None:
+    def _load_checkpoint(self) -> dict[str, bytes] | None:
         """Where the last checkpoint left off; what the learner needs of it. RunError if it is damaged."""
         loaded = self._run.load_checkpoint()
         if loaded is None:
@@ -289,8 +289,8 @@ class _TrainingLoop:
         state = json.loads(parts["training.json"])
         best = state["memory"]["best"]
         self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
-        self._seconds, self._looks = float(state["seconds"]), int(state["looks"])
-        self._resumed, self._next_look = int(state["resumed"]) + 1, int(state["next_look"])
+        self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
+        self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
         note = "Training goes on from the last checkpoint, with new episodes."
         self._write(TrainingNote(f"{damage}: the one before is used. {note}" if damage else note))
         return parts
@@ -330,34 +330,38 @@ def _tensorboard_folder(run: TrainingRun) -> Path | None:
 class _SeededPolicyTest:
     """Tries a policy on episodes of its own; notes what came of the last test."""
 
-    def __init__(self, examiner: Evaluator, policy: Policy, seed: int, looks: int, greedy: bool) -> None:
-        self._examiner = examiner
+    def __init__(
+        self, evaluator: Evaluator, policy: Policy, seed: int, test_count: int, greedy: bool
+    ) -> None:
+        self._evaluator = evaluator
         self._policy = policy
         self._seed = seed
         self._greedy = greedy
-        self.looks = looks
+        self.test_count = test_count
         """How many tests there have been, over all policies: each has episodes of its own."""
         self.result: EvaluationResult | None = None
 
     @property
     def cases(self) -> int:
-        return len(self._examiner.cases)
+        return len(self._evaluator.cases)
 
     def __call__(self, episodes: int) -> CaseCounts:
         each = -(-episodes // self.cases)
-        seed = derive_seed(self._seed, "test", self.looks)
-        self.looks += 1
-        self.result = self._examiner.test(self._policy, each, seed, greedy=self._greedy)
+        seed = derive_seed(self._seed, "test", self.test_count)
+        self.test_count += 1
+        self.result = self._evaluator.test(self._policy, each, seed, greedy=self._greedy)
         return {case.case: _case_count(case) for case in self.result.cases}
 
 
-def practice_shares(counts: CaseCounts, hard: float) -> NDArray[np.float64]:
-    """(cases,) which part of the worlds each case gets: one part is shared out alike, the part ``hard`` as the cases went
+def practice_shares(counts: CaseCounts, hard_case_share: float) -> NDArray[np.float64]:
+    """(cases,) which part of the worlds each case gets: one part is shared out alike, the part ``hard_case_share`` as the cases went
     wrong. A few episodes without a failure are no proof: half a failure is added (Jeffreys)."""
     failed: NDArray[np.float64] = np.array(
         [(count.episodes - count.reached + 0.5) / (count.episodes + 1) for count in counts.values()]
     )
-    shares: NDArray[np.float64] = (1.0 - hard) / len(failed) + hard * failed / failed.sum()
+    shares: NDArray[np.float64] = (1.0 - hard_case_share) / len(
+        failed
+    ) + hard_case_share * failed / failed.sum()
     return shares
 
 
@@ -366,11 +370,11 @@ def _case_count(case: CaseResult) -> CaseCount:
 
 
 def _evaluation_event(
-    steps: int, seconds: float, verdict: StoppingDecision, test: _SeededPolicyTest
+    steps: int, seconds: float, decision: StoppingDecision, test: _SeededPolicyTest
 ) -> Evaluated:
     assert test.result is not None  # every strategy tests
     cases = {case.case: list(case.outcomes) for case in test.result.cases}
-    return Evaluated(steps, seconds, cases, verdict.keep, test.result.reward, verdict.reason)
+    return Evaluated(steps, seconds, cases, decision.is_best, test.result.reward, decision.reason)
 
 
 class _ProgressBatch:

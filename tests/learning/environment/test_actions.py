@@ -18,8 +18,8 @@ def test_a_move_is_what_its_name_says(actions: Actions) -> None:
         assert np.sign(forward) == ("FORWARD" in move.name) - ("BACK" in move.name)
         assert np.sign(turn) == ("LEFT" in move.name) - ("RIGHT" in move.name)
         assert abs(forward) in (0.0, actions.speed)
-        assert abs(turn) in (0.0, actions.turn)
-    assert [Move(code) for code in actions.codes.tolist()] == list(actions.moves)
+        assert abs(turn) in (0.0, actions.turn_rate)
+    assert [Move(code) for code in actions.move_codes.tolist()] == list(actions.moves)
 
 
 @every_one

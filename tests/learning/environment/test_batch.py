@@ -224,7 +224,7 @@ def test_the_last_observation_is_of_the_episode_that_ended() -> None:
 
 
 def test_without_restart_a_world_waits() -> None:
-    batch = BatchEnv(replace(STRAIGHT, max_steps=3), 2, seed=0, restart=False)
+    batch = BatchEnv(replace(STRAIGHT, max_steps=3), 2, seed=0, autoreset=False)
     batch.reset()
     for _ in range(3):
         step = batch.step(np.zeros(2, dtype=np.int64))

@@ -41,7 +41,7 @@ def workshop(tmp_path: Path) -> Workshop:
     return Workshop(tmp_path)
 
 
-def ground(workshop: Workshop, models: Mapped, **changes: Any) -> BatchMap:
+def batch_map(workshop: Workshop, models: Mapped, **changes: Any) -> BatchMap:
     drivers = [name for name in models if name.startswith("robot")]
     layers = changes.pop("layers", ROOM)
     return batch_map_of_world(workshop.world(models, layers, **changes), "test", drivers)
@@ -49,12 +49,12 @@ def ground(workshop: Workshop, models: Mapped, **changes: Any) -> BatchMap:
 
 def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
     post = {"bodies": [{"name": "post", "type": "static", "footprints": [footprint(layers=[])]}]}
-    taken = ground(workshop, {"robot": robot(), "post": post})
+    taken = batch_map(workshop, {"robot": robot(), "post": post})
     assert len(taken.walls) == 4
-    assert len(taken.robot.directions) == 5
+    assert len(taken.robot.ray_angles) == 5
     assert (taken.robot.reach, taken.robot.noise) == (10.0, 0.0)
     around = robot(plugins=[DRIVE, LASER | {"layers": ["all"]}])
-    assert len(ground(workshop, {"robot": around, "post": post}).walls) == 4  # it stands inside its hull
+    assert len(batch_map(workshop, {"robot": around, "post": post}).walls) == 4  # it stands inside its hull
     (hull,) = taken.robot.hull
     assert sorted(hull) == sorted((x, y) for x in (-0.1, 0.1) for y in (-0.1, 0.1))
 
@@ -88,7 +88,7 @@ def test_a_plain_robot_in_a_room(workshop: Workshop) -> None:
 )
 def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, reason: str) -> None:
     with pytest.raises(UnsupportedWorld, match=reason) as refusal:
-        ground(workshop, models)
+        batch_map(workshop, models)
     assert "the batch engine" in str(refusal.value)
 
 
@@ -96,17 +96,19 @@ def test_walls_must_be_both_touched_and_seen(workshop: Workshop) -> None:
     glass = ROOM | {"glass": [(-1, 0, 1, 0)]}
     seeing = robot(plugins=[DRIVE, LASER | {"layers": ["seen", "glass"]}])
     with pytest.raises(UnsupportedWorld, match="touches and sees"):
-        ground(workshop, {"robot": seeing}, layers=glass)
+        batch_map(workshop, {"robot": seeing}, layers=glass)
 
 
 def test_a_plugin_of_the_world_is_refused(workshop: Workshop) -> None:
     walls = {"type": "RandomWall", "name": "walls", "layer": "wall", "num_of_walls": 1, "wall_wall_dist": 1}
     with pytest.raises(UnsupportedWorld, match="no RandomWall of the whole world"):
-        ground(workshop, {"robot": robot()}, plugins=[walls | {"double_wall": False, "robot_name": "robot"}])
+        batch_map(
+            workshop, {"robot": robot()}, plugins=[walls | {"double_wall": False, "robot_name": "robot"}]
+        )
 
 
 def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
-    small = ground(workshop, {"robot": robot()})
+    small = batch_map(workshop, {"robot": robot()})
     many = BatchMap("many", np.random.default_rng(0).uniform(-1, 1, (200, 4)), small.robot, small.starts)
     fleet = build_fleet([small, many, small])
     for number, each in enumerate((small, many, small)):
@@ -115,13 +117,13 @@ def test_maps_stand_one_after_the_other(workshop: Workshop) -> None:
         assert ours == {tuple(wall) for wall in each.walls.tolist()}
     assert fleet.map_blocks.tolist()[0] == 0
     assert fleet.hull_radius == pytest.approx(np.hypot(0.1, 0.1))
-    assert len(fleet.beams.cos) == len(small.robot.directions)
+    assert len(fleet.beams.cos) == len(small.robot.ray_angles)
     assert fleet.visibility.map_grids[:, 2].astype(bool).tolist() == [True, False, True]
 
 
 def test_robots_of_one_batch_are_alike(workshop: Workshop) -> None:
-    one = ground(workshop, {"robot": robot()})
-    other = ground(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
+    one = batch_map(workshop, {"robot": robot()})
+    other = batch_map(workshop, {"robot": robot(plugins=[DRIVE, LASER | {"range": 5}])})
     with pytest.raises(UnsupportedWorld, match="alike"):
         build_fleet([one, other])
     assert build_fleet([one], noise=0.1).noise_std == 0.1

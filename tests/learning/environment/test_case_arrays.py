@@ -25,7 +25,7 @@ def test_a_start_depends_on_case_key_and_number_alone(task: LearningTask) -> Non
 
 
 def test_noise_reaches_as_far_as_it_should() -> None:
-    task = replace(WHEELCHAIRS, start=StartVariation(noise=0.05, turned=0.1))
+    task = replace(WHEELCHAIRS, start=StartVariation(noise=0.05, max_rotation=0.1))
     cases, keys = np.zeros(4000, dtype=np.int64), np.arange(4000)
     poses = CaseArrays(task).draw_starts(cases, keys, keys).poses
     spread = poses - poses.mean(axis=0)

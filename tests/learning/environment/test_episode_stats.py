@@ -16,11 +16,11 @@ from tests.learning.worlds import TASKS, steps
 def test_an_episode_is_the_sum_of_its_steps(name: str) -> None:
     batch = BatchEnv(replace(TASKS[name], max_steps=15), 10, seed=3)
     batch.reset()
-    tally, rewards, adjacent, seen = EpisodeStatsRecorder(batch), np.zeros(10), np.zeros(10), 0
+    recorder, rewards, adjacent, seen = EpisodeStatsRecorder(batch), np.zeros(10), np.zeros(10), 0
     for step in steps(batch, 50):
         rewards += step.rewards
         adjacent += step.transition.adjacent
-        episodes = tally.add(step)
+        episodes = recorder.add(step)
         assert [episode.world for episode in episodes] == np.flatnonzero(step.ended).tolist()
         for episode in episodes:
             i = episode.world

@@ -32,7 +32,7 @@ def test_the_dissertations_rays() -> None:
 
 
 def test_nine_sectors_of_ten_rays_the_last_of_eleven() -> None:
-    _, stretches = NINE_NUMBERS.tables(1)
+    _, stretches = NINE_NUMBERS.ray_tables(1)
     assert [(end - first) for _, first, end in stretches.tolist()] == [10] * 8 + [11]
 
 
@@ -46,7 +46,7 @@ def test_twelve_sectors_narrow_ahead_and_wide_behind() -> None:
 
 @every_one
 def test_stretches_are_the_sectors(seen: ObservationSpec) -> None:
-    single, stretches = seen.tables(2)
+    single, stretches = seen.ray_tables(2)
     again = np.full(RAY_COUNT, -1)
     for sector, first, end in stretches.tolist():
         assert (again[first:end] == -1).all()

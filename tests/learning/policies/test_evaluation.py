@@ -53,8 +53,8 @@ STOP = always(STRAIGHT, 0)
 
 
 def test_counts_what_happened_case_by_case() -> None:
-    examiner = Evaluator(AHEAD_ONLY)
-    ahead, back, stop = (examiner.test(policy, 30, 1) for policy in (FORWARD, BACK, STOP))
+    evaluator = Evaluator(AHEAD_ONLY)
+    ahead, back, stop = (evaluator.test(policy, 30, 1) for policy in (FORWARD, BACK, STOP))
     assert [case.outcomes for case in ahead.cases] == [(30, 0, 0), (30, 0, 0)]
     assert [case.outcomes for case in back.cases] == [(0, 30, 0), (0, 30, 0)]
     assert [case.outcomes for case in stop.cases] == [(0, 0, 30), (0, 0, 30)]
@@ -73,8 +73,8 @@ def test_a_group_is_the_mean_of_its_cases() -> None:
 
 
 def test_the_same_seed_tests_the_same_and_another_does_not() -> None:
-    examiner = Evaluator(STRAIGHT.resolve())
-    results = [examiner.test(FORWARD, 60, seed, greedy=False) for seed in (1, 1, 2)]
+    evaluator = Evaluator(STRAIGHT.resolve())
+    results = [evaluator.test(FORWARD, 60, seed, greedy=False) for seed in (1, 1, 2)]
     assert results[0] == results[1] != results[2]
 
 

@@ -43,8 +43,8 @@ def made(choices: tuple[int, ...] = (3,), *, recurrent: bool = False, seed: int 
 
 def table() -> Policy:
     values = np.arange(27 * 3, dtype=np.float32).reshape(27, 3) % 7
-    brain = ActionValueTable(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
-    return Policy(brain, (3,), ActionSampling("epsilon", 0.5), TaskSpec("turn"), 9)
+    model = ActionValueTable(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
+    return Policy(model, (3,), ActionSampling("epsilon", 0.5), TaskSpec("turn"), 9)
 
 
 POLICIES = {"network": made(), "two heads": made((4, 4)), "memory": made(recurrent=True), "table": table()}
@@ -56,11 +56,11 @@ def test_comes_back_from_its_file_as_it_was(policy: Policy, tmp_path: Path) -> N
     save_policy(policy, tmp_path / "p.npz")
     back = load_policy(tmp_path / "p.npz")
     assert policy_bytes(back) == policy_bytes(policy)
-    assert (back.choices, back.chance, back.trained_on, back.steps) == (
-        *(policy.choices, policy.chance, policy.trained_on),
+    assert (back.choices, back.sampling, back.trained_on, back.steps) == (
+        *(policy.choices, policy.sampling, policy.trained_on),
         policy.steps,
     )
-    one, other = policy.player(50), back.player(50)
+    one, other = policy.make_player(50), back.make_player(50)
     for _ in range(3):
         assert one.act(SEEN).tolist() == other.act(SEEN).tolist()
 
@@ -86,15 +86,15 @@ def test_a_missing_file_is_missing(tmp_path: Path) -> None:
 
 def test_one_world_alone_acts_as_among_many() -> None:
     for policy in POLICIES.values():
-        together = policy.player(50).act(SEEN)
-        alone = [policy.player(1).act(SEEN[i : i + 1])[0] for i in range(50)]
+        together = policy.make_player(50).act(SEEN)
+        alone = [policy.make_player(1).act(SEEN[i : i + 1])[0] for i in range(50)]
         assert np.array(alone).tolist() == together.tolist()
 
 
 def test_memory_is_cleared_where_an_episode_begins() -> None:
-    brain = made(recurrent=True).brain
-    policy = replace(POLICIES["memory"], brain=brain, choices=(1,) * 3)
-    fresh, old = policy.player(50), policy.player(50)
+    model = made(recurrent=True).model
+    policy = replace(POLICIES["memory"], model=model, choices=(1,) * 3)
+    fresh, old = policy.make_player(50), policy.make_player(50)
     for _ in range(3):
         old.act(1 - SEEN)
     begun = np.arange(50) % 2 == 0
@@ -106,27 +106,29 @@ def test_memory_is_cleared_where_an_episode_begins() -> None:
 
 def test_softmax_draws_in_proportion() -> None:
     bias = np.log(np.array([0.5, 0.3, 0.2], dtype=np.float32))
-    brain = PolicyNetwork((LinearLayer(np.zeros((9, 3), np.float32), bias),), "tanh")
-    policy = replace(made(), brain=brain)
-    drawn = policy.player(20_000, np.random.default_rng(0)).act(np.zeros((20_000, 9)))
+    model = PolicyNetwork((LinearLayer(np.zeros((9, 3), np.float32), bias),), "tanh")
+    policy = replace(made(), model=model)
+    drawn = policy.make_player(20_000, np.random.default_rng(0)).act(np.zeros((20_000, 9)))
     assert np.bincount(drawn) / 20_000 == pytest.approx([0.5, 0.3, 0.2], abs=0.02)
-    cold = replace(policy, chance=ActionSampling("softmax", 0.01)).player(1000, np.random.default_rng(0))
+    cold = replace(policy, sampling=ActionSampling("softmax", 0.01)).make_player(
+        1000, np.random.default_rng(0)
+    )
     assert not cold.act(np.zeros((1000, 9))).any()
 
 
 def test_epsilon_takes_anything_now_and_then() -> None:
     policy = table()
-    best = policy.player(1).act(SEEN[:1])[0]
-    drawn = policy.player(9000, np.random.default_rng(0)).act(np.repeat(SEEN[:1], 9000, axis=0))
+    best = policy.make_player(1).act(SEEN[:1])[0]
+    drawn = policy.make_player(9000, np.random.default_rng(0)).act(np.repeat(SEEN[:1], 9000, axis=0))
     assert np.mean(drawn == best) == pytest.approx(0.5 + 0.5 / 3, abs=0.02)
 
 
 def test_a_policy_that_does_not_fit_says_what_it_was_made_for() -> None:
-    made().fits(find_task("turn"))
+    made().check_fits(find_task("turn"))
     with pytest.raises(PolicyError, match=r"turn: it sees 9 numbers.*hallway gives 17"):
-        made().fits(find_task("hallway"))
+        made().check_fits(find_task("hallway"))
     with pytest.raises(PolicyError, match="4 actions"):
-        made((4,)).fits(find_task("turn"))
+        made((4,)).check_fits(find_task("turn"))
 
 
 def test_a_choice_goes_into_a_file_and_back() -> None:
@@ -150,12 +152,14 @@ NEURAL = [row for row in ALGORITHMS.values() if row.neural]
 def test_arrays_act_as_the_network_they_come_from(algorithm: Algorithm) -> None:
     choice = fit_task_spec(TaskSpec("wheelchairs"), algorithm)
     task = choice.resolve()
-    preset = replace(find_preset("kit", algorithm, "wheelchairs"), worlds=225 if algorithm.several else 2)
+    preset = replace(
+        find_preset("kit", algorithm, "wheelchairs"), worlds=225 if algorithm.supports_multi_discrete else 2
+    )
     if algorithm.name == "trpo":
         preset = replace(preset, worlds=64)
     learner = make_learner(algorithm, preset, choice, task, seed=1)
     seen = np.random.default_rng(0).random((200, 38), dtype=np.float32)
-    player, memory, starts = learner.policy().player(200), None, np.ones(200, dtype=bool)
+    player, memory, starts = learner.policy().make_player(200), None, np.ones(200, dtype=bool)
     for _ in range(3):
         wanted, memory = learner._model.predict(seen, memory, starts, deterministic=True)  # type: ignore[attr-defined]  # the peer it must equal
         assert np.mean(player.act(seen) == wanted) > 0.99  # equal scores may be rounded either way

@@ -41,7 +41,7 @@ STRAIGHT_ON = replace(
 """Ahead is right at every step, and pays at once."""
 
 _RATE = LinearSchedule(3e-3, 3e-3)
-_UNTIL = TrainUntilGoal(every=1000)
+_UNTIL = TrainUntilGoal(test_interval=1000)
 _REPLAY = ReplayParams(
     learning_starts=300, train_freq=1, gradient_steps=1, target_update_interval=100, gamma=0.9
 )
@@ -91,10 +91,10 @@ def test_learns_to_go_straight_on(algorithm: Algorithm) -> None:
     preset = QUICK[algorithm.name]
     choice = TaskSpec("hallway", ("straight",))
     learner, onlooker = make_learner(algorithm, preset, choice, STRAIGHT_ON, seed=3), Onlooker()
-    examiner = Evaluator(STRAIGHT_ON)
-    before = examiner.test(learner.policy(), 20, 1).mean
+    evaluator = Evaluator(STRAIGHT_ON)
+    before = evaluator.test(learner.policy(), 20, 1).mean
     learner.learn(preset.steps, onlooker)
-    assert examiner.test(learner.policy(), 20, 1).mean == 1.0 > before or before == 1.0
+    assert evaluator.test(learner.policy(), 20, 1).mean == 1.0 > before or before == 1.0
     assert learner.steps >= preset.steps
     assert onlooker.stops > 2
     assert {episode.case for episode in onlooker.episodes} == {"straight"}
@@ -111,10 +111,10 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
     second.load(parts)
     assert second.steps == first.steps
     one, other = (learner.policy() for learner in (first, second))
-    if not isinstance(one.brain, ActionValueTable):
-        assert not isinstance(other.brain, ActionValueTable)
-        assert [layer.weights.tolist() for layer in one.brain.layers] == [
-            layer.weights.tolist() for layer in other.brain.layers
+    if not isinstance(one.model, ActionValueTable):
+        assert not isinstance(other.model, ActionValueTable)
+        assert [layer.weights.tolist() for layer in one.model.layers] == [
+            layer.weights.tolist() for layer in other.model.layers
         ]
     second.learn(first.steps + 600, Onlooker())
     assert second.steps >= first.steps + 600
@@ -127,11 +127,11 @@ def test_goes_on_from_what_it_saved(algorithm: Algorithm) -> None:
 def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
     preset = replace(QUICK[algorithm.name], steps=600)
     learner = make_learner(algorithm, preset, TaskSpec("hallway"), STRAIGHT_ON, seed=3)
-    examiner = Evaluator(STRAIGHT_ON)
-    known, before = learner.snapshot(), examiner.test(learner.policy(), 10, 1)
+    evaluator = Evaluator(STRAIGHT_ON)
+    known, before = learner.snapshot(), evaluator.test(learner.policy(), 10, 1)
     learner.learn(1200, Onlooker())
     learner.restore(known)
-    assert examiner.test(learner.policy(), 10, 1) == before
+    assert evaluator.test(learner.policy(), 10, 1) == before
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -139,7 +139,7 @@ def test_what_was_remembered_can_be_recalled(algorithm: Algorithm) -> None:
 def test_every_algorithm_has_presets_for_every_task(algorithm: Algorithm, name: str) -> None:
     for task in TASKS:
         preset = find_preset(name, algorithm, task.name)  # type: ignore[arg-type]  # PRESETS are its names
-        assert preset.steps >= preset.stopping_rule.every > 0
+        assert preset.steps >= preset.stopping_rule.test_interval > 0
 
 
 def test_an_unknown_algorithm_is_told_from_a_known_one() -> None:

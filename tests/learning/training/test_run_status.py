@@ -29,10 +29,10 @@ TEST = Evaluated(1000, 1.1, {A: [9, 1, 0], B: [5, 0, 5]}, True)
 
 
 def stands(*events: TrainingEvent, alive: bool = True) -> RunStatus:
-    logbook = RunTracker(PLAN)
+    tracker = RunTracker(PLAN)
     for event in events:
-        logbook.add(event)
-    return logbook.status(alive=alive, order="go")
+        tracker.add(event)
+    return tracker.status(alive=alive, order="go")
 
 
 def batch(steps: int, **changes: object) -> TrainingProgress:

@@ -35,34 +35,34 @@ class Tries:
 
 
 def test_the_first_goes_on_whatever_happens_and_keeps_the_newest() -> None:
-    strategy = TrainThenTest(every=10)
+    strategy = TrainThenTest(test_interval=10)
     for shares in ((1.0, 1.0), (0.1, 0.1)):
-        verdict = strategy.evaluate(10, StoppingMemory(), Tries(shares))
-        assert verdict.keep
-        assert not verdict.stop
-        assert not verdict.go_back
+        decision = strategy.evaluate(10, StoppingMemory(), Tries(shares))
+        assert decision.is_best
+        assert not decision.stop
+        assert not decision.restore_best
 
 
 def test_the_second_stops_at_the_first_good_test() -> None:
-    strategy = TrainUntilGoal(every=10, episodes=20, goal=0.8)
-    verdict = strategy.evaluate(10, StoppingMemory(), Tries((0.7, 0.7)))
-    assert not verdict.stop
-    verdict = strategy.evaluate(20, verdict.memory, Tries((1.0, 0.6)))
-    assert verdict.stop
-    assert verdict.keep
-    assert "0.80" in verdict.reason
+    strategy = TrainUntilGoal(test_interval=10, episodes=20, goal=0.8)
+    decision = strategy.evaluate(10, StoppingMemory(), Tries((0.7, 0.7)))
+    assert not decision.stop
+    decision = strategy.evaluate(20, decision.memory, Tries((1.0, 0.6)))
+    assert decision.stop
+    assert decision.is_best
+    assert "0.80" in decision.reason
 
 
 def test_the_second_remembers_the_best() -> None:
-    strategy = TrainUntilGoal(every=10)
+    strategy = TrainUntilGoal(test_interval=10)
     memory = strategy.evaluate(10, StoppingMemory(), Tries((0.7, 0.7))).memory
     worse = strategy.evaluate(20, memory, Tries((0.5, 0.5)))
-    assert not worse.keep
+    assert not worse.is_best
     assert worse.memory.best_steps == 10
-    assert strategy.evaluate(30, worse.memory, Tries((0.7, 0.72))).keep
+    assert strategy.evaluate(30, worse.memory, Tries((0.7, 0.72))).is_best
 
 
-SURE = TrainUntilSure(every=10, goal=0.95, screening=40, confirming=500)
+SURE = TrainUntilSure(test_interval=10, goal=0.95, screening_episodes=40, confirming_episodes=500)
 
 
 def test_a_pooled_accuracy_does_not_hide_a_bad_case() -> None:
@@ -73,17 +73,17 @@ def test_a_pooled_accuracy_does_not_hide_a_bad_case() -> None:
 
 def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
     tries = Tries((1.0, 1.0), (0.998, 0.996))
-    verdict = SURE.evaluate(10, StoppingMemory(), tries)
-    assert verdict.stop
-    assert verdict.keep
+    decision = SURE.evaluate(10, StoppingMemory(), tries)
+    assert decision.stop
+    assert decision.is_best
     assert tries.sizes == [40, 500]
-    assert accuracy(verdict.counts) == pytest.approx(0.997)
+    assert accuracy(decision.counts) == pytest.approx(0.997)
 
 
 def test_luck_in_the_short_test_is_not_enough() -> None:
-    verdict = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
-    assert not verdict.stop
-    assert verdict.memory.confirmations == 1
+    decision = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
+    assert not decision.stop
+    assert decision.memory.confirmations == 1
 
 
 def test_trying_often_makes_it_harder() -> None:
@@ -106,36 +106,36 @@ def test_a_mediocre_policy_is_all_but_never_passed() -> None:
     def passes(strategy: TrainUntilSure | TrainUntilGoal) -> bool:
         memory = StoppingMemory()
         for steps in range(60):
-            verdict = strategy.evaluate(steps, memory, Coin())
-            if verdict.stop:
+            decision = strategy.evaluate(steps, memory, Coin())
+            if decision.stop:
                 return True
-            memory = verdict.memory
+            memory = decision.memory
         return False
 
     assert sum(passes(SURE) for _ in range(50)) == 0
-    assert sum(passes(TrainUntilGoal(every=1, episodes=20, goal=0.95)) for _ in range(50)) == 50
+    assert sum(passes(TrainUntilGoal(test_interval=1, episodes=20, goal=0.95)) for _ in range(50)) == 50
 
 
 def test_the_longer_test_counts_more_than_the_luckier() -> None:
     memory = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.97))).memory
-    assert not SURE.evaluate(20, memory, Tries((1.0, 1.0), (0.9, 0.9))).keep
-    assert not replace(SURE, goal=1.1).evaluate(20, memory, Tries((1.0, 1.0))).keep
+    assert not SURE.evaluate(20, memory, Tries((1.0, 1.0), (0.9, 0.9))).is_best
+    assert not replace(SURE, goal=1.1).evaluate(20, memory, Tries((1.0, 1.0))).is_best
 
 
 def test_what_was_forgotten_is_fetched_back_a_few_times() -> None:
     memory = SURE.evaluate(10, StoppingMemory(), Tries((0.9, 0.9))).memory
     for _ in range(SURE.patience):
-        verdict = SURE.evaluate(20, memory, Tries((0.1, 0.2)))
-        assert verdict.go_back
-        assert "back to the policy of step 10" in verdict.reason
-        assert not verdict.keep
-        memory = verdict.memory
-    assert not SURE.evaluate(30, memory, Tries((0.1, 0.2))).go_back
+        decision = SURE.evaluate(20, memory, Tries((0.1, 0.2)))
+        assert decision.restore_best
+        assert "back to the policy of step 10" in decision.reason
+        assert not decision.is_best
+        memory = decision.memory
+    assert not SURE.evaluate(30, memory, Tries((0.1, 0.2))).restore_best
 
 
 def test_a_small_setback_is_left_alone() -> None:
     memory = SURE.evaluate(10, StoppingMemory(), Tries((0.9, 0.9))).memory
-    assert not SURE.evaluate(20, memory, Tries((0.7, 0.7))).go_back
+    assert not SURE.evaluate(20, memory, Tries((0.7, 0.7))).restore_best
 
 
 def test_side_by_side_decides_among_those_that_arrive() -> None:
@@ -151,13 +151,13 @@ def test_side_by_side_decides_among_those_that_arrive() -> None:
         def __call__(self, episodes: int) -> CaseCounts:
             return self._counts
 
-    strategy = replace(SURE, to_the_end=True, enough=0.95)
+    strategy = replace(SURE, use_all_steps=True, sufficient_share=0.95)
     first = strategy.evaluate(10, StoppingMemory(), Once(pair(1.0, 0.6)))
     assert not first.stop
     second = strategy.evaluate(20, first.memory, Once(pair(0.99, 0.9)))
-    assert second.keep
+    assert second.is_best
     third = strategy.evaluate(30, second.memory, Once(pair(0.9, 0.99)))
-    assert not third.keep
+    assert not third.is_best
 
 
 def test_nothing_tried_is_nothing_reached() -> None:

@@ -216,7 +216,7 @@ def test_a_configuration_changes_its_preset() -> None:
     preset = resolve_preset(RunConfig(TaskSpec("turn"), steps=7, worlds=3, learning_rate=0.5, goal=0.6))
     assert (preset.steps, preset.worlds) == (7, 3)
     assert preset.learning_rate is not None
-    assert preset.learning_rate.at(1.0) == preset.learning_rate.at(0.0) == 0.5
+    assert preset.learning_rate.value_at(1.0) == preset.learning_rate.value_at(0.0) == 0.5
     assert isinstance(preset.stopping_rule, TrainUntilSure)
     assert preset.stopping_rule.goal == 0.6
     assert isinstance(resolve_preset(TABLE).stopping_rule, TrainThenTest)
