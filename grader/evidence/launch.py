@@ -24,14 +24,13 @@ from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
-from kit.launch.errors import CannotStart
-from kit.launch.graph_only import Worldless
 from kit.launch.launch_file_process import declared_arguments
-from kit.launch.launch_file_search import SHARE, LaunchTarget
-from kit.launch.launch_run import Launch
-from kit.launch.program_lookup import Bounds
-from kit.launch.requests import Argument
-from kit.launch.session import LaunchedSession
+from kit.launch.launch_file_search import SHARE_FOLDER, LaunchTarget
+from kit.launch.launch_run import GraphOnlyRun, Launch
+from kit.launch.program_lookup import LaunchBounds
+from kit.launch.requests import DeclaredArgument
+from kit.launch.session import LaunchSession
+from kit.launch.start_errors import ProcessStartError
 from kit.msg.rcl_interfaces import GetParameters, ParameterType
 from kit.render.world_text import plain_rows
 from kit.ros.graph.graph import Graph
@@ -78,7 +77,7 @@ class LaunchRecord:
 
     run: LaunchCase
     failure: Failure | None = None
-    arguments: tuple[Argument, ...] = ()
+    arguments: tuple[DeclaredArgument, ...] = ()
     """That the launch file declares."""
     failures: tuple[str, ...] = ()
     """What went wrong with what it started."""
@@ -136,14 +135,14 @@ def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
         target.unlink(missing_ok=True)
         target.write_bytes(file.read_bytes())
         Path(made).chmod(0o755)
-        yield LaunchTarget(target, folder, (folder, SHARE))
+        yield LaunchTarget(target, folder, (folder, SHARE_FOLDER))
 
 
 def run_launch(
     run: LaunchCase, target: LaunchTarget, queries: ParameterQueries, *, level: Level, limits: Limits
 ) -> LaunchRecord:
     """One run. Never raises for what is the student's mistake."""
-    bounds = Bounds(level, limits, limits, commands=False, most=MAX_PROGRAMS)
+    bounds = LaunchBounds(level, limits, limits, commands=False, max_processes=MAX_PROGRAMS)
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
     try:
@@ -153,12 +152,12 @@ def run_launch(
             graph,
             arguments=run.arguments,
             bounds=bounds,
-            say=lambda line: printed.append(str(line)),
+            on_output=lambda line: printed.append(str(line)),
         )
     except GuestError as error:
         return LaunchRecord(run, _without_folder(error.failure, target))
     try:
-        launch.begin()
+        launch.load()
         seen = (
             _run_with_world(run, launch, queries)
             if launch.world
@@ -166,7 +165,7 @@ def run_launch(
         )
     except GuestError as error:
         return LaunchRecord(run, _without_folder(error.failure, target), arguments)
-    except (CannotStart, WorldError, PackageError, OSError) as problem:
+    except (ProcessStartError, WorldError, PackageError, OSError) as problem:
         return LaunchRecord(
             run, _without_folder(Failure(FailureKind.EXCEPTION, str(problem)), target), arguments
         )
@@ -195,12 +194,12 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
     assert launch.world is not None
     file = launch.world.path.resolve()
     if not file.is_relative_to(launch.target.folder.resolve()):
-        raise CannotStart(
+        raise ProcessStartError(
             f"{launch.world.where}the world must be one of the package's, not {launch.world.path}"
         )
-    with LaunchedSession(launch, seed=1, watched=True) as session:
+    with LaunchSession(launch, seed=1, watched=True) as session:
         sink = launch.graph.log.sink
-        launch.start()
+        launch.start_processes()
         launch.graph.log.sink = sink
         recorder = Recorder(run.name, None, session.runner.simulation)
         session.runner.observers.append(recorder)
@@ -223,8 +222,8 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
 
 
 def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) -> dict[str, Any]:
-    launch.start()
-    ticker = Worldless(launch.graph)
+    launch.start_processes()
+    ticker = GraphOnlyRun(launch.graph)
     ticker.participants.append(launch)
     traffic_recorder = TrafficRecorder(launch.graph)
     ticks = round(run.time_s / ticker.step_size)
@@ -237,7 +236,7 @@ def _run_without_world(run: LaunchCase, launch: Launch, queries: ParameterQuerie
     }
 
 
-def _tick_until_over(ticker: Runner | Worldless, launch: Launch, ticks: int) -> None:
+def _tick_until_over(ticker: Runner | GraphOnlyRun, launch: Launch, ticks: int) -> None:
     run_until(ticker, ticks=ticks, ends=(when(lambda: launch.is_over),))
 
 
@@ -246,7 +245,7 @@ def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, 
     return {"graph": snapshot(graph), "traffic": MappingProxyType(traffic)}
 
 
-def _parameters(graph: Graph, ticker: Runner | Worldless, queries: ParameterQueries) -> Mapping[str, str]:
+def _parameters(graph: Graph, ticker: Runner | GraphOnlyRun, queries: ParameterQueries) -> Mapping[str, str]:
     """Asks the nodes themselves."""
     asking_node = create_graph_node(graph, "grader_queries")
     requests = {}

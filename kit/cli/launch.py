@@ -14,7 +14,7 @@ from kit.cli import options
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
-    from kit.launch.launch_run import Line
+    from kit.launch.launch_run import OutputLine
     from kit.workspace import Workspace
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -70,14 +70,14 @@ def command(
 
     Exit code: 0 all went well; 1 a program failed; 2 something is missing or wrong; 130 ended by Ctrl-C.
     """
-    from kit.launch.launch_file_search import find_launch
+    from kit.launch.launch_file_search import find_launch_file
     from kit.ros.packages import PackageError
     from kit.workspace import WorkspaceError, open_workspace
 
     try:
         desk = open_workspace(workspace)
         file, arguments = _sorted_out(words)
-        target = find_launch(where, file, [desk.packages])
+        target = find_launch_file(where, file, [desk.packages])
     except (PackageError, WorkspaceError) as problem:
         options.fail(str(problem))
     if show_args:
@@ -119,13 +119,13 @@ def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 
 def _show_arguments(target: LaunchTarget) -> None:
     from kit.host.failure import GuestError
-    from kit.launch.advice import explained
     from kit.launch.launch_file_process import declared_arguments
+    from kit.launch.start_errors import explain_failure
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
     except GuestError as error:
-        options.fail(explained(error.failure))
+        options.fail(explain_failure(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     for argument in declared:
         choices = "" if argument.choices is None else f" valid choices are: {list(argument.choices)}"
@@ -148,10 +148,9 @@ def _run_plainly(
     from kit.host.failure import GuestError
     from kit.inspection.server import open_inspection_server
     from kit.inspection.world_sockets import sockets_folder
-    from kit.launch.advice import explained
-    from kit.launch.errors import CannotStart
     from kit.launch.launch_run import Launch
-    from kit.launch.plain_launch import Limit, run_plainly
+    from kit.launch.plain_launch import LaunchLimit, run_plain_launch
+    from kit.launch.start_errors import ProcessStartError, explain_failure
     from kit.ros.graph.graph import Graph
     from kit.world.problems import WorldError
 
@@ -165,20 +164,20 @@ def _run_plainly(
         seed=seed,
         workspace=desk.folder,
         name=f"{name}-{os.getpid()}",
-        say=_say,
+        on_output=_print_line,
     )
     try:
-        run_plainly(
+        run_plain_launch(
             launch,
             seed=seed,
-            limit=Limit(steps, until),
+            limit=LaunchLimit(steps, until),
             factor=speed,
-            company=lambda graph: open_inspection_server(graph, sockets_folder(desk.folder), name),
+            make_companion=lambda graph: open_inspection_server(graph, sockets_folder(desk.folder), name),
             log=lambda record: click.echo(str(record), err=True),
         )
     except GuestError as error:
-        options.fail(explained(error.failure))
-    except (CannotStart, WorldError) as problem:
+        options.fail(explain_failure(error.failure))
+    except (ProcessStartError, WorldError) as problem:
         options.fail(str(problem))
     except OSError as problem:
         options.fail(options.reason(problem))
@@ -188,7 +187,7 @@ def _run_plainly(
         raise SystemExit(1)
 
 
-def _say(line: Line) -> None:
+def _print_line(line: OutputLine) -> None:
     click.echo(str(line), err=line.stream == "err")
 
 

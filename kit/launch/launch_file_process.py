@@ -1,4 +1,4 @@
-"""A launch file in its process: asked what to do, told what has happened."""
+"""Runs a launch file in a process of its own: sends it events, receives its requests."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from kit.host.process import Child
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import DESK, MIB
 from kit.host.wire import Json, ProtocolError
-from kit.launch.program_lookup import DESK_BOUNDS, Bounds
-from kit.launch.requests import Argument, Request, parse_request
+from kit.launch.program_lookup import INTERACTIVE_BOUNDS, LaunchBounds
+from kit.launch.requests import DeclaredArgument, Request, parse_request
 from kit.ros.packages import SEARCH_VARIABLE
 
 LIMITS: Final = replace(DESK, reply_s=10.0, frame=16 * MIB)
 
 
 def declared_arguments(
-    file: Path, folder: Path, search: Sequence[Path], bounds: Bounds = DESK_BOUNDS
-) -> list[Argument]:
+    file: Path, folder: Path, search: Sequence[Path], bounds: LaunchBounds = INTERACTIVE_BOUNDS
+) -> list[DeclaredArgument]:
     """The arguments that a launch file declares, without carrying it out. Raises GuestError."""
-    with _child(file, folder, search, {}, bounds, only_arguments=True) as child:
-        requests = _requests(child, child.started())
-    return [request for request in requests if isinstance(request, Argument)]
+    with _start_child(file, folder, search, {}, bounds, only_arguments=True) as child:
+        requests = _parse_requests(child, child.started())
+    return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
-class LaunchFile:
-    """One run of a launch file. Starts at once; ``begin`` waits. Whatever goes wrong is raised as GuestError."""
+class LaunchFileProcess:
+    """One run of a launch file; the process starts with the constructor. All failures are raised as GuestError."""
 
     def __init__(
         self,
@@ -40,48 +40,48 @@ class LaunchFile:
         folder: Path,
         search: Sequence[Path],
         arguments: Mapping[str, str],
-        bounds: Bounds = DESK_BOUNDS,
+        bounds: LaunchBounds = INTERACTIVE_BOUNDS,
     ) -> None:
-        self._child = _child(file, folder, search, arguments, bounds, only_arguments=False)
+        self._child = _start_child(file, folder, search, arguments, bounds, only_arguments=False)
         self.wake_ns: int | None = None
-        """When it wants to go on by itself, in the launch's time."""
+        """When its next timer is due [ns of the launch's time]; None without timers."""
 
-    def begin(self) -> list[Request]:
-        """What it wants at once."""
-        return self._take(self._child.started())
+    def start(self) -> list[Request]:
+        """Waits until the file is loaded; returns its first requests."""
+        return self._read_requests(self._child.started())
 
-    def go_on(self, now_ns: int, happened: list[Json]) -> list[Request]:
-        """What it wants now that this has happened, at this time of the launch."""
-        return self._take(self._child.ask("tick", now_ns, happened))
+    def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
+        """Sends events at a time of the launch; returns the requests that follow."""
+        return self._read_requests(self._child.ask("tick", now_ns, events))
 
     def take_output(self) -> Printed:
-        """What the launch file itself has printed."""
+        """Removes and returns what the launch file itself has printed."""
         return self._child.take_output()
 
     def close(self) -> None:
         self._child.close()
 
-    def _take(self, frame: Frame | None) -> list[Request]:
-        requests = _requests(self._child, frame)
+    def _read_requests(self, frame: Frame | None) -> list[Request]:
+        requests = _parse_requests(self._child, frame)
         self.wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
         return requests
 
 
-def _child(
+def _start_child(
     file: Path,
     folder: Path,
     search: Sequence[Path],
     arguments: Mapping[str, str],
-    bounds: Bounds,
+    bounds: LaunchBounds,
     *,
     only_arguments: bool,
 ) -> Child:
-    # Whoever bounds a launch does not let it see the environment, nor be where the user is.
-    is_desk = bounds.file_limits is None
-    environment = dict(os.environ) if is_desk else {}
+    # A bounded launch file sees neither the environment nor the user's working directory.
+    is_interactive = bounds.file_limits is None
+    environment = dict(os.environ) if is_interactive else {}
     installed = Installed(
         folder,
-        Path.cwd() if is_desk else folder,
+        Path.cwd() if is_interactive else folder,
         {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
     )
     start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}
@@ -90,7 +90,7 @@ def _child(
     )
 
 
-def _requests(child: Child, frame: Frame | None) -> list[Request]:
+def _parse_requests(child: Child, frame: Frame | None) -> list[Request]:
     try:
         if not isinstance(frame, (Reply, Ended)):
             raise ProtocolError("another kind of answer")

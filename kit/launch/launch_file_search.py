@@ -1,4 +1,4 @@
-"""Which launch file is meant, and where packages are looked for."""
+"""Finds the launch file that a command names, and the folders in which packages are searched."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ from typing import Final
 
 from kit.ros.packages import PackageError, find_packages, read_package
 
-SHARE: Final = Path(__file__).parent / "share"
-"""What the kit has of Flatland's own packages: looked up last, so that real ones come first."""
+SHARE_FOLDER: Final = Path(__file__).parent / "share"
+"""The kit's copies of Flatland's packages: searched last, so that installed ones come first."""
 
 
 @dataclass(frozen=True, slots=True)
 class LaunchTarget:
-    """A launch file, and what is around it."""
+    """A launch file with its package and search path."""
 
     file: Path
     folder: Path
-    """Its package's, or its own: messages name files relative to it."""
+    """The package's folder, or the file's own; messages name files relative to it."""
     search: tuple[Path, ...]
-    """Folders in which packages are looked for, in this order."""
+    """The folders in which packages are searched, in this order."""
 
     @property
     def name(self) -> str:
-        """What the launch is called: ``maze`` of ``maze.launch.py``."""
+        """The name of the launch: ``maze`` for ``maze.launch.py``."""
         return self.file.name.partition(".")[0]
 
 
-def find_launch(where: str, file: str | None, more: Iterable[Path]) -> LaunchTarget:
-    """The launch file that ``kit launch WHERE [FILE]`` means. ``more``: where else packages are looked for.
+def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]) -> LaunchTarget:
+    """Finds the launch file that ``kit launch WHERE [FILE]`` means. ``extra_folders`` are searched for packages too.
 
     WHERE is a launch file, the folder of a package or of several, or a package's name. Raises PackageError.
     """
     path = Path(where).expanduser()
-    more = (*more, SHARE)
-    here = [Path.cwd(), Path.cwd() / "src", *more]
+    extra_folders = (*extra_folders, SHARE_FOLDER)
+    here = [Path.cwd(), Path.cwd() / "src", *extra_folders]
     if path.is_file():
         if path.suffix != ".py":
             raise PackageError(
@@ -44,7 +44,7 @@ def find_launch(where: str, file: str | None, more: Iterable[Path]) -> LaunchTar
             )
         path = path.absolute()
         folder = next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
-        return LaunchTarget(path, folder, _search(folder, more))
+        return LaunchTarget(path, folder, _search_order(folder, extra_folders))
     if not path.is_dir():
         packages = find_packages(here)
         if where not in packages:
@@ -53,21 +53,21 @@ def find_launch(where: str, file: str | None, more: Iterable[Path]) -> LaunchTar
         path = packages[where]
     path = path.absolute()
     if (path / "package.xml").is_file():
-        return _in_package(path, file, more)
+        return _choose_launch_file(path, file, extra_folders)
     inside = find_packages([path])
     if len(inside) == 1:
-        return _in_package(next(iter(inside.values())), file, more)
+        return _choose_launch_file(next(iter(inside.values())), file, extra_folders)
     if not inside:
         alone = sorted(path.glob("*launch.py"))
         if len(alone) == 1 and file is None:
-            return LaunchTarget(alone[0], path, _search(path, more))
+            return LaunchTarget(alone[0], path, _search_order(path, extra_folders))
         raise PackageError(f"{path}: no package.xml here or below, so this is no ROS 2 package")
     raise PackageError(
         f"{where}: several packages lie there: {', '.join(sorted(inside))}. Name one of their folders."
     )
 
 
-def _in_package(folder: Path, file: str | None, more: Iterable[Path]) -> LaunchTarget:
+def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[Path]) -> LaunchTarget:
     files = read_package(folder).launch_files
     if file is not None:
         named = [each for each in files if each.name == file or str(each.relative_to(folder)) == file]
@@ -75,9 +75,9 @@ def _in_package(folder: Path, file: str | None, more: Iterable[Path]) -> LaunchT
             named = [folder / file]
         if not named:
             raise PackageError(f"{folder}: there is no launch file {file}; there are: {_names(files)}")
-        return LaunchTarget(named[0], folder, _search(folder, more))
+        return LaunchTarget(named[0], folder, _search_order(folder, extra_folders))
     if len(files) == 1:
-        return LaunchTarget(files[0], folder, _search(folder, more))
+        return LaunchTarget(files[0], folder, _search_order(folder, extra_folders))
     if not files:
         raise PackageError(
             f"{folder}: there is no launch file: none whose name ends in launch.py, here or in launch/"
@@ -91,6 +91,6 @@ def _names(files: Sequence[Path]) -> str:
     return ", ".join(file.name for file in files) or "none"
 
 
-def _search(folder: Path, more: Iterable[Path]) -> tuple[Path, ...]:
-    """The package itself first, then what lies beside it, then the rest."""
-    return tuple(dict.fromkeys([folder, folder.parent, *more]))
+def _search_order(folder: Path, extra_folders: Iterable[Path]) -> tuple[Path, ...]:
+    """The package itself, then its parent folder, then the other folders."""
+    return tuple(dict.fromkeys([folder, folder.parent, *extra_folders]))

@@ -1,4 +1,4 @@
-"""A launch: one launch file being carried out, with all its processes, in one graph."""
+"""Runs a launch file with all its processes in one graph, and its ticks where it has no world."""
 
 from __future__ import annotations
 
@@ -10,30 +10,36 @@ from typing import Final, Literal
 
 from kit.host.failure import GuestError
 from kit.host.wire import Json
-from kit.launch.advice import advice
-from kit.launch.errors import CannotStart
-from kit.launch.launch_file_process import LaunchFile
+from kit.launch.launch_file_process import LaunchFileProcess
 from kit.launch.launch_file_search import LaunchTarget
-from kit.launch.processes import Ended, Process
-from kit.launch.program_lookup import DESK_BOUNDS, Bounds, Means, is_ours, start
-from kit.launch.requests import End, EndAll, Listen, Request, Say, Start
-from kit.launch.world import WorldWanted
+from kit.launch.processes import Process, ProcessExit
+from kit.launch.program_lookup import (
+    INTERACTIVE_BOUNDS,
+    LaunchBounds,
+    StartContext,
+    is_builtin,
+    start_process,
+)
+from kit.launch.requests import EndRequest, LogRequest, OutputRequest, Request, ShutdownRequest, StartRequest
+from kit.launch.start_errors import ProcessStartError, suggest_fix
+from kit.launch.world import WorldRequest
 from kit.ros.graph.graph import Graph
+from kit.run.lockstep import Participant, exchange_until_idle
 
-LOOK_S: Final = 0.05
-"""While time stands still: seconds between two looks at the processes."""
+POLL_INTERVAL_S: Final = 0.05
+"""How often processes are polled while the simulated time does not advance [s]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
-    """Something said: by a process, or by the launch itself."""
+class OutputLine:
+    """A line printed by a process, or logged by the launch itself."""
 
     program: str
     """``random_walk-2``, or ``launch``."""
     text: str
     stream: Literal["out", "err"] = "out"
     severity: str | None = None
-    """Of what the launch says of a program or of itself; None: the program's own words."""
+    """The severity of a line that the launch logs; None for a line that a program printed."""
 
     def __str__(self) -> str:
         if self.severity is None:
@@ -42,17 +48,19 @@ class Line:
 
 
 @dataclass(slots=True)
-class _Running:
-    request: Start
+class _RunningProcess:
+    """A process with the request that it was started for."""
+
+    request: StartRequest
     process: Process
 
 
 class Launch:
-    """Everything that one launch file has started. A guest of whoever ticks; close it when done.
+    """A launch file and the processes it has started: a participant of the lock-step. Close it when done.
 
-    ``begin`` reads the launch file and notes what it wants; ``start`` starts that and waits until it is there.
-    From then on ``exchange`` sees to what follows: it is called in each tick and does not wait. The launch's time
-    is the graph's, without its jumps. What is said goes to ``say``.
+    ``load`` runs the launch file and collects its requests; ``start_processes`` starts the processes and waits until
+    they are in the graph. From then on ``exchange`` is called in each tick and does not wait. The launch's time is
+    the graph's, without its jumps. Each line that is printed or logged is passed to ``on_output``.
     """
 
     def __init__(
@@ -64,198 +72,220 @@ class Launch:
         seed: int = 0,
         workspace: Path | None = None,
         name: str = "",
-        bounds: Bounds = DESK_BOUNDS,
-        say: Callable[[Line], None] = lambda line: None,
+        bounds: LaunchBounds = INTERACTIVE_BOUNDS,
+        on_output: Callable[[OutputLine], None] = lambda line: None,
     ) -> None:
         self.target = target
         self.graph = graph
-        self.world: WorldWanted | None = None
-        """What the launch file has asked Flatland's server for, as soon as it has."""
+        self.world: WorldRequest | None = None
+        """The world that the launch file asks for; None as long as it has asked for none."""
         self.wants_view = False
-        """Whether it has asked for RViz or the like."""
+        """Whether it has asked for RViz or another viewer."""
         self.failures: list[str] = []
-        """What has gone wrong with its processes."""
+        """Failures of its processes and of the launch file, as text."""
         self.is_over = False
-        """Whether everything has been ended, by the launch file's wish or the user's."""
-        self._say = say
-        self._means = Means(
+        """Whether all processes have been ended, by the launch file or by the user."""
+        self._on_output = on_output
+        self._start_context = StartContext(
             graph,
             target.search,
             seed,
-            self._tell,
-            self._want_world,
-            self._want_view,
+            self._log,
+            self._request_world,
+            self._request_view,
             workspace,
             name,
             bounds,
         )
         self._started = 0
-        self._waiting: list[Start] = []
-        self._running: dict[int, _Running] = {}
-        self._happened: list[Json] = []
-        self._listens = False
+        self._waiting: list[StartRequest] = []
+        self._running: dict[int, _RunningProcess] = {}
+        self._events: list[Json] = []
+        self._reports_output = False
         self._clock_ns = 0
         self._seen_ns = graph.now_ns
-        self._looked_s = 0.0
-        self._file = LaunchFile(target.file, target.folder, target.search, arguments or {}, bounds)
+        self._polled_s = 0.0
+        self._launch_file = LaunchFileProcess(
+            target.file, target.folder, target.search, arguments or {}, bounds
+        )
 
-    def begin(self) -> None:
-        """Reads the launch file and notes what it wants at once; what the kit has itself is there at once.
+    def load(self) -> None:
+        """Runs the launch file and collects its requests; builtin programs start at once.
 
-        Raises GuestError, CannotStart.
+        Raises GuestError, ProcessStartError.
         """
-        self._carry_out(self._file.begin())
-        self._start_waiting(is_ours)
+        self._carry_out(self._launch_file.start())
+        self._start_waiting(is_builtin)
 
-    def start(self) -> None:
-        """Starts what is wanted so far, and waits until it is there. Raises CannotStart."""
+    def start_processes(self) -> None:
+        """Starts the requested processes and waits until they are in the graph. Raises ProcessStartError."""
         self._start_waiting()
         for running in list(self._running.values()):
             running.process.wait_until_started()
-        self._look()
+        self._poll_processes()
 
     @property
     def has_programs(self) -> bool:
-        """Whether anything runs that can come to an end by itself."""
-        return any(not running.process.is_ours for running in self._running.values()) or bool(self._waiting)
+        """True if a process runs or waits that can end by itself."""
+        return any(not running.process.is_builtin for running in self._running.values()) or bool(
+            self._waiting
+        )
 
     @property
-    def wants_time(self) -> bool:
-        """Whether the launch file wants to go on later."""
-        return self._file.wake_ns is not None
+    def has_timers(self) -> bool:
+        """True if the launch file has timers that are not due yet."""
+        return self._launch_file.wake_ns is not None
 
     def exchange(self) -> bool:
-        """As a runner's guest: talks with all programs; now and then looks who has ended, and what follows."""
+        """Exchanges messages with all programs, and polls the processes at most once per tick. True if any sent
+        something."""
         now = self.graph.now_ns
-        if now != self._seen_ns or time.monotonic() - self._looked_s > LOOK_S:
+        if now != self._seen_ns or time.monotonic() - self._polled_s > POLL_INTERVAL_S:
             self._clock_ns += max(0, now - self._seen_ns)
             self._seen_ns = now
-            self._look()
-        heard = False
+            self._poll_processes()
+        has_sent = False
         for running in list(self._running.values()):
-            heard |= running.process.exchange()
-        return heard
+            has_sent |= running.process.exchange()
+        return has_sent
 
     def interrupt(self, reason: str) -> None:
-        """The user wants the end: the launch file may react, then everything is ended."""
+        """Ends the launch for the user: the launch file may react, then all processes are ended."""
         if not self.is_over:
-            self._tell(f"ended by the user: {reason}")
-            self._ask([["interrupted", reason]])
-            self._end_all()
+            self._log(f"ended by the user: {reason}")
+            self._advance_launch_file([["interrupted", reason]])
+            self._end_all_processes()
 
     def close(self) -> None:
-        """Ends everything at once. May be called twice."""
+        """Ends all processes at once. May be called twice."""
         self.is_over = True
         self._waiting.clear()
         for running in self._running.values():
             running.process.close()
         self._running.clear()
-        self._file.close()
+        self._launch_file.close()
 
-    def _look(self) -> None:
-        self._looked_s = time.monotonic()
+    def _poll_processes(self) -> None:
+        self._polled_s = time.monotonic()
         if self.is_over:
             return
         for number, running in list(self._running.items()):
             ended = running.process.poll()
-            self._print(running)
+            self._pass_on_output(running)
             if ended is not None:
-                self._note_end(number, running, ended)
-        wake = self._file.wake_ns
-        if self._happened or (wake is not None and wake <= self._clock_ns):
-            happened, self._happened = self._happened, []
-            self._ask(happened)
+                self._record_exit(number, running, ended)
+        wake = self._launch_file.wake_ns
+        if self._events or (wake is not None and wake <= self._clock_ns):
+            events, self._events = self._events, []
+            self._advance_launch_file(events)
             try:
                 self._start_waiting()
-            except CannotStart as problem:
-                self._fail(str(problem))
-                self._end_all()
+            except ProcessStartError as problem:
+                self._record_failure(str(problem))
+                self._end_all_processes()
 
-    def _ask(self, happened: list[Json]) -> None:
+    def _advance_launch_file(self, events: list[Json]) -> None:
         try:
-            self._carry_out(self._file.go_on(self._clock_ns, happened))
+            self._carry_out(self._launch_file.advance(self._clock_ns, events))
         except GuestError as error:
-            self._fail(f"the launch file stopped: {error.failure}")
-            self._end_all()
+            self._record_failure(f"the launch file stopped: {error.failure}")
+            self._end_all_processes()
 
     def _carry_out(self, requests: list[Request]) -> None:
-        for line in self._file.take_output().lines:
-            self._say(Line("launch", line.text, line.stream))
+        for line in self._launch_file.take_output().lines:
+            self._on_output(OutputLine("launch", line.text, line.stream))
         for request in requests:
-            if isinstance(request, Start):
+            if isinstance(request, StartRequest):
                 self._waiting.append(request)
-            elif isinstance(request, Say):
-                self._tell(request.text, request.severity)
-            elif isinstance(request, Listen):
-                self._listens = True
-            elif isinstance(request, End):
-                self._end(request.number)
-            elif isinstance(request, EndAll):
-                self._tell(f"everything is ended: {request.reason}")
-                self._end_all()
+            elif isinstance(request, LogRequest):
+                self._log(request.text, request.severity)
+            elif isinstance(request, OutputRequest):
+                self._reports_output = True
+            elif isinstance(request, EndRequest):
+                self._end_process(request.number)
+            elif isinstance(request, ShutdownRequest):
+                self._log(f"everything is ended: {request.reason}")
+                self._end_all_processes()
 
-    def _start_waiting(self, which: Callable[[Start], bool] = lambda request: True) -> None:
+    def _start_waiting(self, which: Callable[[StartRequest], bool] = lambda request: True) -> None:
         chosen = [request for request in self._waiting if which(request)]
         self._waiting = [request for request in self._waiting if not which(request)]
-        most = self._means.bounds.most
+        max_processes = self._start_context.bounds.max_processes
         for request in chosen:
             self._started += 1
-            if most is not None and self._started > most:
-                raise CannotStart(f"{request.where}more than {most} processes are started")
-            process = start(request, self._means)
-            self._running[request.number] = _Running(request, process)
-            self._happened.append(["started", request.number, process.pid])
-            self._tell(f"process started with pid [{process.pid}]", name=request.name)
+            if max_processes is not None and self._started > max_processes:
+                raise ProcessStartError(f"{request.where}more than {max_processes} processes are started")
+            process = start_process(request, self._start_context)
+            self._running[request.number] = _RunningProcess(request, process)
+            self._events.append(["started", request.number, process.pid])
+            self._log(f"process started with pid [{process.pid}]", name=request.name)
 
-    def _note_end(self, number: int, running: _Running, ended: Ended) -> None:
+    def _record_exit(self, number: int, running: _RunningProcess, ended: ProcessExit) -> None:
         pid, name = running.process.pid, running.request.name
         running.process.close()
         del self._running[number]
-        self._happened.append(["exited", number, pid, ended.code])
+        self._events.append(["exited", number, pid, ended.code])
         if ended.code == 0:
-            self._tell(f"process has finished cleanly [pid {pid}]", name=name)
+            self._log(f"process has finished cleanly [pid {pid}]", name=name)
             return
-        self._tell(f"process has died [pid {pid}, exit code {ended.code}]", "ERROR", name=name)
+        self._log(f"process has died [pid {pid}, exit code {ended.code}]", "ERROR", name=name)
         reason = ended.reason or f"exit code {ended.code}"
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
-            self._say(Line(name, ended.reason, "err"))
-        hint = advice(ended.reason)
+            self._on_output(OutputLine(name, ended.reason, "err"))
+        hint = suggest_fix(ended.reason)
         if hint:
-            self._say(Line(name, hint, "err"))
+            self._on_output(OutputLine(name, hint, "err"))
 
-    def _end(self, number: int) -> None:
+    def _end_process(self, number: int) -> None:
         running = self._running.get(number)
         if running is not None:
             running.process.close()
-            self._note_end(number, running, Ended(0))
+            self._record_exit(number, running, ProcessExit(0))
         self._waiting = [request for request in self._waiting if request.number != number]
 
-    def _end_all(self) -> None:
+    def _end_all_processes(self) -> None:
         for running in self._running.values():
-            self._print(running)
+            self._pass_on_output(running)
             running.process.close()
         self._running.clear()
         self._waiting.clear()
         self.is_over = True
 
-    def _print(self, running: _Running) -> None:
+    def _pass_on_output(self, running: _RunningProcess) -> None:
         for text, stream in running.process.take_lines():
-            self._say(Line(running.request.name, text, stream))
-            if self._listens:
-                self._happened.append(["printed", running.request.number, f"{text}\n", stream == "out"])
+            self._on_output(OutputLine(running.request.name, text, stream))
+            if self._reports_output:
+                self._events.append(["printed", running.request.number, f"{text}\n", stream == "out"])
 
-    def _tell(self, text: str, severity: str = "INFO", *, name: str = "launch") -> None:
-        self._say(Line(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity))
+    def _log(self, text: str, severity: str = "INFO", *, name: str = "launch") -> None:
+        self._on_output(OutputLine(name, text, "err" if severity in ("ERROR", "FATAL") else "out", severity))
 
-    def _fail(self, text: str) -> None:
+    def _record_failure(self, text: str) -> None:
         self.failures.append(text)
-        self._tell(text, "ERROR")
+        self._log(text, "ERROR")
 
-    def _want_world(self, wanted: WorldWanted) -> None:
+    def _request_world(self, world: WorldRequest) -> None:
         if self.world is not None:
-            raise CannotStart(f"{wanted.where}a launch has one flatland_server, and this would be the second")
-        self.world = wanted
+            raise ProcessStartError(
+                f"{world.where}a launch has one flatland_server, and this would be the second"
+            )
+        self.world = world
 
-    def _want_view(self) -> None:
+    def _request_view(self) -> None:
         self.wants_view = True
+
+
+class GraphOnlyRun:
+    """Ticks the programs of a launch without a world: a graph and its participants, with a clock."""
+
+    def __init__(self, graph: Graph, step_size: float = 0.01) -> None:
+        """``step_size``: simulated time of a tick [s]."""
+        self.graph = graph
+        self.step_size = step_size
+        self.participants: list[Participant] = []
+
+    def tick(self) -> None:
+        """Exchanges messages until no participant has any; then advances the time by a step."""
+        exchange_until_idle(self.graph, self.participants)
+        self.graph.advance(self.graph.now_ns + round(self.step_size * 1e9))

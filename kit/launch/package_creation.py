@@ -1,4 +1,4 @@
-"""Making a new ROS 2 package: one that the kit launches as it lies, and that colcon builds."""
+"""Creates a new ROS 2 package, which the kit launches without a build and which colcon can build."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from kit.ros.packages import PackageError
 from kit.world.catalogue import find_map
 
 TEMPLATES: Final = Path(__file__).parent / "new_package"
-NAME: Final = re.compile(r"[a-z][a-z0-9_]*")
-RESERVED: Final = frozenset(
+NAME_PATTERN: Final = re.compile(r"[a-z][a-z0-9_]*")
+RESERVED_NAMES: Final = frozenset(
     {"launch", "test", "rclpy", "std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs"}
 )
 
 
 def create_package(name: str, destination: Path, *, node: str = "driver", map_name: str = "simple") -> Path:
-    """The new package's folder in ``destination``: all of it, or nothing. Raises PackageError, UnknownMap.
+    """Creates a package in ``destination``, completely or not at all; returns its folder. Raises PackageError, UnknownMap.
 
-    ``node``: what its program is called; ``map_name``: the map of the kit that its world begins with.
+    ``node``: the name of its program; ``map_name``: the map of the kit that is copied into its world.
     """
     for what, text in (("package", name), ("program", node)):
-        if not NAME.fullmatch(text) or text in RESERVED:
+        if not NAME_PATTERN.fullmatch(text) or text in RESERVED_NAMES:
             raise PackageError(
                 f"a {what} cannot be called '{text}': small letters, digits and underscores, a letter first, "
                 "and no name that ROS 2 uses itself"
@@ -41,7 +41,7 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
         destination.mkdir(parents=True, exist_ok=True)
         part = Path(tempfile.mkdtemp(dir=destination, prefix=f".{name}."))
         try:
-            _fill(part, name, node)
+            _write_files(part, name, node)
             _copy_world(card.world_file, part / "world")
             part.chmod(0o755)
             part.rename(folder)
@@ -53,7 +53,7 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
     return folder
 
 
-def _fill(folder: Path, name: str, node: str) -> None:
+def _write_files(folder: Path, name: str, node: str) -> None:
     user = re.sub(r"[^A-Za-z0-9_.-]", "", os.environ.get("USER", "")) or "me"
     words = {
         "name": name,
@@ -86,7 +86,7 @@ def _write(file: Path, text: str) -> None:
 
 
 def _copy_world(world_file: Path, folder: Path) -> None:
-    """A map's files, all in one folder: the world names its models beside it."""
+    """Copies a map's files into one folder; the world names its models relative to it."""
     folder.mkdir()
     text = world_file.read_text(encoding="utf-8")
     for found in _model_files(text):

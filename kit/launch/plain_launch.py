@@ -1,4 +1,4 @@
-"""A launch without a screen: ticked until it ends by itself, or for so long, or until the user has enough."""
+"""Runs a launch without a screen: until it ends by itself, reaches a limit, or is interrupted."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from kit.launch.graph_only import Worldless
-from kit.launch.launch_run import Launch
+from kit.launch.launch_run import GraphOnlyRun, Launch
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, Tickable, run_until, when
@@ -16,13 +15,13 @@ from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 
 
 @dataclass(slots=True)
-class Limit:
-    """How long a launch may go on; None: as long as it likes."""
+class LaunchLimit:
+    """How long a launch may run; None: without limit."""
 
     ticks: int | None = None
-    """So many ticks, of a world or without one."""
+    """Ticks that are left, with or without a world."""
     until_s: float | None = None
-    """So many simulated seconds."""
+    """Simulated time at which the launch ends [s]."""
 
     @property
     def is_set(self) -> bool:
@@ -36,55 +35,57 @@ class Limit:
             self.ticks -= 1
 
 
-def run_plainly(
+def run_plain_launch(
     launch: Launch,
     *,
     seed: int = 0,
-    limit: Limit | None = None,
+    limit: LaunchLimit | None = None,
     factor: float | None = None,
-    company: Callable[[Graph], ClosableParticipant | None] = lambda graph: None,
+    make_companion: Callable[[Graph], ClosableParticipant | None] = lambda graph: None,
     log: Callable[[LogRecord], None] = lambda record: None,
 ) -> None:
-    """Carries the launch out in this thread: with a limit as fast as it goes, unless ``factor`` says otherwise.
+    """Runs the launch in this thread: in real time, or with a limit as fast as possible; ``factor`` overrides both.
 
-    ``log`` gets what the kit's own nodes say. Raises GuestError, CannotStart, WorldError, OSError; and
-    KeyboardInterrupt after the launch file has heard of it.
+    ``log`` receives the log lines of the kit's own nodes. Raises GuestError, ProcessStartError, WorldError, OSError; and
+    KeyboardInterrupt after the launch file has reacted to it.
     """
-    limit = limit or Limit()
+    limit = limit or LaunchLimit()
     factor = factor or (MAXIMUM if limit.is_set else None)
     with ExitStack() as stack:
         stack.callback(launch.close)
-        launch.begin()
+        launch.load()
         launch.graph.log.sink = log
-        company_there: list[Participant] = []
-        companion = company(launch.graph)
+        companions: list[Participant] = []
+        companion = make_companion(launch.graph)
         if companion is not None:
             stack.callback(companion.close)
-            company_there.append(companion)
+            companions.append(companion)
         if launch.world is None:
-            launch.start()
-            worldless = Worldless(launch.graph)
-            worldless.participants += [launch, *company_there]
-            schedule = Schedule(worldless.step_size, factor=factor or REAL_TIME)
-            _go_on(launch, worldless, schedule, limit, lambda: launch.world is not None or _is_idle(launch))
+            launch.start_processes()
+            graph_only_run = GraphOnlyRun(launch.graph)
+            graph_only_run.participants += [launch, *companions]
+            schedule = Schedule(graph_only_run.step_size, factor=factor or REAL_TIME)
+            _run_until_end(
+                launch, graph_only_run, schedule, limit, lambda: launch.world is not None or _is_idle(launch)
+            )
         if launch.world is not None and not launch.is_over:
-            from kit.launch.session import LaunchedSession  # only now: it brings the physics
+            from kit.launch.session import LaunchSession  # only now: it brings the physics
 
-            session = stack.enter_context(LaunchedSession(launch, seed=seed))
+            session = stack.enter_context(LaunchSession(launch, seed=seed))
             launch.graph.log.sink = log
             step_size = launch.world.step_size
             schedule = Schedule(step_size, factor=factor or launch.world.factor)
             session.runner.on_rate = lambda rate: schedule.set_factor(rate * step_size)
-            session.runner.participants += company_there
-            launch.start()
-            _go_on(launch, session.runner, schedule, limit, lambda: False)
+            session.runner.participants += companions
+            launch.start_processes()
+            _run_until_end(launch, session.runner, schedule, limit, lambda: False)
 
 
-def _go_on(
-    launch: Launch, run: Tickable, schedule: Schedule, limit: Limit, is_enough: Callable[[], bool]
+def _run_until_end(
+    launch: Launch, run: Tickable, schedule: Schedule, limit: LaunchLimit, is_done: Callable[[], bool]
 ) -> None:
     ends = (
-        when(lambda: launch.is_over or is_enough()),
+        when(lambda: launch.is_over or is_done()),
         EndCondition(EndReason.LIMIT, lambda: limit.is_reached(launch.graph.now_ns)),
     )
     try:
@@ -95,5 +96,5 @@ def _go_on(
 
 
 def _is_idle(launch: Launch) -> bool:
-    """Whether nothing will happen any more by itself."""
-    return not (launch.has_programs or launch.wants_time)
+    """True if no process and no timer is left."""
+    return not (launch.has_programs or launch.has_timers)

@@ -1,4 +1,4 @@
-"""Running processes of a launch: a program of a package, a command, or something the kit has itself."""
+"""The processes of a launch: node programs, other commands, and programs that the kit brings itself."""
 
 from __future__ import annotations
 
@@ -16,57 +16,58 @@ from kit.host.node_process import Guest
 from kit.host.wire import printable
 from kit.ros.node.node import Node
 
-FAREWELL_S: Final = 2.0
-"""How long a command has to end after it was asked to."""
+EXIT_TIMEOUT_S: Final = 2.0
+"""How long a command may take to end after SIGINT [s]."""
 
-LONGEST_LINE: Final = 4000
+MAX_LINE_LENGTH: Final = 4000
+"""Bytes of a printed line that are kept."""
 
 
-class Printed(NamedTuple):
+class PrintedLine(NamedTuple):
     """A line that a process has printed."""
 
     text: str
     stream: Literal["out", "err"]
 
 
-class Ended(NamedTuple):
-    """How a process has ended: its exit code, and in words if that says more."""
+class ProcessExit(NamedTuple):
+    """How a process has ended: its exit code, and the failure as text if there is one."""
 
     code: int
     reason: str = ""
 
 
 class Process(Protocol):
-    """Something a launch has started. ``poll`` is called between ticks and never waits."""
+    """A process of a launch. ``poll`` is called between ticks and never waits."""
 
     pid: int
-    is_ours: bool
-    """Whether it is the kit's own, and so never ends by itself."""
+    is_builtin: bool
+    """Whether the kit brings it itself; such a process never ends by itself."""
 
-    def poll(self) -> Ended | None:
-        """How it has ended; None while it runs."""
+    def poll(self) -> ProcessExit | None:
+        """The exit status; None while it runs."""
 
-    def take_lines(self) -> list[Printed]:
-        """What it has printed since the last time."""
+    def take_lines(self) -> list[PrintedLine]:
+        """Removes and returns the lines it has printed."""
 
     def wait_until_started(self) -> None:
-        """Until it is in the graph, or has failed to be."""
+        """Waits until its nodes are in the graph, or it has failed."""
 
     @property
     def wake_ns(self) -> int | None:
-        """When it wants to go on by itself [the graph's time]; None: only when something is said."""
+        """When its next timer is due [ns of the graph]; None: it waits for messages only."""
 
     def exchange(self) -> bool:
-        """As a runner's guest."""
+        """Exchanges messages, as a participant of the lock-step."""
 
     def close(self) -> None:
         """Ends it. May be called twice."""
 
 
-class GuestProcess:
-    """A node program: a guest that joins as soon as it has started."""
+class NodeProgramProcess:
+    """A program with nodes, which join the graph as soon as it has started."""
 
-    is_ours = False
+    is_builtin = False
 
     def __init__(self, guest: Guest) -> None:
         self._guest = guest
@@ -74,7 +75,7 @@ class GuestProcess:
         self._failure: Failure | None = None
         self.pid = guest.pid
 
-    def poll(self) -> Ended | None:
+    def poll(self) -> ProcessExit | None:
         if not self._has_joined and self._failure is None:
             try:
                 if self._guest.is_started():
@@ -83,8 +84,8 @@ class GuestProcess:
                 self._failure = error.failure
         failure = self._failure or self._guest.failure
         if failure is not None:
-            return Ended(1, str(failure))
-        return Ended(0) if self._guest.has_ended else None
+            return ProcessExit(1, str(failure))
+        return ProcessExit(0) if self._guest.has_ended else None
 
     def wait_until_started(self) -> None:
         if not self._has_joined and self._failure is None:
@@ -94,11 +95,11 @@ class GuestProcess:
             except GuestError as error:
                 self._failure = error.failure
 
-    def take_lines(self) -> list[Printed]:
+    def take_lines(self) -> list[PrintedLine]:
         printed = self._guest.take_output()
-        lines = [Printed(line.text, line.stream) for line in printed.lines]
+        lines = [PrintedLine(line.text, line.stream) for line in printed.lines]
         if printed.dropped:
-            lines.append(Printed(f"({printed.dropped} bytes more were printed and are left out)", "err"))
+            lines.append(PrintedLine(f"({printed.dropped} bytes more were printed and are left out)", "err"))
         return lines
 
     @property
@@ -116,23 +117,23 @@ class GuestProcess:
         self._has_joined = True
 
 
-class OwnNode:
-    """A node of the kit's own in place of a program. It runs until it is ended."""
+class BuiltinProcess:
+    """Nodes of the kit itself in place of a program. They run until they are ended."""
 
-    is_ours = True
+    is_builtin = True
 
     def __init__(self, *nodes: Node) -> None:
         self._nodes = nodes
         self.pid = os.getpid()
 
-    def poll(self) -> Ended | None:
+    def poll(self) -> ProcessExit | None:
         return None
 
-    def take_lines(self) -> list[Printed]:
+    def take_lines(self) -> list[PrintedLine]:
         return []
 
     def wait_until_started(self) -> None:
-        """It is there at once."""
+        """No-op: it has started already."""
 
     @property
     def wake_ns(self) -> int | None:
@@ -147,9 +148,9 @@ class OwnNode:
 
 
 class CommandProcess:
-    """Any other program, as the user's shell would start it."""
+    """Any other program, started as by the user's shell."""
 
-    is_ours = False
+    is_builtin = False
 
     def __init__(
         self, command: Sequence[str], *, shell: bool, environment: Mapping[str, str], cwd: Path
@@ -169,16 +170,16 @@ class CommandProcess:
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         self._streams = {"out": self._process.stdout, "err": self._process.stderr}
-        self._begun = {"out": b"", "err": b""}
+        self._partial_lines = {"out": b"", "err": b""}
         for stream in self._streams.values():
             os.set_blocking(stream.fileno(), False)
 
-    def poll(self) -> Ended | None:
+    def poll(self) -> ProcessExit | None:
         code = self._process.poll()
-        return None if code is None else Ended(code if code >= 0 else 128 - code)
+        return None if code is None else ProcessExit(code if code >= 0 else 128 - code)
 
-    def take_lines(self) -> list[Printed]:
-        lines: list[Printed] = []
+    def take_lines(self) -> list[PrintedLine]:
+        lines: list[PrintedLine] = []
         for name, stream in self._streams.items():
             if stream.closed:
                 continue
@@ -186,16 +187,16 @@ class CommandProcess:
             with suppress(BlockingIOError):
                 while part := os.read(stream.fileno(), 1 << 16):
                     data += part
-            *whole, rest = (self._begun[name] + data).split(b"\n")
-            self._begun[name] = rest[:LONGEST_LINE]
+            *whole, rest = (self._partial_lines[name] + data).split(b"\n")
+            self._partial_lines[name] = rest[:MAX_LINE_LENGTH]
             lines += [_line(line, name) for line in whole]
             if rest and self._process.poll() is not None:
-                self._begun[name] = b""
+                self._partial_lines[name] = b""
                 lines.append(_line(rest, name))
         return lines
 
     def wait_until_started(self) -> None:
-        """It is there at once."""
+        """No-op: it has started already."""
 
     @property
     def wake_ns(self) -> int | None:
@@ -209,17 +210,17 @@ class CommandProcess:
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self.pid, number)
             with suppress(subprocess.TimeoutExpired):
-                self._process.wait(FAREWELL_S)
+                self._process.wait(EXIT_TIMEOUT_S)
                 break
         for stream in self._streams.values():
             stream.close()
 
 
-def _line(data: bytes, name: str) -> Printed:
-    text = printable(data[:LONGEST_LINE].decode("utf-8", "replace").rstrip("\r"))
-    return Printed(text, "out" if name == "out" else "err")
+def _line(data: bytes, name: str) -> PrintedLine:
+    text = printable(data[:MAX_LINE_LENGTH].decode("utf-8", "replace").rstrip("\r"))
+    return PrintedLine(text, "out" if name == "out" else "err")
 
 
 def kit_command(arguments: Sequence[str]) -> list[str]:
-    """The kit's own command line, whatever it is called where it is installed."""
+    """The command that runs the kit's command line with these arguments."""
     return [sys.executable, "-m", "kit", *arguments]

@@ -1,4 +1,4 @@
-"""What a request to start a process means: which of the kit's own things, whose program, or which command."""
+"""Finds and starts what a launch file asks for: a builtin program, a package's program, or a command."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from kit.host.package_program import Installed
 from kit.host.sandbox.confinement import DESK_LEVEL, Level
 from kit.host.sandbox.limits import DESK, GIB, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE
-from kit.launch.errors import CannotStart
-from kit.launch.processes import CommandProcess, GuestProcess, OwnNode, Process, kit_command
-from kit.launch.requests import Start
+from kit.launch.processes import BuiltinProcess, CommandProcess, NodeProgramProcess, Process, kit_command
+from kit.launch.requests import StartRequest
+from kit.launch.start_errors import ProcessStartError
 from kit.launch.static_transform import publish_transform
-from kit.launch.world import WorldWanted, world_wanted
+from kit.launch.world import WorldRequest, parse_world_request
 from kit.ros.graph.graph import Graph
 from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, read_package
 
@@ -33,114 +33,116 @@ PROGRAM_LIMITS: Final = replace(
     output=MIB,
     frame=16 * MIB,
 )
-"""Of a package's program: it may import a learning library and train."""
+"""Limits of a package's program: generous, since it may import a learning library and train."""
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
-    """How far what a launch starts is bounded. The defaults are the desk's: it is its user's own."""
+class LaunchBounds:
+    """Limits of what a launch starts. The defaults are for a user's own package."""
 
     level: Level = DESK_LEVEL
     limits: Limits = PROGRAM_LIMITS
     file_limits: Limits | None = None
-    """Of the launch file's own process; None: the usual ones."""
+    """Limits of the launch file's own process; None: the usual ones, and the user's environment."""
     commands: bool = True
-    """Whether anything but packages' programs may be run."""
-    most: int | None = None
-    """Processes that one launch may start."""
+    """Whether other commands than programs of packages may be run."""
+    max_processes: int | None = None
+    """The number of processes that one launch may start; None: any."""
 
 
-DESK_BOUNDS: Final = Bounds()
+INTERACTIVE_BOUNDS: Final = LaunchBounds()
 
 
 @dataclass(frozen=True, slots=True)
-class Means:
-    """What is needed to start something."""
+class StartContext:
+    """The graph, settings and callbacks needed to start a process."""
 
     graph: Graph
     search: tuple[Path, ...]
     seed: int
-    say: Callable[[str], None]
-    """A line in the launch's log."""
-    want_world: Callable[[WorldWanted], None]
-    want_view: Callable[[], None]
+    log: Callable[[str], None]
+    """Logs a line of the launch."""
+    request_world: Callable[[WorldRequest], None]
+    request_view: Callable[[], None]
     workspace: Path | None
     world: str
-    """What other terminals call this launch."""
-    bounds: Bounds = DESK_BOUNDS
+    """The name by which other terminals find the launch."""
+    bounds: LaunchBounds = INTERACTIVE_BOUNDS
 
 
-def is_ours(request: Start) -> bool:
-    """Whether the kit has something of its own for it."""
-    return (request.package, request.executable) in STAND_INS
+def is_builtin(request: StartRequest) -> bool:
+    """True if the kit brings the program itself."""
+    return (request.package, request.executable) in BUILTIN_PROGRAMS
 
 
-def start(request: Start, means: Means) -> Process:
-    """Starts it. Raises CannotStart."""
-    stand_in = STAND_INS.get((request.package, request.executable))
-    if stand_in is not None:
-        return stand_in(request, means)
+def start_process(request: StartRequest, context: StartContext) -> Process:
+    """Starts the process that is asked for. Raises ProcessStartError."""
+    start_builtin = BUILTIN_PROGRAMS.get((request.package, request.executable))
+    if start_builtin is not None:
+        return start_builtin(request, context)
     try:
         if request.package is not None and request.executable is not None:
-            return _start_program(request.package, request.executable, request, means)
-        return _start_command(request, means)
+            return _start_program(request.package, request.executable, request, context)
+        return _start_command(request, context)
     except (PackageError, GuestError) as problem:
-        raise CannotStart(f"{request.where}{problem}") from None
+        raise ProcessStartError(f"{request.where}{problem}") from None
 
 
-# What the kit has itself
+# Builtin programs
 
 
-def _be_the_world(request: Start, means: Means) -> Process:
-    wanted = world_wanted(request)
-    means.want_world(wanted)
-    means.say(f"{request.name}: the kit's own world stands in for flatland_server: {wanted.path}")
-    return OwnNode()
+def _start_builtin_world(request: StartRequest, context: StartContext) -> Process:
+    wanted = parse_world_request(request)
+    context.request_world(wanted)
+    context.log(f"{request.name}: the kit's own world stands in for flatland_server: {wanted.path}")
+    return BuiltinProcess()
 
 
-def _be_the_view(request: Start, means: Means) -> Process:
-    means.want_view()
-    means.say(f"{request.name}: the kit's own view stands in for {request.executable}")
-    return OwnNode()
+def _start_builtin_view(request: StartRequest, context: StartContext) -> Process:
+    context.request_view()
+    context.log(f"{request.name}: the kit's own view stands in for {request.executable}")
+    return BuiltinProcess()
 
 
-def _publish_a_transform(request: Start, means: Means) -> Process:
+def _start_static_transform(request: StartRequest, context: StartContext) -> Process:
     try:
-        return OwnNode(publish_transform(means.graph, request.command))
+        return BuiltinProcess(publish_transform(context.graph, request.command))
     except ValueError as problem:
-        raise CannotStart(f"{request.where}{request.executable}: {problem}") from None
+        raise ProcessStartError(f"{request.where}{request.executable}: {problem}") from None
 
 
-STAND_INS: Final[Mapping[tuple[str | None, str | None], Callable[[Start, Means], Process]]] = (
-    MappingProxyType(
-        {
-            ("flatland_server", "flatland_server"): _be_the_world,
-            ("flatland_viz", "flatland_viz"): _be_the_view,
-            ("rviz2", "rviz2"): _be_the_view,
-            ("rqt_graph", "rqt_graph"): _be_the_view,
-            ("tf2_ros", "static_transform_publisher"): _publish_a_transform,
-        }
-    )
+BUILTIN_PROGRAMS: Final[
+    Mapping[tuple[str | None, str | None], Callable[[StartRequest, StartContext], Process]]
+] = MappingProxyType(
+    {
+        ("flatland_server", "flatland_server"): _start_builtin_world,
+        ("flatland_viz", "flatland_viz"): _start_builtin_view,
+        ("rviz2", "rviz2"): _start_builtin_view,
+        ("rqt_graph", "rqt_graph"): _start_builtin_view,
+        ("tf2_ros", "static_transform_publisher"): _start_static_transform,
+    }
 )
-"""By package and executable."""
+"""Functions that start the programs that the kit brings itself, by package and executable."""
 
 
 # A package's program
 
 
-def _start_program(package_name: str, executable_name: str, request: Start, means: Means) -> Process:
-    folders = find_packages(means.search)
+def _start_program(
+    package_name: str, executable_name: str, request: StartRequest, context: StartContext
+) -> Process:
+    folders = find_packages(context.search)
     if package_name not in folders:
-        own = ", ".join(sorted({f"{package}/{name}" for package, name in STAND_INS}))
+        own = ", ".join(sorted({f"{package}/{name}" for package, name in BUILTIN_PROGRAMS}))
         there = ", ".join(sorted(folders)) or "none"
-        raise CannotStart(
+        raise ProcessStartError(
             f"{request.where}package '{package_name}' not found (for its executable '{executable_name}'). "
             f"Packages found: {there}. The kit itself has {own}."
         )
     package = read_package(folders[package_name])
     if not package.executables and package.source is None:
-        raise CannotStart(
-            f"{request.where}package '{package_name}' has no programs in Python: the kit runs no others "
+        raise ProcessStartError(
+            f"{request.where}package '{package_name}' has no programs in Python, and the kit runs no others "
             f"(wanted: '{executable_name}')"
         )
     executable = package.executable(executable_name)
@@ -149,39 +151,44 @@ def _start_program(package_name: str, executable_name: str, request: Start, mean
     installed = Installed(
         package.folder,
         request.cwd or Path.cwd(),
-        _environment(request, means),
+        _environment(request, context),
         f"{executable.module}:{executable.function}",
         tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),
     )
-    return _guest(package.file_of(executable), request.command, installed, means)
+    return _start_node_program(package.file_of(executable), request.command, installed, context)
 
 
-def _guest(file: Path, arguments: Sequence[str], installed: Installed, means: Means) -> Process:
+def _start_node_program(
+    file: Path, arguments: Sequence[str], installed: Installed, context: StartContext
+) -> Process:
     guest = Guest(
-        means.graph,
+        context.graph,
         file,
         args=arguments,
-        seed=means.seed,
-        limits=means.bounds.limits,
-        level=means.bounds.level,
+        seed=context.seed,
+        limits=context.bounds.limits,
+        level=context.bounds.level,
         installed=installed,
     )
-    return GuestProcess(guest)
+    return NodeProgramProcess(guest)
 
 
-def _environment(request: Start, means: Means) -> dict[str, str]:
-    ours = {SEARCH_VARIABLE: os.pathsep.join(map(str, means.search)), WORLD_VARIABLE: means.world}
-    if means.workspace is not None:
-        ours["KIT_WORKSPACE"] = str(means.workspace)
-    return {**request.environment, **ours}
+def _environment(request: StartRequest, context: StartContext) -> dict[str, str]:
+    kit_variables = {
+        SEARCH_VARIABLE: os.pathsep.join(map(str, context.search)),
+        WORLD_VARIABLE: context.world,
+    }
+    if context.workspace is not None:
+        kit_variables["KIT_WORKSPACE"] = str(context.workspace)
+    return {**request.environment, **kit_variables}
 
 
-# Any other command
+# Other commands
 
 
-def _start_command(request: Start, means: Means) -> Process:
-    if not means.bounds.commands:
-        raise CannotStart(
+def _start_command(request: StartRequest, context: StartContext) -> Process:
+    if not context.bounds.commands:
+        raise ProcessStartError(
             f"{request.where}'{' '.join(request.command)[:60]}' is not started here: only programs of packages are, "
             "with Node(package=..., executable=...)"
         )
@@ -190,14 +197,16 @@ def _start_command(request: Start, means: Means) -> Process:
     name = Path(command[0]).name if command else ""
     if name.startswith("python") and len(command) > 1 and command[1].endswith(".py") and not request.shell:
         file = (cwd / command[1]).absolute()
-        installed = Installed(file.parent, cwd, _environment(request, means))
-        return _guest(file, command[2:], installed, means)
+        installed = Installed(file.parent, cwd, _environment(request, context))
+        return _start_node_program(file, command[2:], installed, context)
     if name == "ros2" and not request.shell:
-        means.say(f"{request.name}: `kit ros` stands in for `ros2`")
+        context.log(f"{request.name}: `kit ros` stands in for `ros2`")
         command = kit_command(["ros", *command[1:]])
     try:
-        return CommandProcess(command, shell=request.shell, environment=_environment(request, means), cwd=cwd)
+        return CommandProcess(
+            command, shell=request.shell, environment=_environment(request, context), cwd=cwd
+        )
     except OSError as problem:
-        raise CannotStart(
+        raise ProcessStartError(
             f"{request.where}'{' '.join(command)}' cannot be started: {problem.strerror or problem}"
         ) from None

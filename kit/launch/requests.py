@@ -1,4 +1,4 @@
-"""What a launch file's process asks for, checked: the other half of ``kit.ros.launch.service``."""
+"""Parses and checks the requests of a launch file's process, which ``kit.ros.launch.service`` makes."""
 
 from __future__ import annotations
 
@@ -15,57 +15,57 @@ Severity = Literal["DEBUG", "INFO", "WARN", "ERROR", "FATAL"]
 
 
 @dataclass(frozen=True, slots=True)
-class Say:
-    """A line of the launch's own log."""
+class LogRequest:
+    """Log a line."""
 
     severity: Severity
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Listen:
-    """The launch file wants to know what processes print."""
+class OutputRequest:
+    """Send an event for every line that a process prints."""
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
-    """A process to be started."""
+class StartRequest:
+    """Start a process."""
 
     number: int
     title: str
     package: str | None
     executable: str | None
-    """Of the package; None: ``command`` says it all."""
+    """The program of the package; None: ``command`` is the whole command."""
     command: tuple[str, ...]
-    """For a node only the arguments."""
+    """The command line; for a package's program its arguments only."""
     shell: bool
     environment: Mapping[str, str]
     cwd: Path | None
     where: str
-    """File and line in the launch file, to begin a message with; may be empty."""
+    """``FILE:LINE: `` of the launch file, as the beginning of a message; may be empty."""
 
     @property
     def name(self) -> str:
-        """What its lines begin with: ``random_walk-2``."""
+        """The name of the process in the output, such as ``random_walk-2``."""
         return f"{self.title}-{self.number}"
 
 
 @dataclass(frozen=True, slots=True)
-class End:
-    """A process to be ended."""
+class EndRequest:
+    """End a process."""
 
     number: int
 
 
 @dataclass(frozen=True, slots=True)
-class EndAll:
-    """The launch is to be ended."""
+class ShutdownRequest:
+    """End the launch."""
 
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class DeclaredArgument:
     """An argument that the launch file declares."""
 
     name: str
@@ -74,23 +74,23 @@ class Argument:
     choices: tuple[str, ...] | None
 
 
-Request = Say | Listen | Start | End | EndAll | Argument
+Request = LogRequest | OutputRequest | StartRequest | EndRequest | ShutdownRequest | DeclaredArgument
 
 
 def parse_request(event: Event) -> Request:
-    """Raises ProtocolError if there is anything wrong with it."""
+    """Checks and converts a request. Raises ProtocolError."""
     if event.name not in _KINDS:
         raise ProtocolError(f"no such request: {event.name}")
     return _KINDS[event.name](*items(event.fields))
 
 
-def _say(severity: Json, line: Json) -> Say:
+def _say(severity: Json, line: Json) -> LogRequest:
     if severity not in ("DEBUG", "INFO", "WARN", "ERROR", "FATAL"):
         raise ProtocolError("no severity of a log")
-    return Say(cast(Severity, severity), text(line))
+    return LogRequest(cast(Severity, severity), text(line))
 
 
-def _start(number: Json, specification: Json) -> Start:
+def _start(number: Json, specification: Json) -> StartRequest:
     if type(specification) is not dict:
         raise ProtocolError("no specification of a process")
     is_node = specification.get("kind") == "node"
@@ -100,10 +100,10 @@ def _start(number: Json, specification: Json) -> Start:
     if type(environment) is not dict:
         raise ProtocolError("no environment of a process")
     cwd = specification.get("cwd")
-    return Start(
+    return StartRequest(
         integer(number),
         text(specification.get("title"), MAX_NAME),
-        _maybe(specification.get("package")) if is_node else None,
+        _optional_text(specification.get("package")) if is_node else None,
         text(specification.get("executable")) if is_node else None,
         _texts(specification.get("arguments" if is_node else "command")),
         specification.get("shell") is True,
@@ -113,13 +113,16 @@ def _start(number: Json, specification: Json) -> Start:
     )
 
 
-def _argument(name: Json, default: Json, description: Json, choices: Json) -> Argument:
-    return Argument(
-        text(name, MAX_NAME), _maybe(default), text(description), None if choices is None else _texts(choices)
+def _argument(name: Json, default: Json, description: Json, choices: Json) -> DeclaredArgument:
+    return DeclaredArgument(
+        text(name, MAX_NAME),
+        _optional_text(default),
+        text(description),
+        None if choices is None else _texts(choices),
     )
 
 
-def _maybe(value: Json) -> str | None:
+def _optional_text(value: Json) -> str | None:
     return None if value is None else text(value)
 
 
@@ -128,7 +131,7 @@ def _texts(values: Json) -> tuple[str, ...]:
 
 
 def _any_text(value: Json) -> str:
-    """Not shown to anybody: line breaks are allowed."""
+    """A text that is not displayed, so that line breaks are allowed."""
     if type(value) is not str or len(value) > 32 * MAX_TEXT or "\0" in value:
         raise ProtocolError("no text")
     return value
@@ -137,10 +140,10 @@ def _any_text(value: Json) -> str:
 _KINDS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
     {
         "log": _say,
-        "listen": Listen,
+        "listen": OutputRequest,
         "process": _start,
-        "end": lambda number: End(integer(number)),
-        "shutdown": lambda reason: EndAll(text(reason)),
+        "end": lambda number: EndRequest(integer(number)),
+        "shutdown": lambda reason: ShutdownRequest(text(reason)),
         "argument": _argument,
     }
 )

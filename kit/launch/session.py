@@ -1,4 +1,7 @@
-"""The world that a launch file asked for, as a session like any other."""
+"""Runs the world that a launch file asked for, as a session.
+
+A module of its own because it imports the physics, which a launch without a world does not need.
+"""
 
 from __future__ import annotations
 
@@ -10,18 +13,18 @@ from kit.run.scenario import place_in_file
 from kit.run.session import Session
 
 
-class LaunchedSession(Session):
-    """The launch takes part in its ticks, and ends with it. Raises WorldError, OSError."""
+class LaunchSession(Session):
+    """A session in whose ticks the launch takes part; closing it ends the launch. Raises WorldError, OSError."""
 
     def __init__(self, launch: Launch, *, seed: int = 0, watched: bool = False) -> None:
-        wanted = launch.world
-        assert wanted is not None, "a launch without a world"
-        file = wanted.path.absolute()
+        request = launch.world
+        assert request is not None, "a launch without a world"
+        file = request.path.absolute()
         place = place_in_file(file, _root(file, launch.target.folder))
         super().__init__(
             replace(place, title=launch.target.name),
             seed=seed,
-            step_size=wanted.step_size,
+            step_size=request.step_size,
             watched=watched,
             graph=launch.graph,
         )
@@ -29,7 +32,7 @@ class LaunchedSession(Session):
         self.runner.participants.append(launch)
 
     def reset(self, seed: int | None = None) -> None:
-        """The world back to its start; the programs go on."""
+        """Resets the world; the programs go on."""
         self.runner.call_service("reset", seed)
 
     def close(self) -> None:
@@ -38,6 +41,6 @@ class LaunchedSession(Session):
 
 
 def _root(file: Path, package: Path) -> Path:
-    """What the world's files may name: all of the package they lie in."""
+    """The folder below which the world's files may name other files: their package."""
     folders = [package, *(parent for parent in file.parents if (parent / "package.xml").is_file())]
     return next((folder for folder in folders if file.is_relative_to(folder)), file.parent)

@@ -1,4 +1,4 @@
-"""One program by itself: beside a world that runs in another terminal, or alone."""
+"""Runs one program: in the graph of a world that runs in another terminal, or alone."""
 
 from __future__ import annotations
 
@@ -8,89 +8,95 @@ from pathlib import Path
 
 from kit.inspection.client import InspectionClient
 from kit.inspection.server import InspectionServer
-from kit.launch.errors import CannotStart
-from kit.launch.graph_only import Worldless
-from kit.launch.processes import Ended, Printed, Process
-from kit.launch.program_lookup import Means, is_ours, start
-from kit.launch.requests import Start
+from kit.launch.launch_run import GraphOnlyRun
+from kit.launch.processes import PrintedLine, Process, ProcessExit
+from kit.launch.program_lookup import StartContext, is_builtin, start_process
+from kit.launch.requests import StartRequest
+from kit.launch.start_errors import ProcessStartError
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until, when
 from kit.run.pacing import Schedule
 
-Say = Callable[[Printed], None]
+OutputCallback = Callable[[PrintedLine], None]
 
 
-class Single:
-    """A program of a package, or a Python file, to be started in some graph."""
+class SingleProgram:
+    """A program of a package, or a Python file."""
 
-    def __init__(self, request: Start, search: tuple[Path, ...], *, seed: int, workspace: Path) -> None:
+    def __init__(
+        self, request: StartRequest, search: tuple[Path, ...], *, seed: int, workspace: Path
+    ) -> None:
         self._request, self._search, self._seed, self._workspace = request, search, seed, workspace
 
-    def run_beside(self, client: InspectionClient, say: Say) -> Ended:
-        """Until it ends, in the time of the world visited. Raises CannotStart, WorldDisconnected."""
+    def run_beside(self, client: InspectionClient, on_output: OutputCallback) -> ProcessExit:
+        """Runs it until it ends, in the graph and time of another terminal's world. Raises ProcessStartError, WorldDisconnected."""
         process, graph = self._started(client.graph), client.graph
         try:
-            while (ended := self._look(process, say)) is None:
+            while (ended := self._poll(process, on_output)) is None:
                 seen = graph.change_count
                 while process.exchange():
-                    self._print(process, say)
+                    self._print(process, on_output)
                 if process.poll() is None:
                     graph.wait(partial(_has_changed, graph, seen), process.wake_ns)
             return ended
         finally:
-            self._print(process, say)
+            self._print(process, on_output)
             process.close()
 
-    def run_alone(self, sockets: Path, say: Say) -> Ended:
-        """Until it ends, in real time, with a socket for other terminals. Raises CannotStart, OSError."""
-        worldless = Worldless(Graph())
-        with InspectionServer(worldless.graph, sockets, self._request.title) as server:
-            process = self._started(worldless.graph)
-            worldless.participants += [process, server]
-            ended: Ended | None = None
+    def run_alone(self, sockets: Path, on_output: OutputCallback) -> ProcessExit:
+        """Runs it until it ends, in real time, with a socket for other terminals. Raises ProcessStartError, OSError."""
+        graph_only_run = GraphOnlyRun(Graph())
+        with InspectionServer(graph_only_run.graph, sockets, self._request.title) as server:
+            process = self._started(graph_only_run.graph)
+            graph_only_run.participants += [process, server]
+            ended: ProcessExit | None = None
 
             def has_ended() -> bool:
                 nonlocal ended
-                ended = self._look(process, say)
+                ended = self._poll(process, on_output)
                 return ended is not None
 
             try:
-                run_until(worldless, ends=(when(has_ended),), schedule=Schedule(worldless.step_size))
+                run_until(
+                    graph_only_run, ends=(when(has_ended),), schedule=Schedule(graph_only_run.step_size)
+                )
                 assert ended is not None  # nothing else ends this
                 return ended
             finally:
-                self._print(process, say)
+                self._print(process, on_output)
                 process.close()
 
     def _started(self, graph: Graph) -> Process:
-        if is_ours(self._request) and self._request.package != "tf2_ros":
-            raise CannotStart(
+        if is_builtin(self._request) and self._request.package != "tf2_ros":
+            raise ProcessStartError(
                 f"{self._request.executable} is not started by itself here: `kit play` and `kit launch` bring "
                 "the world and its view"
             )
-        means = Means(graph, self._search, self._seed, _nothing, _nothing, _none, self._workspace, "")
-        process = start(self._request, means)
+        context = StartContext(
+            graph, self._search, self._seed, _ignore, _ignore, _ignore_view_request, self._workspace, ""
+        )
+        process = start_process(self._request, context)
         process.wait_until_started()
         return process
 
-    def _look(self, process: Process, say: Say) -> Ended | None:
+    def _poll(self, process: Process, on_output: OutputCallback) -> ProcessExit | None:
         ended = process.poll()
-        self._print(process, say)
+        self._print(process, on_output)
         return ended
 
-    def _print(self, process: Process, say: Say) -> None:
-        lines: Iterable[Printed] = process.take_lines()
+    def _print(self, process: Process, on_output: OutputCallback) -> None:
+        lines: Iterable[PrintedLine] = process.take_lines()
         for line in lines:
-            say(line)
+            on_output(line)
 
 
 def _has_changed(graph: Graph, since: int) -> bool:
     return graph.change_count != since
 
 
-def _nothing(_: object) -> None:
-    """Nobody is told."""
+def _ignore(_: object) -> None:
+    """No-op callback."""
 
 
-def _none() -> None:
-    """There is no view to be wanted."""
+def _ignore_view_request() -> None:
+    """No-op: there is no view."""

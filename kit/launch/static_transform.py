@@ -1,4 +1,4 @@
-"""ROS 2's static_transform_publisher: two frames, and how one lies in the other, said once and for all."""
+"""ROS 2's ``static_transform_publisher``: publishes one latched transform between two frames."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import Time
 from kit.ros.rotations import quaternion_from_euler
 
-NAME: Final = "static_transform_publisher"
+EXECUTABLE: Final = "static_transform_publisher"
 _NUMBERS: Final = ("x", "y", "z", "yaw", "pitch", "roll", "qx", "qy", "qz", "qw")
 _FRAMES: Final = ("frame-id", "child-frame-id")
 
 
 def publish_transform(graph: Graph, arguments: Sequence[str]) -> Node:
-    """The node that says it, to whoever comes. ValueError for arguments that mean no transform."""
+    """Makes the node that publishes the transform. Raises ValueError for wrong arguments."""
     try:
         ros = parse_ros_arguments(arguments)
     except InvalidRosArguments as problem:
         raise ValueError(str(problem)) from None
-    numbers, parent, child = _meaning(split_ros_arguments(arguments)[0])
+    numbers, parent, child = _parse_arguments(split_ros_arguments(arguments)[0])
     if "qw" in numbers or "qx" in numbers or "qy" in numbers or "qz" in numbers:
         rotation = tuple(numbers.get(name, 1.0 if name == "qw" else 0.0) for name in ("qx", "qy", "qz", "qw"))
     else:
         roll, pitch, yaw = (numbers.get(name, 0.0) for name in ("roll", "pitch", "yaw"))
         rotation = tuple(float(part) for part in quaternion_from_euler(roll, pitch, yaw))
-    name = ros.node_name(NAME)
+    name = ros.node_name(EXECUTABLE)
     node = create_graph_node(graph, name, ros.namespace(name, "/"))
-    lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     x, y, z, w = rotation
     transform = TransformStamped(
         header=Header(stamp=Time(nanoseconds=graph.now_ns).to_msg(), frame_id=parent),
@@ -45,18 +45,18 @@ def publish_transform(graph: Graph, arguments: Sequence[str]) -> Node:
             rotation=Quaternion(x=x, y=y, z=z, w=w),
         ),
     )
-    node.create_publisher(TFMessage, "/tf_static", lasting).publish(TFMessage(transforms=[transform]))
+    node.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[transform]))
     return node
 
 
-def _meaning(arguments: Sequence[str]) -> tuple[dict[str, float], str, str]:
-    """Both spellings: ``x y z yaw pitch roll frame child`` (or with a quaternion), and ``--x 0 --frame-id map``."""
+def _parse_arguments(arguments: Sequence[str]) -> tuple[dict[str, float], str, str]:
+    """Parses both spellings: ``x y z yaw pitch roll frame child`` (or with a quaternion), and ``--x 0 --frame-id map``."""
     if any(argument.startswith("--") for argument in arguments):
         pairs = dict(zip(arguments[::2], arguments[1::2], strict=False))
         names = {f"--{name}" for name in (*_NUMBERS, *_FRAMES)}
-        strange = sorted(pairs.keys() - names)
-        if strange or len(arguments) % 2:
-            raise ValueError(f"cannot make sense of {' '.join(strange or arguments)}")
+        unknown = sorted(pairs.keys() - names)
+        if unknown or len(arguments) % 2:
+            raise ValueError(f"unknown arguments: {' '.join(unknown or arguments)}")
         frames = [pairs.pop(f"--{name}", "") for name in _FRAMES]
         numbers = {name.removeprefix("--"): _number(value) for name, value in pairs.items()}
     elif len(arguments) in (8, 9):

@@ -1,4 +1,4 @@
-"""What a launch file asks of Flatland's server: which world, how fast, in what steps."""
+"""Reads the parameters of ``flatland_server`` in a launch file: the world, its rate and step size."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from kit.launch.errors import CannotStart
-from kit.launch.requests import Start
+from kit.launch.requests import StartRequest
+from kit.launch.start_errors import ProcessStartError
 from kit.plain_text import nearest_name
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.execution.arguments import parse_ros_arguments
 
-NODE: Final = "flatland_server"
+NODE_NAME: Final = "flatland_server"
 
-KNOWN: Final = frozenset(
+PARAMETERS: Final = frozenset(
     {
         "world_path",
         "update_rate",
@@ -27,11 +27,11 @@ KNOWN: Final = frozenset(
         "simplify_map",
     }
 )
-"""Its parameters; those of the picture and of ROS 2's clock make no difference here."""
+"""The parameters of flatland_server; those of visualization and of the clock have no effect here."""
 
 
 @dataclass(frozen=True, slots=True)
-class WorldWanted:
+class WorldRequest:
     """The parameters of ``flatland_server``, with its own defaults."""
 
     path: Path
@@ -41,53 +41,57 @@ class WorldWanted:
     """Simulated time of a tick [s]."""
     show_viz: bool = False
     where: str = ""
-    """Where it was asked for."""
+    """File and line of the launch file, for messages."""
 
     @property
     def factor(self) -> float:
-        """Simulated seconds per second."""
+        """Simulated seconds per second of wall clock."""
         return self.update_rate * self.step_size
 
 
-def world_wanted(request: Start) -> WorldWanted:
-    """What the request's arguments say. Raises CannotStart."""
+def parse_world_request(request: StartRequest) -> WorldRequest:
+    """Parses the arguments of the request. Raises ProcessStartError."""
     try:
-        given = parse_ros_arguments(request.command).parameters_of(NODE, "/")
+        given = parse_ros_arguments(request.command).parameters_of(NODE_NAME, "/")
     except InvalidRosArguments as problem:
-        raise CannotStart(f"{request.where}flatland_server: {problem}") from None
+        raise ProcessStartError(f"{request.where}flatland_server: {problem}") from None
     values = {name: parameter.value for name, parameter in given.items()}
-    for name in sorted(values.keys() - KNOWN):
-        near = nearest_name(name, KNOWN)
+    for name in sorted(values.keys() - PARAMETERS):
+        near = nearest_name(name, PARAMETERS)
         hint = f"; did you mean '{near}'?" if near else ""
-        raise CannotStart(f"{request.where}flatland_server has no parameter '{name}'{hint}")
+        raise ProcessStartError(f"{request.where}flatland_server has no parameter '{name}'{hint}")
     if "world_path" not in values:
-        raise CannotStart(
+        raise ProcessStartError(
             f"{request.where}flatland_server: the parameter 'world_path' is missing: "
             "parameters=[{'world_path': 'FILE.yaml'}]"
         )
-    usual = WorldWanted(Path())
-    return WorldWanted(
+    default = WorldRequest(Path())
+    return WorldRequest(
         (request.cwd or Path.cwd()) / str(values["world_path"]),
-        _above_zero(request, values, "update_rate", usual.update_rate),
-        _above_zero(request, values, "step_size", usual.step_size),
-        _truth(request, values, "show_viz", usual.show_viz),
+        _positive_number(request, values, "update_rate", default.update_rate),
+        _positive_number(request, values, "step_size", default.step_size),
+        _boolean(request, values, "show_viz", default.show_viz),
         request.where,
     )
 
 
-def _above_zero(request: Start, values: dict[str, Any], name: str, usual: float) -> float:
-    value = values.get(name, usual)
+def _positive_number(request: StartRequest, values: dict[str, Any], name: str, default: float) -> float:
+    value = values.get(name, default)
     try:
         number = float(value)
     except (TypeError, ValueError):
         number = math.nan
     if isinstance(value, bool) or not (math.isfinite(number) and number > 0):
-        raise CannotStart(f"{request.where}flatland_server: '{name}' must be a number above 0, not {value!r}")
+        raise ProcessStartError(
+            f"{request.where}flatland_server: '{name}' must be a number above 0, not {value!r}"
+        )
     return number
 
 
-def _truth(request: Start, values: dict[str, Any], name: str, usual: bool) -> bool:
-    value = values.get(name, usual)
+def _boolean(request: StartRequest, values: dict[str, Any], name: str, default: bool) -> bool:
+    value = values.get(name, default)
     if not isinstance(value, bool):
-        raise CannotStart(f"{request.where}flatland_server: '{name}' must be true or false, not {value!r}")
+        raise ProcessStartError(
+            f"{request.where}flatland_server: '{name}' must be true or false, not {value!r}"
+        )
     return value

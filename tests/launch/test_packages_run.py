@@ -6,9 +6,9 @@ import math
 import re
 from pathlib import Path
 
-from kit.launch.launch_file_search import find_launch
-from kit.launch.launch_run import Launch, Line
-from kit.launch.session import LaunchedSession
+from kit.launch.launch_file_search import find_launch_file
+from kit.launch.launch_run import Launch, OutputLine
+from kit.launch.session import LaunchSession
 from kit.ros.graph.graph import Graph
 from tests.launch.conftest import TWO_ROBOTS, Launched, Workshop
 
@@ -23,16 +23,16 @@ Arguments (pass arguments as '<name>:=<value>'):
 
 def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     """With a service called in a callback, lambdas with arguments of their own, and a module below the package."""
-    said: list[Line] = []
+    said: list[OutputLine] = []
     launch = Launch(
-        find_launch(str(TWO_ROBOTS), None, ()), Graph(), arguments={"speed": "0.25"}, say=said.append
+        find_launch_file(str(TWO_ROBOTS), None, ()), Graph(), arguments={"speed": "0.25"}, on_output=said.append
     )
     try:
-        launch.begin()
+        launch.load()
         assert launch.world is not None
         assert (launch.world.factor, launch.wants_view) == (1.0, True)
-        session = LaunchedSession(launch)
-        launch.start()
+        session = LaunchSession(launch)
+        launch.start_processes()
         for _ in range(400):
             session.runner.tick()
         left, right = (session.runner.simulation.pose(name) for name in ("left", "right"))

@@ -34,25 +34,25 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     kit ros run my_package my_node --ros-args -p speed:=0.2
     kit ros run my_node.py
     """
-    from kit.launch.errors import CannotStart
-    from kit.launch.processes import Printed
-    from kit.launch.requests import Start
-    from kit.launch.single_program import Single
+    from kit.launch.processes import PrintedLine
+    from kit.launch.requests import StartRequest
+    from kit.launch.single_program import SingleProgram
+    from kit.launch.start_errors import ProcessStartError
 
     desk = options.desk(workspace)
     search = (Path.cwd(), Path.cwd() / "src", desk.packages)
     if package.endswith(".py"):
-        request = Start(
+        request = StartRequest(
             1, Path(package).stem, None, None, ("python3", package, *words), False, _here(), None, ""
         )
     elif words:
-        request = Start(1, words[0], package, words[0], tuple(words[1:]), False, _here(), None, "")
+        request = StartRequest(1, words[0], package, words[0], tuple(words[1:]), False, _here(), None, "")
     else:
         options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
-    single = Single(request, search, seed=seed, workspace=desk.folder)
+    single = SingleProgram(request, search, seed=seed, workspace=desk.folder)
     sockets = sockets_folder(desk.folder)
 
-    def say(line: Printed) -> None:
+    def on_output(line: PrintedLine) -> None:
         click.echo(line.text, err=line.stream == "err")
 
     try:
@@ -61,11 +61,11 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         except WorldNotFound:
             if world is not None:
                 raise
-            ended = single.run_alone(sockets, say)
+            ended = single.run_alone(sockets, on_output)
         else:
             with InspectionClient(found) as client:
-                ended = single.run_beside(client, say)
-    except (CannotStart, WorldNotFound) as problem:
+                ended = single.run_beside(client, on_output)
+    except (ProcessStartError, WorldNotFound) as problem:
         options.fail(str(problem))
     except OSError as problem:
         options.fail(options.reason(problem))

@@ -17,8 +17,8 @@ from kit.tui.theme import Theme
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_search import LaunchTarget
-    from kit.launch.launch_run import Launch, Line
-    from kit.launch.session import LaunchedSession
+    from kit.launch.launch_run import Launch, OutputLine
+    from kit.launch.session import LaunchSession
     from kit.run.session import Session
     from kit.workspace import Workspace
 
@@ -52,8 +52,8 @@ class LaunchScreen(WatchScreen):
         self._theme = theme
         self._target, self._arguments, self._workspace, self._speed = target, arguments, workspace, speed
         self._launch: Launch | None = None
-        self._session: LaunchedSession | None = None
-        self._early: list[Line] = []
+        self._session: LaunchSession | None = None
+        self._early: list[OutputLine] = []
         self._strength = 1.0
         self.refusal: str | None = None
         """Why the launch could not be carried out."""
@@ -87,10 +87,9 @@ class LaunchScreen(WatchScreen):
 
     def _open(self) -> Session:
         from kit.host.failure import GuestError
-        from kit.launch.advice import explained
-        from kit.launch.errors import CannotStart
         from kit.launch.launch_run import Launch
-        from kit.launch.session import LaunchedSession
+        from kit.launch.session import LaunchSession
+        from kit.launch.start_errors import ProcessStartError, explain_failure
         from kit.ros.graph.graph import Graph
         from kit.world.problems import WorldError
 
@@ -101,20 +100,20 @@ class LaunchScreen(WatchScreen):
             seed=self._seed,
             workspace=self._workspace.folder,
             name=f"{self._name}-{os.getpid()}",
-            say=self._said,
+            on_output=self._said,
         )
         try:
-            launch.begin()
+            launch.load()
             self.has_no_world = launch.world is None
             if not self.has_no_world:
-                self._session = session = LaunchedSession(launch, seed=self._seed, watched=True)
+                self._session = session = LaunchSession(launch, seed=self._seed, watched=True)
                 for line in self._early:
                     self._said(line)
-                launch.start()
+                launch.start_processes()
                 return session
         except GuestError as error:
-            self.refusal = explained(error.failure)
-        except (CannotStart, WorldError, OSError) as problem:
+            self.refusal = explain_failure(error.failure)
+        except (ProcessStartError, WorldError, OSError) as problem:
             self.refusal = str(problem)
         launch.close()
         self.post_message(LaunchRefused())
@@ -125,7 +124,7 @@ class LaunchScreen(WatchScreen):
         assert self._launch.world is not None
         return self._speed or self._launch.world.factor
 
-    def _said(self, line: Line) -> None:
+    def _said(self, line: OutputLine) -> None:
         if self._session is None:
             self._early.append(line)
         else:

@@ -1,4 +1,4 @@
-"""What to do about something that a package needs and that is not here."""
+"""Why a program could not be started or has failed, and what to do about a missing module."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Final
 
 from kit.host.failure import Failure
 
-_MISSING: Final = re.compile(r"No module named '([\w.]+)'")
-_NOT_IN: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
+_MISSING_MODULE: Final = re.compile(r"No module named '([\w.]+)'")
+_MISSING_NAME: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
 
-PARTS_OF_ROS: Final = frozenset(
+UNAVAILABLE_ROS_MODULES: Final = frozenset(
     {
         "cv_bridge", "image_geometry", "laser_geometry", "message_filters", "nav2_simple_commander", "pcl_ros",
         "rosbag2_py", "ros2cli", "rclpy_action", "sensor_msgs_py", "tf2_geometry_msgs", "tf2_kdl", "turtlesim",
@@ -20,34 +20,38 @@ PARTS_OF_ROS: Final = frozenset(
 )  # fmt: skip
 """Modules of ROS 2 that the kit does not have."""
 
-OTHER_NAMES: Final = {
+PYPI_NAMES: Final = {
     "cv2": "opencv-python-headless",
     "PIL": "pillow",
     "yaml": "pyyaml",
     "sklearn": "scikit-learn",
 }
-"""What some modules are called in the package index."""
+"""The names in the package index of modules that are called otherwise there."""
 
 
-def explained(failure: Failure) -> str:
-    """A failure, and on the next line the way out, if there is one."""
-    hint = advice(failure.message)
+class ProcessStartError(Exception):
+    """A process cannot be started; the message says what is missing, and which line asked for it."""
+
+
+def explain_failure(failure: Failure) -> str:
+    """The failure as text, with a suggestion on the next line if there is one."""
+    hint = suggest_fix(failure.message)
     return f"{failure}\n{hint}" if hint else str(failure)
 
 
-def advice(reason: str) -> str | None:
-    """A sentence on the way out, for the reason why a program has ended; None if there is none."""
-    name = _NOT_IN.search(reason)
+def suggest_fix(reason: str) -> str | None:
+    """What the user can do about a failed import, given the error message; None if it is no failed import."""
+    name = _MISSING_NAME.search(reason)
     if name is not None:
         return f"The kit's {name[2]} has no {name[1]}: it is a part of ROS 2 that the kit does not have."
-    module = _MISSING.search(reason)
+    module = _MISSING_MODULE.search(reason)
     if module is None:
         return None
     top = module[1].partition(".")[0]
     if (
-        top in PARTS_OF_ROS
+        top in UNAVAILABLE_ROS_MODULES
         or top.endswith(("_msgs", "_srvs", "_interfaces"))
         or top.startswith(("rclpy", "launch"))
     ):
         return f"{module[1]} is a part of ROS 2, or of another package, that is not here."
-    return f"If {top} is a Python package: {sys.executable} -m pip install {OTHER_NAMES.get(top, top)}"
+    return f"If {top} is a Python package: {sys.executable} -m pip install {PYPI_NAMES.get(top, top)}"
