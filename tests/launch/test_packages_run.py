@@ -25,7 +25,10 @@ def test_two_robots_of_one_model_file_are_driven_apart() -> None:
     """With a service called in a callback, lambdas with arguments of their own, and a module below the package."""
     said: list[OutputLine] = []
     launch = Launch(
-        find_launch_file(str(TWO_ROBOTS), None, ()), Graph(), arguments={"speed": "0.25"}, on_output=said.append
+        find_launch_file(str(TWO_ROBOTS), None, ()),
+        Graph(),
+        arguments={"speed": "0.25"},
+        on_output=said.append,
     )
     try:
         launch.load()
