@@ -48,7 +48,7 @@ class Workspace:
         return self.folder / "runs"
 
 
-def at_home(name: str | Path) -> Path:
+def expand_home(name: str | Path) -> Path:
     """A path with ``~`` and ``~user`` written out, where such a home is known."""
     return Path(os.path.expanduser(name))  # noqa: PTH111 - the method raises where there is no such home
 
@@ -61,8 +61,8 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
     """
     if folder is None:
         folder = Path(os.environ.get("KIT_WORKSPACE") or "~/robot-kit")
-    workspace = Workspace(at_home(folder).absolute())
-    if str(folder).startswith("~") and at_home(folder) == folder:
+    workspace = Workspace(expand_home(folder).absolute())
+    if str(folder).startswith("~") and expand_home(folder) == folder:
         raise WorkspaceError(
             f"{folder}: there is no such home folder here. Name another folder with --workspace FOLDER."
         )
@@ -78,11 +78,11 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
             ):
                 part.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise unusable(workspace.folder, error) from None
+            raise unusable_workspace_error(workspace.folder, error) from None
     return workspace
 
 
-def unusable(folder: Path, error: OSError) -> WorkspaceError:
+def unusable_workspace_error(folder: Path, error: OSError) -> WorkspaceError:
     """What to say of a workspace in which something could not be made."""
     return WorkspaceError(
         f"{folder}: cannot be used as the workspace ({error.strerror}). "
@@ -92,7 +92,7 @@ def unusable(folder: Path, error: OSError) -> WorkspaceError:
 
 def check_writable(path: Path) -> None:
     """To be asked before long work: raises OSError where ``path`` cannot be written. Writes nothing."""
-    with _blamed_on(path):
+    with _errors_name_file(path):
         if path.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         with tempfile.TemporaryFile(dir=path.parent):
@@ -104,7 +104,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 
     Raises OSError.
     """
-    with _blamed_on(path):
+    with _errors_name_file(path):
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
             with os.fdopen(handle, "wb") as file:
@@ -120,7 +120,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 
 @contextmanager
-def _blamed_on(path: Path) -> Iterator[None]:
+def _errors_name_file(path: Path) -> Iterator[None]:
     """What goes wrong names this file, not the one that stands in for it meanwhile."""
     try:
         yield

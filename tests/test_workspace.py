@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller, prepare_workspace, user_controllers
-from kit.workspace import WorkspaceError, at_home, check_writable, open_workspace, write_atomically
+from kit.workspace import WorkspaceError, check_writable, expand_home, open_workspace, write_atomically
 
 
 def test_the_folder_is_the_one_named_else_the_environments_else_in_the_home(
@@ -31,7 +31,7 @@ def test_a_place_that_cannot_be_a_folder_says_so(tmp_path: Path, monkeypatch: py
     monkeypatch.setenv("KIT_WORKSPACE", "~nobody-of-that-name/kit")
     with pytest.raises(WorkspaceError, match="home"):
         open_workspace(make=False)
-    assert at_home("~nobody-of-that-name/x") == Path("~nobody-of-that-name/x")
+    assert expand_home("~nobody-of-that-name/x") == Path("~nobody-of-that-name/x")
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

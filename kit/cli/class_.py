@@ -105,16 +105,16 @@ def report(
     """
     from kit.plain_text import suggestion
     from kit.school.report.class_data import build_class_data
-    from kit.school.report.class_report import CHAPTERS, build_report, prepare_report
+    from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
     from kit.school.report.students import read_roster
     from kit.school.survey.reading import read_form
 
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:
-        if each not in CHAPTERS:
-            options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTERS)}")
+        if each not in CHAPTER_IDS:
+            options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
     with _mistakes_explained():
-        roster = read_roster(files, names=names)
+        roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo("\n".join(roster.warnings), err=True)
             click.echo("No file holds a student's progress. `kit progress export FILE` makes one.", err=True)
@@ -173,30 +173,30 @@ def _give_out(
     glyphs: str | None,
 ) -> None:
     """Writes the files that were asked for; the terminal gets the text unless JSON goes there."""
-    from kit.school.report.as_data import as_csv, as_json
-    from kit.school.report.as_html import as_html
-    from kit.school.report.as_svg import as_svg
-    from kit.school.report.as_text import ASCII, BLOCKS, rows_of
+    from kit.school.report.as_data import report_to_json, table_to_csv
+    from kit.school.report.as_html import report_to_html
+    from kit.school.report.as_svg import plot_to_svg
+    from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
 
     to_terminal = json_file is not None and str(json_file) == "-"
     files: dict[Path, str] = {}
     if svg_folder is not None:
-        files |= {svg_folder / f"{plot.id}.svg": as_svg(plot) for plot in made.plots}
+        files |= {svg_folder / f"{plot.id}.svg": plot_to_svg(plot) for plot in made.plots}
     if csv_folder is not None:
-        files |= {csv_folder / f"{table.id}.csv": as_csv(table) for table in made.tables}
+        files |= {csv_folder / f"{table.id}.csv": table_to_csv(table) for table in made.tables}
     if html_file is not None:
-        files[html_file] = as_html(made)
+        files[html_file] = report_to_html(made)
     if json_file is not None and not to_terminal:
-        files[json_file] = as_json(made)
+        files[json_file] = report_to_json(made)
     for folder in (svg_folder, csv_folder):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     _write(files)
     if to_terminal:
-        click.echo(as_json(made).encode(), nl=False)
+        click.echo(report_to_json(made).encode(), nl=False)
     else:
-        chosen = ASCII if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCKS
-        click.echo(options.sayable("\n".join(rows_of(made, chosen))))
+        chosen = ASCII_GLYPHS if glyphs == "ascii" or (glyphs is None and not _can_blocks()) else BLOCK_GLYPHS
+        click.echo(options.sayable("\n".join(report_lines(made, chosen))))
 
 
 def _write(files: Mapping[Path, str]) -> None:

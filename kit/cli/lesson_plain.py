@@ -13,7 +13,7 @@ from kit.host.file_watcher import FileWatch
 from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
-from kit.school.lessons.reading import WIDTH
+from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import Exercise, LessonCommand, LessonScene, LessonStep, StepKind
 from kit.school.result_text import criterion_lines, points_text, replay_lines
 from kit.school.result_text import plain as plain_line
@@ -260,7 +260,9 @@ class PlainLesson:
         click.echo()
 
     def _filled(self, text: str) -> str:
-        return "\n".join(plain_text(row) for row in wrap_blocks(parse_markup(self._filled_line(text)), WIDTH))
+        return "\n".join(
+            plain_text(row) for row in wrap_blocks(parse_markup(self._filled_line(text)), TEXT_WIDTH)
+        )
 
     def _filled_line(self, text: str) -> str:
         """With the student's own paths."""
@@ -305,7 +307,7 @@ def report_lines(report: CheckReport) -> list[str]:
     """The outcome of a check, line by line."""
     if report.problem:
         return [_wrapped(report.problem)]
-    lines = [plain_line(line) for each in report.criteria for line in criterion_lines(each, WIDTH)]
+    lines = [plain_line(line) for each in report.criteria for line in criterion_lines(each, TEXT_WIDTH)]
     picture = replay_lines(report.criteria)
     if picture:
         lines += ["", *picture]
@@ -316,7 +318,7 @@ def report_lines(report: CheckReport) -> list[str]:
 def _wrapped(text: str, indent: str = "") -> str:
     import textwrap
 
-    return "\n".join(textwrap.wrap(text, WIDTH, subsequent_indent=indent)) or text
+    return "\n".join(textwrap.wrap(text, TEXT_WIDTH, subsequent_indent=indent)) or text
 
 
 def _nobody_looks_in() -> None:

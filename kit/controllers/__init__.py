@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit.plain_text import nearest_name
-from kit.workspace import Workspace, at_home, open_workspace, unusable, write_atomically
+from kit.workspace import Workspace, expand_home, open_workspace, unusable_workspace_error, write_atomically
 
 FOLDER = Path(__file__).parent
 TEMPLATE = FOLDER / "template.py"
@@ -51,7 +51,7 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
 
     Raises LookupError that names what there is.
     """
-    path = at_home(name)
+    path = expand_home(name)
     if path.suffix == ".py" or "/" in name:
         places = [path, *([] if folder is None else [folder / path])]
         for file in places:
@@ -77,5 +77,5 @@ def prepare_workspace(folder: Path | None = None) -> Workspace:
         try:
             write_atomically(workspace.controllers / FIRST_CONTROLLER, TEMPLATE.read_bytes())
         except OSError as error:
-            raise unusable(workspace.folder, error) from None
+            raise unusable_workspace_error(workspace.folder, error) from None
     return workspace

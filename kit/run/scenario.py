@@ -7,7 +7,7 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.sim.simulation import load_world
-from kit.workspace import at_home
+from kit.workspace import expand_home
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names
 from kit.world.records import Model, World
 
@@ -90,7 +90,7 @@ def find_place(name: str, case: str | None = None, root: Path | None = None) -> 
 
     Raises WorldError, UnknownMap, or LookupError for the case.
     """
-    path = at_home(name)
+    path = expand_home(name)
     if name not in map_names():
         if path.is_dir():
             path = path / WORLD_FILE

@@ -143,17 +143,17 @@ class ProgressJournal:
     @property
     def student_name(self) -> str:
         """What the student wants to be called, as last said; empty: nothing was."""
-        said = [name for event in self.events(EventKind.ABOUT, "name") if (name := event.text("value"))]
-        return said[-1] if said else ""
+        names = [name for event in self.events(EventKind.ABOUT, "name") if (name := event.text("value"))]
+        return names[-1] if names else ""
 
     def events(self, kind: EventKind | None = None, subject: str | None = None) -> list[ProgressEvent]:
         """All events in the order of their time, or those of one kind, or about one subject."""
-        wanted = [("kind", kind), ("subject", subject)]
-        conditions = " AND ".join(f"{column} = ?" for column, value in wanted if value is not None)
+        filters = [("kind", kind), ("subject", subject)]
+        conditions = " AND ".join(f"{column} = ?" for column, value in filters if value is not None)
         query = f"{_ALL} WHERE {conditions}" if conditions else _ALL
         try:
             rows = self._connection.execute(
-                f"{query} ORDER BY at, number", [str(value) for _, value in wanted if value is not None]
+                f"{query} ORDER BY at, number", [str(value) for _, value in filters if value is not None]
             )
             return [event for row in rows if (event := _event_from_row(row)) is not None]
         except sqlite3.Error as error:
@@ -236,15 +236,15 @@ class ProgressJournal:
         with suppress(AttributeError):
             self._connection.close()
         stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S-%f")
-        aside = self._file.with_name(f"{self._file.stem}.damaged-{stamp}{self._file.suffix}")
+        backup = self._file.with_name(f"{self._file.stem}.damaged-{stamp}{self._file.suffix}")
         fresh = self._file.with_name(f".{self._file.name}.{stamp}")
         try:
-            found = _file_identity(self._file)
+            identity = _file_identity(self._file)
             saved = [_row_from_event(event) for event in _salvaged_events(self._file)]
             with closing(_open_connection(fresh)) as connection:
                 _insert(connection, saved)
-            if _file_identity(self._file) == found:  # else another process has mended it meanwhile
-                _keep_as(self._file, aside)
+            if _file_identity(self._file) == identity:  # else another process has mended it meanwhile
+                _keep_as(self._file, backup)
                 fresh.replace(self._file)
             self._connection = self._connect()
         except (OSError, sqlite3.Error) as error:
@@ -254,7 +254,7 @@ class ProgressJournal:
                 with suppress(OSError):
                     left.unlink()
         self.notice = (
-            f"{self._file.name} was damaged. It was kept as {aside.name}; "
+            f"{self._file.name} was damaged. It was kept as {backup.name}; "
             f"{len(saved)} entries could be read of it and were taken over."
         )
 
@@ -302,15 +302,15 @@ def _file_identity(file: Path) -> tuple[int, int] | None:
     return status.st_dev, status.st_ino
 
 
-def _keep_as(file: Path, aside: Path) -> None:
+def _keep_as(file: Path, backup: Path) -> None:
     """Another name for the file, with what SQLite keeps beside it; the first name stays where links can be made."""
     try:
-        os.link(file, aside)
+        os.link(file, backup)
     except OSError:
-        file.replace(aside)
+        file.replace(backup)
     for ending in ("-journal", "-wal", "-shm"):
         with suppress(FileNotFoundError):
-            os.replace(f"{file}{ending}", f"{aside}{ending}")  # noqa: PTH105
+            os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105
 
 
 def read_export(file: Path) -> list[ProgressEvent]:

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.school.report.chapters.setting import Setting
+from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
 from kit.school.report.class_report import prepare_report
 from kit.school.report.expertise import DIVISION_METHODS
@@ -40,7 +40,7 @@ class PrintDifference:
     ours: float
 
 
-def setting_of(study: EvaluationData) -> Setting:
+def setting_of(study: EvaluationData) -> ReportContext:
     """The dissertation's subjects as a class, divided at the mean score."""
     names = tuple(f"subject {number}" for number in range(1, study.subjects + 1))
     data = ClassData(
@@ -59,8 +59,8 @@ def setting_of(study: EvaluationData) -> Setting:
 
 def recompute_tables(study: EvaluationData) -> Mapping[str, TableRows]:
     """Every printed table from the raw answers, by its number."""
-    setting = setting_of(study)
-    return {printed.id: _TABLES[printed.id](setting) for printed in study.printed}
+    context = setting_of(study)
+    return {printed.id: _TABLES[printed.id](context) for printed in study.printed}
 
 
 def print_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
@@ -87,99 +87,99 @@ def unexplained_differences(study: EvaluationData) -> tuple[PrintDifference, ...
     )
 
 
-def score_order(setting: Setting) -> list[int]:
+def score_order(context: ReportContext) -> list[int]:
     """The subjects, from 0, in the order of Table 5.4: the highest score first."""
-    assert setting.score is not None  # everybody rated the six topics
-    return [int(i) for i in np.argsort(-setting.score, kind="stable")]
+    assert context.score is not None  # everybody rated the six topics
+    return [int(i) for i in np.argsort(-context.score, kind="stable")]
 
 
-def _score_table(setting: Setting) -> TableRows:
+def _score_table(context: ReportContext) -> TableRows:
     """Table 5.4. An expert is 1, a beginner 0."""
-    assert setting.score is not None
-    found = {each.id: each.experts.members for each in setting.divisions}
+    assert context.score is not None
+    found = {each.id: each.experts.members for each in context.divisions}
     return {
-        str(place): (float(setting.score[i]), *(float(found[way][i]) for way in DIVISION_METHODS))
-        for place, i in enumerate(score_order(setting), 1)
+        str(place): (float(context.score[i]), *(float(found[way][i]) for way in DIVISION_METHODS))
+        for place, i in enumerate(score_order(context), 1)
     }
 
 
-def _division_table(setting: Setting) -> TableRows:
+def _division_table(context: ReportContext) -> TableRows:
     """Table 5.5."""
-    assert setting.score is not None
+    assert context.score is not None
     names = {"scale": "at 3.5", "half": "in half", "mean": "at M"}
     grid: TableRows = {}
-    for each in setting.divisions:
+    for each in context.divisions:
         numbers: list[float] = []
         for group in each.groups:
-            found = summary_statistics(setting.score[group.members])
-            numbers += [found.n, found.mean, found.sd]
+            stats = summary_statistics(context.score[group.members])
+            numbers += [stats.n, stats.mean, stats.sd]
         grid[names[each.id]] = tuple(numbers)
     return grid
 
 
-def _mean_and_sd_rows(setting: Setting, measures: Sequence[Float64Array]) -> TableRows:
+def _mean_and_sd_rows(context: ReportContext, measures: Sequence[Float64Array]) -> TableRows:
     """M and SD of each group, a column for each measure."""
     grid: TableRows = {}
-    for group in setting.groups:
+    for group in context.groups:
         found = [summary_statistics(values[group.members]) for values in measures]
         grid[f"{group.name} M"] = tuple(each.mean for each in found)
         grid[f"{group.name} SD"] = tuple(each.sd for each in found)
     return grid
 
 
-def _outcome_table(topic: str) -> Callable[[Setting], TableRows]:
+def _outcome_table(topic: str) -> Callable[[ReportContext], TableRows]:
     """Tables 5.6 and 5.7."""
 
-    def table(setting: Setting) -> TableRows:
-        measures = setting.data.ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
-        return _mean_and_sd_rows(setting, [each.values for each in measures])
+    def table(context: ReportContext) -> TableRows:
+        measures = context.data.ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
+        return _mean_and_sd_rows(context, [each.values for each in measures])
 
     return table
 
 
-def _question_table(setting: Setting) -> TableRows:
+def _question_table(context: ReportContext) -> TableRows:
     """Table 5.8."""
-    quiz = setting.data.quiz
+    quiz = context.data.quiz
     return {
-        item.id: tuple(float(quiz.correctness(item)[group.members].mean()) for group in setting.groups)
+        item.id: tuple(float(quiz.correctness(item)[group.members].mean()) for group in context.groups)
         for item in quiz.items
     }
 
 
-def _quiz_topic_table(setting: Setting) -> TableRows:
+def _quiz_topic_table(context: ReportContext) -> TableRows:
     """Table 5.9."""
-    quiz = setting.data.quiz
+    quiz = context.data.quiz
     return _mean_and_sd_rows(
-        setting, [*(quiz.share_right(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
+        context, [*(quiz.share_right(quiz.of_topic(topic)) for topic in quiz.topics), quiz.score]
     )
 
 
-def _text_table(setting: Setting) -> TableRows:
+def _text_table(context: ReportContext) -> TableRows:
     """The numbers of the running text of 5.3.1 to 5.3.4."""
-    ratings = setting.data.ratings
+    ratings = context.data.ratings
     prior = _by_topic(ratings.by_topic(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE))
     gained = _by_topic(ratings.by_topic(QuestionPurpose.GAINED, SurveyPhase.AFTER))
     hard = _by_topic(ratings.by_topic(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER))
     told = _by_topic(ratings.by_topic(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER))
     of = {"prior": _mean_over_topics(prior), "gained": _mean_over_topics(gained)}
     of |= {"difficulty": _mean_over_topics(hard), "explanation": _mean_over_topics(told)}
-    assert setting.score is not None
+    assert context.score is not None
     rows: dict[str, Float64Array] = {
         "prior, Robotics": prior["robotics"],
         "prior, ROS 1": prior["ros1"],
         "prior, ROS 2": prior["ros2"],
         "prior, all six": of["prior"],
-        "expertise score": setting.score,
+        "expertise score": context.score,
         "difficulty, RL": hard["rl"],
         "difficulty, ROS 2": hard["ros2"],
         "explanation, ROS 2": told["ros2"],
     }
-    for what, group in ((w, g) for w in ("gained", "difficulty", "explanation") for g in setting.groups):
+    for what, group in ((w, g) for w in ("gained", "difficulty", "explanation") for g in context.groups):
         rows[f"{what}, {group.name}"] = of[what][group.members]
     return {
-        name: (found.mean, found.sd)
+        name: (stats.mean, stats.sd)
         for name, values in rows.items()
-        for found in [summary_statistics(values)]
+        for stats in [summary_statistics(values)]
     }
 
 
@@ -193,7 +193,7 @@ def _mean_over_topics(measures: Mapping[str, Float64Array]) -> Float64Array:
     return mean
 
 
-_TABLES: Final[Mapping[str, Callable[[Setting], TableRows]]] = {
+_TABLES: Final[Mapping[str, Callable[[ReportContext], TableRows]]] = {
     "5.4": _score_table,
     "5.5": _division_table,
     "5.6": _outcome_table("teleop"),

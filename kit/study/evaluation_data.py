@@ -13,7 +13,7 @@ from kit.kernels.arrays import Float64Array
 from kit.plain_text import quoted
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
-from kit.school.survey.questions import HIGHEST, LOWEST, QuestionPurpose, SurveyPhase, SurveyQuestion
+from kit.school.survey.questions import SCALE_MAX, SCALE_MIN, QuestionPurpose, SurveyPhase, SurveyQuestion
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
 from kit.world.problems import ProblemCollector
@@ -104,7 +104,7 @@ def _read_ratings(sections: tuple[Section, ...], subjects: int) -> ClassRatings:
             phases=(phase,),
         )
         questions.append(made)
-        answers = _read_answers(section, subjects, HIGHEST)
+        answers = _read_answers(section, subjects, SCALE_MAX)
         values[phase, made.id] = np.array([np.nan if each is None else float(each) for each in answers])
         section.finish()
     return ClassRatings(tuple(questions), values)
@@ -131,10 +131,10 @@ def _read_quiz(sections: tuple[Section, ...], subjects: int) -> AnswerSheet:
 def _read_answers(section: Section, subjects: int, highest: int) -> list[int | None]:
     """One for each subject; None for a blank."""
     words = section.name("answers").split()
-    right = [word == BLANK_ANSWER or (word.isdigit() and LOWEST <= int(word) <= highest) for word in words]
+    right = [word == BLANK_ANSWER or (word.isdigit() and SCALE_MIN <= int(word) <= highest) for word in words]
     if len(words) != subjects or not all(right):
         section.error(
-            f'"answers" must be {subjects} numbers from {LOWEST} to {highest}, or {quoted(BLANK_ANSWER)}',
+            f'"answers" must be {subjects} numbers from {SCALE_MIN} to {highest}, or {quoted(BLANK_ANSWER)}',
             "answers",
         )
         return [None] * subjects

@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
-from kit.school.report.chapters.setting import Setting
+from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_report import build_chapters
 from kit.school.report.document import (
     CellStyle,
@@ -46,20 +46,20 @@ STACKED_COLUMNS: Final = 4
 
 def evaluation_report(study: EvaluationData, *, whole: bool = False) -> ClassReport:
     """``whole``: also every chapter that a class gets, from the dissertation's raw answers."""
-    setting = setting_of(study)
-    more = build_chapters(setting) if whole else ()
+    context = setting_of(study)
+    more = build_chapters(context) if whole else ()
     return ClassReport(
         "The dissertation's evaluation, from its raw answers (appendix B.3)",
         (
-            _comparison_chapter(study, setting),
+            _comparison_chapter(study, context),
             _misprint_chapter(study),
-            _limits_chapter(study, setting),
+            _limits_chapter(study, context),
             *more,
         ),
     )
 
 
-def _comparison_chapter(study: EvaluationData, setting: Setting) -> ReportChapter:
+def _comparison_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:
     ours = recompute_tables(study)
     blocks: list[ReportBlock] = [
         ReportText(
@@ -68,12 +68,12 @@ def _comparison_chapter(study: EvaluationData, setting: Setting) -> ReportChapte
         )
     ]
     wrong = print_differences(study)
-    blocks += [_comparison_table(table, ours[table.id], wrong, setting) for table in study.printed]
+    blocks += [_comparison_table(table, ours[table.id], wrong, context) for table in study.printed]
     return ReportChapter("printed", "Printed and computed", tuple(blocks))
 
 
 def _comparison_table(
-    table: PrintedTable, ours: TableRows, wrong: Sequence[PrintDifference], setting: Setting
+    table: PrintedTable, ours: TableRows, wrong: Sequence[PrintDifference], context: ReportContext
 ) -> ReportTable:
     name = f"Table {table.id}" if table.id != "text" else "Text"
     identity = f"table-{table.id.replace('.', '-')}"
@@ -119,7 +119,7 @@ def _comparison_table(
     ]
     note = "Left of the bar as printed, right of it ours."
     if letters:
-        order = score_order(setting)
+        order = score_order(context)
         note += f" Users 1 to {len(order)} are the subjects {', '.join(str(i + 1) for i in order)}."
     heads = (
         TableColumn("user" if letters else "", CellStyle.TEXT),
@@ -198,9 +198,9 @@ def _named(each: PrintDifference) -> str:
     return "text" if each.table == "text" else f"table {each.table}"
 
 
-def _limits_chapter(study: EvaluationData, setting: Setting) -> ReportChapter:
+def _limits_chapter(study: EvaluationData, context: ReportContext) -> ReportChapter:
     """What a reader of the dissertation has to know and it does not say."""
-    first = people.experience(setting)
+    first = people.experience_chapter(context)
     weights = (
         [each for each in first.blocks if isinstance(each, ReportTable) and each.id == "weights"]
         if first
@@ -208,9 +208,9 @@ def _limits_chapter(study: EvaluationData, setting: Setting) -> ReportChapter:
     )
     cautions = [each for each in first.blocks if isinstance(each, ReportWarning)] if first else []
     robust, together, questions = (
-        relations.robustness(setting),
-        relations.relations(setting),
-        quiz.items(setting),
+        relations.robustness_chapter(context),
+        relations.relations_chapter(context),
+        quiz.items_chapter(context),
     )
     blocks: list[ReportBlock] = [*weights, *cautions]
     if robust is not None:
@@ -244,12 +244,12 @@ def _blank_text(study: EvaluationData) -> ReportText:
 def _layers_text(study: EvaluationData) -> ReportText:
     question = next(each for each in study.ratings.questions if each.topic == "layers")
     phase = question.phases[0]
-    found = summary_statistics(study.ratings.values[phase, question.id])
+    stats = summary_statistics(study.ratings.values[phase, question.id])
     hardest = max(
         summary_statistics(each.values).mean
         for each in study.ratings.measures(QuestionPurpose.DIFFICULTY, phase)
     )
-    more = f", more than any topic that is shown ({hardest:.1f} at most)" if found.mean > hardest else ""
+    more = f", more than any topic that is shown ({hardest:.1f} at most)" if stats.mean > hardest else ""
     return ReportText(
-        f"The method for the fewest layers, which no table shows, was rated {found.mean:.1f} of 7 hard{more}; n = {found.n}."
+        f"The method for the fewest layers, which no table shows, was rated {stats.mean:.1f} of 7 hard{more}; n = {stats.n}."
     )

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import relations
-from kit.school.report.chapters.setting import Setting
+from kit.school.report.chapters.context import ReportContext
 from kit.school.report.inference import (
     correlation,
     correlation_test,
@@ -42,7 +42,7 @@ study = cache(read_evaluation_data)
 
 
 @cache
-def setting() -> Setting:
+def setting() -> ReportContext:
     return setting_of(study())
 
 

@@ -67,22 +67,22 @@ def load_ghost(workspace: Workspace, level: GameLevel, name: str) -> Ghost | Non
 def load_reference_ghost(workspace: Workspace, level: GameLevel) -> Ghost | None:
     """The reference's drive; driven when first asked for, which takes a few seconds, and kept."""
     name = f"{REFERENCE}-{_kit_version()}"
-    found = load_ghost(workspace, level, name)
-    if found is None:
+    ghost = load_ghost(workspace, level, name)
+    if ghost is None:
         finish, recording = drive_reference(level)
         if not finish.reached:
             return None
         with suppress(OSError):
             save_ghost(workspace, level, name, recording)
         tracks = tuple(recording.track(partner) for partner in level.find_scenario().partners)
-        found = Ghost(REFERENCE, recording.ticks * recording.step_size, tracks, recording.step_size)
-    return Ghost(REFERENCE, found.seconds, found.tracks, found.step_size)
+        ghost = Ghost(REFERENCE, recording.ticks * recording.step_size, tracks, recording.step_size)
+    return Ghost(REFERENCE, ghost.seconds, ghost.tracks, ghost.step_size)
 
 
 def load_ghosts(workspace: Workspace, level: GameLevel) -> tuple[Ghost, ...]:
     """Everybody's that is kept, the quickest first; without the reference."""
-    found = [load_ghost(workspace, level, driver.value) for driver in DriverKind]
-    return tuple(sorted((each for each in found if each is not None), key=lambda each: each.seconds))
+    ghosts = [load_ghost(workspace, level, driver.value) for driver in DriverKind]
+    return tuple(sorted((each for each in ghosts if each is not None), key=lambda each: each.seconds))
 
 
 def _ghost_file(workspace: Workspace, level: GameLevel, name: str) -> Path:

@@ -58,14 +58,14 @@ def has_joined(folder: Path) -> bool:
         return False
 
 
-def publish_entry(folder: Path, name: str, standings: Sequence[LevelProgress]) -> None:
+def publish_entry(folder: Path, name: str, levels_progress: Sequence[LevelProgress]) -> None:
     """Enters this user, or brings the entry up to date. Raises FameError."""
     levels = {
         each.level.id: {
             "stars": each.star_count,
             "best": {driver.value: time for driver, time in each.best_times.items()},
         }
-        for each in standings
+        for each in levels_progress
         if each.drive_count
     }
     try:
@@ -92,14 +92,14 @@ def remove_own_entry(folder: Path) -> None:
 
 def read_entries(folder: Path) -> list[LeaderboardEntry]:
     """Everybody's, the quickest first. Files that are wrong, or another's than they say, are passed over."""
-    found: list[LeaderboardEntry] = []
+    entries: list[LeaderboardEntry] = []
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
             with suppress(
                 OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
             ):
-                found.extend(_read_file(file))
-    return sorted(found, key=lambda each: (each.level, each.seconds, each.name))
+                entries.extend(_read_file(file))
+    return sorted(entries, key=lambda each: (each.level, each.seconds, each.name))
 
 
 def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
@@ -116,7 +116,7 @@ def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
     name = " ".join("".join(sign for sign in str(content["name"]) if sign.isprintable()).split())[
         :MAX_NAME_LENGTH
     ]
-    made = [
+    entries = [
         LeaderboardEntry(
             name or f"user {status.st_uid}",
             str(level),
@@ -128,7 +128,7 @@ def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
         for level, each in content["levels"].items()
         for driver, seconds in each["best"].items()
     ]
-    yield from (entry for entry in made if 0 < entry.seconds < float("inf"))
+    yield from (entry for entry in entries if 0 < entry.seconds < float("inf"))
 
 
 def _own_file(folder: Path) -> Path:

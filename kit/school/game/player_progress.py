@@ -46,9 +46,9 @@ def level_progress(levels: Sequence[GameLevel], events: Sequence[ProgressEvent])
         if (
             event.kind is EventKind.FINISH
             and event.subject in finished
-            and (found := finish_from_event(event)) is not None
+            and (finish := finish_from_event(event)) is not None
         ):
-            finished[event.subject].append(found)
+            finished[event.subject].append(finish)
     reached = {name for name, drives in finished.items() if any(finish.reached for _, finish in drives)}
     return tuple(
         _progress_of_level(

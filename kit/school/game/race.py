@@ -148,14 +148,14 @@ def race_controller(
 ) -> tuple[RaceFinish, Recording]:
     """A program drives the level, as fast as it goes."""
 
-    def sit(session: Session) -> None:
+    def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
     # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
     is_stranger = controller not in kit_controllers()
-    cage = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
-    return _run_race(level, level.find_scenario(), sit, on_second, cage)
+    confinement = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
+    return _run_race(level, level.find_scenario(), install_driver, on_second, confinement)
 
 
 def race_agent(
@@ -177,25 +177,25 @@ def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
     if (recording.place, recording.case) != (place.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(place, seed=recording.seed, step_size=recording.step_size) as session:
-        judge = RaceReferee(place)
-        session.runner.observers.append(judge)
+        referee = RaceReferee(place)
+        session.runner.observers.append(referee)
         session.play_back(recording)
-        run_until(session.runner, ticks=recording.ticks, ends=(judge.when_finished,))
-        return judge.finish
+        run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
+        return referee.finish
 
 
 def _run_race(
     level: GameLevel,
     place: Place,
-    sit: Callable[[Session], None],
+    install_driver: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
-    cage: Confinement = DESK_LEVEL,
+    confinement: Confinement = DESK_LEVEL,
 ) -> tuple[RaceFinish, Recording]:
-    with Session(place, seed=SEED, level=cage) as session:
+    with Session(place, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation
-        judge, recorder = RaceReferee(place), Recorder(place.name, level.case, simulation)
-        session.runner.observers += [judge, recorder]
-        sit(session)
+        referee, recorder = RaceReferee(place), Recorder(place.name, level.case, simulation)
+        session.runner.observers += [referee, recorder]
+        install_driver(session)
         step = simulation.step_size
 
         def listen(tick: int) -> None:
@@ -207,8 +207,8 @@ def _run_race(
         run_until(
             session.runner,
             ticks=math.ceil(TIME_LIMIT_PARS * level.par / step),
-            ends=(when_failed(session), judge.when_finished),
+            ends=(when_failed(session), referee.when_finished),
             before_tick=listen,
         )
-        found = judge.finish
-        return replace(found, failure=session.failure), recorder.recording()
+        finish = referee.finish
+        return replace(finish, failure=session.failure), recorder.recording()

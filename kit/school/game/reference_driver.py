@@ -64,13 +64,13 @@ class ReferenceDriver:
 
     def _command(self) -> Twist:
         pose = self._session.runner.simulation.pose(self._robot)
-        aim = self._aim_point(pose.x, pose.y)
-        aside = wrap_angle(math.atan2(aim.y - pose.y, aim.x - pose.x) - pose.theta)
-        turn = max(-MAX_TURN_RATE, min(MAX_TURN_RATE, 4.0 * aside))
-        if abs(aside) > TURN_IN_PLACE_ANGLE:
-            return Twist(angular=Vector3(z=math.copysign(MAX_TURN_RATE, aside)))
-        slow = max(0.3, 1.0 - abs(aside) / TURN_IN_PLACE_ANGLE)
-        return Twist(linear=Vector3(x=MAX_SPEED * slow), angular=Vector3(z=turn))
+        aim_point = self._aim_point(pose.x, pose.y)
+        heading_error = wrap_angle(math.atan2(aim_point.y - pose.y, aim_point.x - pose.x) - pose.theta)
+        turn = max(-MAX_TURN_RATE, min(MAX_TURN_RATE, 4.0 * heading_error))
+        if abs(heading_error) > TURN_IN_PLACE_ANGLE:
+            return Twist(angular=Vector3(z=math.copysign(MAX_TURN_RATE, heading_error)))
+        speed_factor = max(0.3, 1.0 - abs(heading_error) / TURN_IN_PLACE_ANGLE)
+        return Twist(linear=Vector3(x=MAX_SPEED * speed_factor), angular=Vector3(z=turn))
 
     def _aim_point(self, x: float, y: float) -> AimPoint:
         """The point of the shortest way that lies a little ahead."""
@@ -78,8 +78,8 @@ class ReferenceDriver:
         corner = self._distance_field.corner
         column = min(max(round((x - corner[0]) / CELL), 0), columns - 1)
         row = min(max(round((y - corner[1]) / CELL), 0), rows - 1)
-        gone = 0.0
-        while gone < LOOKAHEAD:
+        distance = 0.0
+        while distance < LOOKAHEAD:
             beside = [
                 (float(self._distance_field.values[r, c]), r, c)
                 for r in range(max(0, row - 1), min(rows, row + 2))
@@ -88,7 +88,7 @@ class ReferenceDriver:
             least, r, c = min(beside)
             if (r, c) == (row, column) or least <= 0.0:
                 return self._target
-            gone += CELL * math.hypot(r - row, c - column)
+            distance += CELL * math.hypot(r - row, c - column)
             row, column = r, c
         return AimPoint(corner[0] + CELL * column, corner[1] + CELL * row)
 

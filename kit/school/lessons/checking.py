@@ -173,7 +173,7 @@ class ExerciseCheck:
     def _read_report(self) -> CheckReport:
         self._stdout.seek(0)
         self._stderr.seek(0)
-        said = self._stderr.read().decode(errors="replace").strip()
+        errors = self._stderr.read().decode(errors="replace").strip()
         try:
             content = json.loads(self._stdout.read())
             return _with_result(GradingResult.from_dict(content), self.elapsed_s, self._recording)
@@ -181,10 +181,10 @@ class ExerciseCheck:
             assert self._process is not None
             # Exit code 2: the submission cannot be read, which the student can mend.
             is_refused = self._process.returncode == 2
-            last = said.splitlines()[-1] if said else f"exit code {self._process.returncode}"
+            last_line = errors.splitlines()[-1] if errors else f"exit code {self._process.returncode}"
             if is_refused:
-                return _without_result(said, GradingVerdict.FAIL)
-            return _without_result(f"The check broke: {last}", GradingVerdict.BROKEN)
+                return _without_result(errors, GradingVerdict.FAIL)
+            return _without_result(f"The check broke: {last_line}", GradingVerdict.BROKEN)
 
 
 def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:

@@ -53,31 +53,31 @@ def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, 
     Raises ExerciseFilesError.
     """
     folder = exercise_folder(workspace, lesson, exercise)
-    kept = None
+    backup = None
     if folder.exists():
-        kept = folder.with_name(f"{folder.name}.{now:%Y%m%d-%H%M%S-%f}")
+        backup = folder.with_name(f"{folder.name}.{now:%Y%m%d-%H%M%S-%f}")
         try:
-            folder.rename(kept)
+            folder.rename(backup)
         except OSError as error:
             raise ExerciseFilesError(
                 f"{folder}: cannot be kept under another name ({error.strerror})."
             ) from None
     install_exercise(workspace, lesson, exercise)
-    return kept
+    return backup
 
 
 def read_solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
     """The reference solution's files: name -> text, the file to edit first; those that are no text are left out.
     Empty where solutions were not installed."""
     try:
-        found = solutions_folder() / lesson.name / exercise.name
+        folder = solutions_folder() / lesson.name / exercise.name
     except FileNotFoundError:
         return {}
-    single = found / f"{SOLUTION}{Path(exercise.file).suffix}"
+    single = folder / f"{SOLUTION}{Path(exercise.file).suffix}"
     if single.is_file():
         files = [(exercise.file, single.read_bytes())]
-    elif (found / SOLUTION).is_dir():
-        files = list(_folder_files(found / SOLUTION))
+    elif (folder / SOLUTION).is_dir():
+        files = list(_folder_files(folder / SOLUTION))
     else:
         return {}
     texts = {}

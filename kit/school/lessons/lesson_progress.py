@@ -9,7 +9,7 @@ from typing import Any, Final
 from kit.school.lessons.records import Exercise, Lesson, LessonStep
 from kit.school.progress import EventKind, ProgressEvent
 
-LONGEST_NUMBER: Final = 4
+MAX_STEP_DIGITS: Final = 4
 """Digits of a step's."""
 
 
@@ -83,7 +83,7 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
             case EventKind.STEP:
                 steps.add(_number(rest))
             case EventKind.PREDICTION:
-                predictions.setdefault(_number(rest), _whole(event, "chosen", -1))
+                predictions.setdefault(_number(rest), _whole_number(event, "chosen", -1))
             case EventKind.ATTEMPT if content.get("verdict") in ("pass", "fail"):
                 attempts[rest] = attempts.get(rest, 0) + 1
                 most = event.number("max_points") or 0.0
@@ -92,7 +92,7 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
                 if content["verdict"] == "pass":
                     passed.add(rest)
             case EventKind.HINT:
-                hints[rest] = max(hints.get(rest, 0), _whole(event, "step", 0))
+                hints[rest] = max(hints.get(rest, 0), _whole_number(event, "step", 0))
             case EventKind.SOLUTION:
                 solutions.add(rest)
             case _:
@@ -112,9 +112,9 @@ def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent])
 
 
 def _number(text: str) -> int:
-    return int(text) if text.isdecimal() and len(text) <= LONGEST_NUMBER else 0
+    return int(text) if text.isdecimal() and len(text) <= MAX_STEP_DIGITS else 0
 
 
-def _whole(event: ProgressEvent, key: str, otherwise: int) -> int:
+def _whole_number(event: ProgressEvent, key: str, otherwise: int) -> int:
     value = event.number(key)
     return otherwise if value is None else int(value)

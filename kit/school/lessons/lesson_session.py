@@ -14,7 +14,7 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.school.result import CriterionResult
 from kit.workspace import Workspace
 
-REPLAY = ".worst.npz"
+REPLAY_FILE = ".worst.npz"
 """Beside the student's file: the worst episode of the newest check."""
 
 
@@ -90,7 +90,7 @@ class LessonSession:
     def start_check(self, exercise: Exercise) -> ExerciseCheck:
         """Starts a check. Its report is to be handed to ``take``."""
         file = self.exercise_file(exercise)
-        recording = file.parent / REPLAY if file.parent.is_dir() else None
+        recording = file.parent / REPLAY_FILE if file.parent.is_dir() else None
         return ExerciseCheck(exercise, file, recording=recording)
 
     def record(self, exercise: Exercise, report: CheckReport) -> None:

@@ -77,14 +77,14 @@ def _blocks(lines: Sequence[str]) -> list[MarkupBlock]:
 
 def wrap_blocks(blocks: Sequence[MarkupBlock], width: int) -> list[StyledRow]:
     """The blocks as rows of at most ``width`` characters; an empty row between blocks, none between list entries."""
-    made: list[StyledRow] = []
+    rows: list[StyledRow] = []
     before: MarkupBlock | None = None
     for block in blocks:
         if before is not None and not (before.kind == block.kind == "bullet"):
-            made.append(())
-        made.extend(_rows(block, width))
+            rows.append(())
+        rows.extend(_rows(block, width))
         before = block
-    return made
+    return rows
 
 
 def plain_text(row: StyledRow) -> str:
@@ -102,12 +102,12 @@ def _rows(block: MarkupBlock, width: int) -> list[StyledRow]:
 def _pieces(text: str) -> list[StyledText]:
     pieces: list[StyledText] = []
     at = 0
-    for found in _INLINE.finditer(text):
-        pieces.append(StyledText(text[at : found.start()], TextStyle.PLAIN))
+    for match in _INLINE.finditer(text):
+        pieces.append(StyledText(text[at : match.start()], TextStyle.PLAIN))
         pieces.append(
-            StyledText(found[1], TextStyle.CODE) if found[1] else StyledText(found[2], TextStyle.BOLD)
+            StyledText(match[1], TextStyle.CODE) if match[1] else StyledText(match[2], TextStyle.BOLD)
         )
-        at = found.end()
+        at = match.end()
     pieces.append(StyledText(text[at:], TextStyle.PLAIN))
     return [piece for piece in pieces if piece.text]
 
@@ -132,7 +132,7 @@ def _wrapped(pieces: Sequence[StyledText], width: int, first: str, rest: str) ->
         break_on_hyphens=False,
         break_long_words=True,
     )
-    made: list[StyledRow] = []
+    rows: list[StyledRow] = []
     at = 0
     for index, line in enumerate(lines):
         lead = first if index == 0 else rest
@@ -142,15 +142,15 @@ def _wrapped(pieces: Sequence[StyledText], width: int, first: str, rest: str) ->
                 at += 1  # a blank that the break swallowed
             row.append(StyledText(words[at], styles[at]))
             at += 1
-        made.append(_joined(row))
-    return made
+        rows.append(_joined(row))
+    return rows
 
 
 def _joined(pieces: Sequence[StyledText]) -> StyledRow:
-    made: list[StyledText] = []
+    joined: list[StyledText] = []
     for piece in pieces:
-        if made and made[-1].style is piece.style:
-            made[-1] = StyledText(made[-1].text + piece.text, piece.style)
+        if joined and joined[-1].style is piece.style:
+            joined[-1] = StyledText(joined[-1].text + piece.text, piece.style)
         else:
-            made.append(piece)
-    return tuple(made)
+            joined.append(piece)
+    return tuple(joined)

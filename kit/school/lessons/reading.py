@@ -28,12 +28,12 @@ LESSON_FILE: Final = "lesson.yaml"
 OUTCOMES_FILE: Final = "outcomes.yaml"
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 
-WIDTH: Final = 76
+TEXT_WIDTH: Final = 76
 """Characters of a line of text: what fits on 80 columns."""
-ROWS_BESIDE_A_PICTURE: Final = 12
-ROWS_ALONE: Final = 17
-PICTURE_ROWS: Final = 10
-OPTIONS: Final = (2, 4)
+MAX_TEXT_ROWS_WITH_PICTURE: Final = 12
+MAX_TEXT_ROWS: Final = 17
+MAX_PICTURE_ROWS: Final = 10
+OPTION_COUNT_RANGE: Final = (2, 4)
 
 
 class UnknownLesson(LookupError):
@@ -98,10 +98,10 @@ def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
     file = (lessons_folder() if folder is None else folder) / OUTCOMES_FILE
     problems = ProblemCollector()
     section = _open_section(file, problems)
-    found = {key: section.text(key) for key in tuple(section.keys())}
+    outcomes = {key: section.text(key) for key in tuple(section.keys())}
     section.finish()
     problems.raise_if_any()
-    return found
+    return outcomes
 
 
 def _data_folder(installed: str, checkout: str) -> Path:
@@ -158,33 +158,33 @@ def _check(section: Section, step: LessonStep) -> None:
     if step.scene is not None and step.picture:
         section.error("a step has a scene or a picture, not both", "picture")
     lines = step.picture.splitlines()
-    if len(lines) > PICTURE_ROWS or any(len(line) > WIDTH for line in lines):
-        section.error(f"a picture has at most {PICTURE_ROWS} rows of {WIDTH} characters", "picture")
-    most = ROWS_BESIDE_A_PICTURE if step.scene is not None or step.picture else ROWS_ALONE
+    if len(lines) > MAX_PICTURE_ROWS or any(len(line) > TEXT_WIDTH for line in lines):
+        section.error(f"a picture has at most {MAX_PICTURE_ROWS} rows of {TEXT_WIDTH} characters", "picture")
+    most = MAX_TEXT_ROWS_WITH_PICTURE if step.scene is not None or step.picture else MAX_TEXT_ROWS
     try:
-        count = len(wrap_blocks(parse_markup(step.text), WIDTH))
+        count = len(wrap_blocks(parse_markup(step.text), TEXT_WIDTH))
     except MarkupError as error:
         section.error(str(error), "text")
         return
     if count > most:
         section.error(
-            f"the text has {count} rows of {WIDTH} characters; at most {most} fit on the screen", "text"
+            f"the text has {count} rows of {TEXT_WIDTH} characters; at most {most} fit on the screen", "text"
         )
 
 
 def _scene(section: Section, folder: Path) -> LessonScene | None:
-    given = section.section("scene", None)
-    if given is None:
+    scene_section = section.section("scene", None)
+    if scene_section is None:
         return None
-    made = LessonScene(
-        _own_file(given.name("place"), folder),
-        given.name("case") if given.has("case") else None,
-        _own_file(given.text("controller", ""), folder),
-        given.integer("seed", 1, minimum=0),
-        given.number("seconds", 10.0, above=0, maximum=600),
+    scene = LessonScene(
+        _own_file(scene_section.name("place"), folder),
+        scene_section.name("case") if scene_section.has("case") else None,
+        _own_file(scene_section.text("controller", ""), folder),
+        scene_section.integer("seed", 1, minimum=0),
+        scene_section.number("seconds", 10.0, above=0, maximum=600),
     )
-    given.finish()
-    return made
+    scene_section.finish()
+    return scene
 
 
 def _own_file(name: str, folder: Path) -> str:
@@ -203,10 +203,10 @@ def _commands(section: Section) -> Iterator[LessonCommand]:
 
 
 def _options(section: Section) -> Iterator[PredictionOption]:
-    given = section.sections("options", ())
-    if given and not OPTIONS[0] <= len(given) <= OPTIONS[1]:
-        section.error(f"there must be {OPTIONS[0]} to {OPTIONS[1]} options", "options")
-    for each in given:
+    sections = section.sections("options", ())
+    if sections and not OPTION_COUNT_RANGE[0] <= len(sections) <= OPTION_COUNT_RANGE[1]:
+        section.error(f"there must be {OPTION_COUNT_RANGE[0]} to {OPTION_COUNT_RANGE[1]} options", "options")
+    for each in sections:
         yield PredictionOption(each.text("text"), each.flag("right", False), each.text("feedback"))
         each.finish()
 
@@ -215,12 +215,12 @@ def _exercise(section: Section, folder: Path, seen: set[str]) -> Exercise | None
     if not section.has("exercise"):
         return None
     name = section.name("exercise")
-    made = Exercise(
+    exercise = Exercise(
         name, folder / name, section.name("file"), section.number("seconds", 10.0, above=0, maximum=120)
     )
     if name in seen:
         section.error(f"the exercise {quoted(name)} has a step already", "exercise")
-    elif "/" in name or name.startswith(".") or not (made.folder / ASSIGNMENT_FILE).is_file():
+    elif "/" in name or name.startswith(".") or not (exercise.folder / ASSIGNMENT_FILE).is_file():
         section.error(f"there is no {name}/{ASSIGNMENT_FILE} beside this file", "exercise")
     seen.add(name)
-    return made
+    return exercise

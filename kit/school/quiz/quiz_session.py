@@ -18,8 +18,7 @@ from kit.school.quiz.answers import (
     event_content,
 )
 from kit.school.quiz.items import QuestionBank, QuizItem, lesson_title
-from kit.school.quiz.rounds import RoundHistory, round_history
-from kit.school.quiz.schedule import PracticeSchedule, build_schedule
+from kit.school.quiz.schedule import PracticeSchedule, RoundHistory, build_schedule, round_history
 
 SEED_SUBJECT: Final = "quiz-seed"
 """What the journal calls the student's own seed, by which questions are put in order."""

@@ -10,8 +10,7 @@ from typing import Final
 from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic, lesson_command, lesson_title
 from kit.school.quiz.quiz_session import QuizSession, RoundPlan, quiz_plan
-from kit.school.quiz.rounds import RoundHistory
-from kit.school.quiz.schedule import PracticeSchedule
+from kit.school.quiz.schedule import PracticeSchedule, RoundHistory
 from kit.school.quiz.scores import (
     CALIBRATED_GAP,
     MIN_ANSWERS,
@@ -116,24 +115,24 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> list[str]:
     ]
 
 
-def calibration_lines(found: Calibration) -> list[str]:
+def calibration_lines(calibration: Calibration) -> list[str]:
     """How sure, and how often right."""
-    if not found.answers:
+    if not calibration.answers:
         return ["No answer says yet how sure you were."]
     lines = []
-    for level in found.levels:
+    for level in calibration.levels:
         share = level.right / level.answers if level.answers else 0.0
         bar = "#" * round(BAR * share)
         result = f"{level.right} of {level.answers}" if level.answers else "-"
         lines.append(f"{CONFIDENCE_LABELS[level.confidence]:<14} {result:>9}  {bar}".rstrip())
-    return [*lines, _calibration_summary(found)]
+    return [*lines, _calibration_summary(calibration)]
 
 
-def _calibration_summary(found: Calibration) -> str:
-    if found.answers < MIN_ANSWERS:
+def _calibration_summary(calibration: Calibration) -> str:
+    if calibration.answers < MIN_ANSWERS:
         return f"After {MIN_ANSWERS} such answers this says how well you judge yourself."
-    figures = f"so sure means {found.expected_share:.0%}, and {found.actual_share:.0%} were right"
-    gap = found.expected_share - found.actual_share
+    figures = f"so sure means {calibration.expected_share:.0%}, and {calibration.actual_share:.0%} were right"
+    gap = calibration.expected_share - calibration.actual_share
     if abs(gap) < CALIBRATED_GAP:
         return f"You judge yourself well: {figures}."
     return (

@@ -36,21 +36,21 @@ _ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 def read_bank(folder: Path | None = None) -> QuestionBank:
     """Every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
     folder = lessons_folder() if folder is None else folder
-    sheets = sorted(folder.glob(f"[0-9]*-*/{QUIZ_FILE}"))
-    lessons = [sheet.parent.name for sheet in sheets]
+    files = sorted(folder.glob(f"[0-9]*-*/{QUIZ_FILE}"))
+    lessons = [file.parent.name for file in files]
     problems = ProblemCollector()
-    items = [item for sheet in sheets for item in _read_file(sheet, lessons, problems)]
+    items = [item for file in files for item in _read_file(file, lessons, problems)]
     _check_unique(items, problems)
     problems.raise_if_any()
     return build_bank(items)
 
 
-def _read_file(sheet: Path, lessons: Collection[str], problems: ProblemCollector) -> list[QuizItem]:
-    documents = WorldDocuments(AllowedRoot.of_folder(sheet.parent), {}, problems)
-    section = documents.section(sheet, SourceLocation(sheet))
+def _read_file(file: Path, lessons: Collection[str], problems: ProblemCollector) -> list[QuizItem]:
+    documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems)
+    section = documents.section(file, SourceLocation(file))
     if section is None:
         return []
-    items = list(_items(section, sheet.parent.name, lessons))
+    items = list(_items(section, file.parent.name, lessons))
     section.finish()
     return items
 

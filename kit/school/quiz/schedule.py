@@ -1,4 +1,5 @@
-"""What is asked when: topics, not questions, come back after 1, 3, 7 and 21 days (ICER 2019, 10.1145/3291279.3339411).
+"""Schedules quiz questions: topics, not questions, come back after 1, 3, 7 and 21 days (ICER 2019,
+10.1145/3291279.3339411); and counts rounds through a fixed set of questions, such as the quiz or a lesson's.
 
 A topic enters the schedule with the first question answered of it. When it is due, a *practice* of a few of its
 questions is asked; if most are right the topic comes back after the next longer gap, else after a day. Only what the
@@ -181,3 +182,44 @@ def _ordered_items(builder: _ScheduleBuilder, schedule: TopicSchedule, seed: int
         return (2 if last.outcome is AnswerOutcome.RIGHT else 0), last.time.timestamp()
 
     return sorted(shuffled(items, seed, schedule.due), key=urgency)
+
+
+Round = dict[str, QuizAnswer]
+"""The first answer to each item."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoundHistory:
+    """How often a set of items was gone through, and how far one is."""
+
+    items: tuple[QuizItem, ...]
+    finished: tuple[Round, ...]
+    current: Round
+    """Empty: none is."""
+
+    @property
+    def last(self) -> Round:
+        """The one under way, else the last one finished."""
+        return self.current or (self.finished[-1] if self.finished else {})
+
+    def remaining(self, seed: int) -> list[QuizItem]:
+        """What the round under way, or a new one, has still to ask, in its order."""
+        order = shuffled(self.items, seed, len(self.finished))
+        return [item for item in order if item.id not in self.current]
+
+
+def round_history(
+    items: Sequence[QuizItem], answers: Iterable[QuizAnswer], occasion: Occasion
+) -> RoundHistory:
+    """What the answers given on that occasion make of these items."""
+    item_ids = {item.id for item in items}
+    finished: list[Round] = []
+    current: Round = {}
+    for answer in answers:
+        if answer.occasion is not occasion or answer.item not in item_ids:
+            continue
+        current.setdefault(answer.item, answer)  # two terminals may ask the same at once
+        if len(current) == len(item_ids):
+            finished.append(current)
+            current = {}
+    return RoundHistory(tuple(items), tuple(finished), current)

@@ -94,10 +94,10 @@ def count_by_topic(
 
 def measure_calibration(answers: Iterable[QuizAnswer]) -> Calibration:
     """Over all answers that say how sure one was."""
-    given: Counter[int] = Counter()
+    counts: Counter[int] = Counter()
     right: Counter[int] = Counter()
     for answer in answers:
         if answer.confidence is not None:
-            given[answer.confidence] += 1
+            counts[answer.confidence] += 1
             right[answer.confidence] += answer.outcome is AnswerOutcome.RIGHT
-    return Calibration(tuple(ConfidenceLevel(each, given[each], right[each]) for each in CONFIDENCE_LABELS))
+    return Calibration(tuple(ConfidenceLevel(each, counts[each], right[each]) for each in CONFIDENCE_LABELS))

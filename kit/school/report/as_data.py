@@ -28,7 +28,7 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """With these a spreadsheet takes a text for something to compute, which a student's name must not become."""
 
 
-def as_csv(table: ReportTable) -> str:
+def table_to_csv(table: ReportTable) -> str:
     """The table's numbers in full; an interval takes two columns."""
     spans = [
         any(isinstance(row[i], ConfidenceInterval) for row in table.rows) for i in range(len(table.columns))
@@ -62,7 +62,7 @@ def _plain(cell: str | float | None) -> str:
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
 
 
-def as_json(report: ClassReport) -> str:
+def report_to_json(report: ClassReport) -> str:
     """Everything, with null where nothing can be said."""
     content = {
         "title": report.title,

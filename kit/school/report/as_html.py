@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from html import escape
 from typing import Final
 
-from kit.school.report.as_svg import as_svg
-from kit.school.report.as_text import clean
+from kit.school.report.as_svg import plot_to_svg
+from kit.school.report.as_text import printable_text
 from kit.school.report.document import (
     CellStyle,
     ClassReport,
@@ -32,7 +32,7 @@ nav a { margin-right: 1rem; }
 """
 
 
-def as_html(report: ClassReport) -> str:
+def report_to_html(report: ClassReport) -> str:
     """The whole page."""
     return "\n".join(_page(report)) + "\n"
 
@@ -66,7 +66,7 @@ def _block(block: ReportBlock) -> Iterator[str]:
         case Quote():
             yield f"<p>{_safe(block.student)}:</p><blockquote>{_safe(block.text)}</blockquote>"
         case _:
-            yield as_svg(block).rstrip()
+            yield plot_to_svg(block).rstrip()
 
 
 def _table(table: ReportTable) -> Iterator[str]:
@@ -90,4 +90,4 @@ def _table(table: ReportTable) -> Iterator[str]:
 
 
 def _safe(text: str) -> str:
-    return escape(clean(text))
+    return escape(printable_text(text))

@@ -23,7 +23,7 @@ _FONT: Final = 'font-family="sans-serif" font-size="12" fill="#222222" stroke="n
 Scale = Callable[[float], float]
 
 
-def as_svg(plot: ReportPlot) -> str:
+def plot_to_svg(plot: ReportPlot) -> str:
     """The whole file; inside an HTML page it can stand as it is."""
     match plot:
         case BarChart():

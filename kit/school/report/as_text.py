@@ -28,16 +28,16 @@ from kit.school.report.document import (
 
 WIDTH: Final = 79
 GAP: Final = "  "
-LEAST_TEXT: Final = 8
+MIN_TEXT_WIDTH: Final = 8
 """Columns that a column of words keeps when room is short."""
-LONGEST_CELL: Final = 120
-BAR: Final = 40
-SCATTER: Final = (56, 15)
+MAX_CELL_LENGTH: Final = 120
+BAR_WIDTH: Final = 40
+SCATTER_SIZE: Final = (56, 15)
 """Columns and rows of the field in which points are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
-class Glyphs:
+class PlotGlyphs:
     """What plots are drawn with."""
 
     bars: tuple[str, ...]
@@ -46,29 +46,29 @@ class Glyphs:
     line: str
 
 
-BLOCKS: Final = Glyphs(bars=("█", "▒", "░"), point="o", line="·")
-ASCII: Final = Glyphs(bars=("#", "=", "-"), point="o", line=".")
+BLOCK_GLYPHS: Final = PlotGlyphs(bars=("█", "▒", "░"), point="o", line="·")
+ASCII_GLYPHS: Final = PlotGlyphs(bars=("#", "=", "-"), point="o", line=".")
 
 
-def rows_of(report: ClassReport, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+def report_lines(report: ClassReport, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """The whole report, line by line."""
-    yield from wrap(clean(report.title), WIDTH)
+    yield from wrap(printable_text(report.title), WIDTH)
     for chapter in report.chapters:
         yield ""
-        title = clean(chapter.title)
+        title = printable_text(chapter.title)
         yield title
         yield "=" * min(len(title), WIDTH)
         for block in chapter.blocks:
             if not isinstance(block, Quote):
                 yield ""
-            yield from block_rows(block, glyphs)
+            yield from block_lines(block, glyphs)
 
 
-def block_rows(block: ReportBlock, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
+def block_lines(block: ReportBlock, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """One table, plot, text, warning or word of a student."""
     match block:
         case ReportTable():
-            yield from table_rows(block)
+            yield from table_lines(block)
         case BarChart():
             yield from _bars(block, glyphs)
         case Histogram():
@@ -76,52 +76,55 @@ def block_rows(block: ReportBlock, glyphs: Glyphs = BLOCKS) -> Iterator[str]:
         case ScatterPlot():
             yield from _scatter(block, glyphs)
         case ReportText():
-            yield from wrap(clean(block.text), WIDTH)
+            yield from wrap(printable_text(block.text), WIDTH)
         case ReportWarning():
-            yield from wrap(clean(block.text), WIDTH, initial_indent="! ", subsequent_indent="  ")
+            yield from wrap(printable_text(block.text), WIDTH, initial_indent="! ", subsequent_indent="  ")
         case Quote():
-            head = f"  {clean(block.student)}: "
-            yield from wrap(clean(block.text), WIDTH, initial_indent=head, subsequent_indent=" " * 6)
+            head = f"  {printable_text(block.student)}: "
+            yield from wrap(printable_text(block.text), WIDTH, initial_indent=head, subsequent_indent=" " * 6)
 
 
-def clean(text: str) -> str:
+def printable_text(text: str) -> str:
     """Without what a terminal would obey; lines become one."""
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 
 
-def table_rows(table: ReportTable) -> Iterator[str]:
+def table_lines(table: ReportTable) -> Iterator[str]:
     """Its title, heads, cells and note. Words that do not fit their column go on below."""
-    yield from wrap(clean(table.title), WIDTH)
+    yield from wrap(printable_text(table.title), WIDTH)
     cells = [
-        [_short(clean(format_cell(cell, column))) for cell, column in zip(row, table.columns, strict=True)]
+        [
+            _short(printable_text(format_cell(cell, column)))
+            for cell, column in zip(row, table.columns, strict=True)
+        ]
         for row in table.rows
     ]
     heads = [column.title for column in table.columns]
     widths = _widths([heads, *cells], table.columns)
     yield from _line(heads, widths, table.columns)
     yield GAP.join("-" * width for width in widths)
-    for rows in _together(table, cells):
+    for rows in _grouped_rows(table, cells):
         if table.grouped:
-            _flow(rows, widths[0])
+            _wrap_cells(rows, widths[0])
         for row in rows:
             yield from _line(row, widths, table.columns)
     if table.note:
-        yield from wrap(clean(table.note), WIDTH)
+        yield from wrap(printable_text(table.note), WIDTH)
 
 
 def _short(text: str) -> str:
     """What fits a cell: nobody's text may push the rest off the screen."""
-    return text if len(text) <= LONGEST_CELL else text[: LONGEST_CELL - 3] + "..."
+    return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
 
-def _together(table: ReportTable, cells: list[list[str]]) -> Iterator[list[list[str]]]:
+def _grouped_rows(table: ReportTable, cells: list[list[str]]) -> Iterator[list[list[str]]]:
     """The rows in groups; without groups each for itself."""
     starts = [i for i in range(len(cells)) if not table.grouped or table.shows_first_cell(i)]
     for start, end in zip(starts, [*starts[1:], len(cells)], strict=True):
         yield cells[start:end]
 
 
-def _flow(rows: list[list[str]], width: int) -> None:
+def _wrap_cells(rows: list[list[str]], width: int) -> None:
     """Writes what a group shares down its rows, as far as it goes; what is left stays in the last."""
     words = wrap(rows[0][0], width)
     for number, row in enumerate(rows):
@@ -134,7 +137,9 @@ def _widths(rows: Sequence[Sequence[str]], columns: Sequence[TableColumn]) -> li
     over = sum(widths) + len(GAP) * (len(widths) - 1) - WIDTH
     while over > 0:
         texts = [
-            i for i, column in enumerate(columns) if column.style is CellStyle.TEXT and widths[i] > LEAST_TEXT
+            i
+            for i, column in enumerate(columns)
+            if column.style is CellStyle.TEXT and widths[i] > MIN_TEXT_WIDTH
         ]
         if not texts:
             break
@@ -154,14 +159,14 @@ def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TableCo
         ).rstrip()
 
 
-def _bars(bars: BarChart, glyphs: Glyphs) -> Iterator[str]:
-    yield from wrap(clean(bars.title), WIDTH)
+def _bars(bars: BarChart, glyphs: PlotGlyphs) -> Iterator[str]:
+    yield from wrap(printable_text(bars.title), WIDTH)
     groups = max(map(len, bars.groups))
-    labels = min(max((len(label) for label, _ in bars.rows), default=0), WIDTH - BAR - groups - 11)
+    labels = min(max((len(label) for label, _ in bars.rows), default=0), WIDTH - BAR_WIDTH - groups - 11)
     indent = " " * (labels + groups + 3)
-    yield f"{indent}{bars.low:<{BAR // 2}g}{bars.high:>{BAR - BAR // 2}g}"
+    yield f"{indent}{bars.low:<{BAR_WIDTH // 2}g}{bars.high:>{BAR_WIDTH - BAR_WIDTH // 2}g}"
     for label, values in bars.rows:
-        text = wrap(clean(label), labels) or [""]
+        text = wrap(printable_text(label), labels) or [""]
         text += [""] * (len(values) - len(text))
         for i, part in enumerate(text):
             if i >= len(values):
@@ -173,23 +178,23 @@ def _bars(bars: BarChart, glyphs: Glyphs) -> Iterator[str]:
                 yield f"{head} nobody".rstrip()
                 continue
             share = min(max((value - bars.low) / (bars.high - bars.low), 0.0), 1.0)
-            yield f"{head}{glyph * round(share * BAR):<{BAR}}| {value:.2f}"
+            yield f"{head}{glyph * round(share * BAR_WIDTH):<{BAR_WIDTH}}| {value:.2f}"
 
 
-def _histogram(histogram: Histogram, glyphs: Glyphs) -> Iterator[str]:
-    yield from wrap(clean(histogram.title), WIDTH)
+def _histogram(histogram: Histogram, glyphs: PlotGlyphs) -> Iterator[str]:
+    yield from wrap(printable_text(histogram.title), WIDTH)
     labels = [f"{low:g} to {high:g}" for low, high in zip(histogram.edges, histogram.edges[1:], strict=False)]
     width = max(map(len, labels))
     most = max((*histogram.counts, 1))
-    unit = max(1, -(-most // BAR))
-    scale = 2 if 2 * most <= BAR else 1
+    unit = max(1, -(-most // BAR_WIDTH))
+    scale = 2 if 2 * most <= BAR_WIDTH else 1
     for label, count in zip(labels, histogram.counts, strict=True):
         yield f"{label:>{width}} |{glyphs.bars[0] * round(count / unit * scale)} {count}"
 
 
-def _scatter(scatter: ScatterPlot, glyphs: Glyphs) -> Iterator[str]:
-    yield from wrap(clean(scatter.title), WIDTH)
-    columns, rows = SCATTER
+def _scatter(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
+    yield from wrap(printable_text(scatter.title), WIDTH)
+    columns, rows = SCATTER_SIZE
     (left, right), (low, high) = scatter.x_range, scatter.y_range
     field = [[" "] * columns for _ in range(rows)]
 
@@ -211,7 +216,7 @@ def _scatter(scatter: ScatterPlot, glyphs: Glyphs) -> Iterator[str]:
         seen[place(x, y)] = seen.get(place(x, y), 0) + 1
     for (row, column), count in seen.items():
         field[row][column] = glyphs.point if count == 1 else str(count) if count < 10 else "+"
-    yield f"{clean(scatter.y)} (up) by {clean(scatter.x)} (right)"
+    yield f"{printable_text(scatter.y)} (up) by {printable_text(scatter.x)} (right)"
     margin = max(len(f"{low:g}"), len(f"{high:g}"))
     for number, dots in enumerate(field):
         label = {0: f"{high:g}", rows - 1: f"{low:g}"}.get(number, "")

@@ -46,17 +46,17 @@ class ClassData:
 
 
 def build_class_data(
-    roster: ClassRoster, form: SurveyForm, known: Mapping[str, ReportItem] | None = None
+    roster: ClassRoster, form: SurveyForm, known_items: Mapping[str, ReportItem] | None = None
 ) -> ClassData:
     """``known``: items of the quiz with their texts, in the order in which they are to be shown."""
-    known = known or {}
+    known_items = known_items or {}
     names = tuple(each.label for each in roster.students)
     answers = [FormAnswers.from_events(form, each.events) for each in roster.students]
-    cautions = list(roster.warnings)
-    cautions += _invalid_answer_warnings(roster.students, answers)
-    sheets = [_StudentAnswers(each.events) for each in roster.students]
-    cautions += _unknown_item_warnings(roster.students, sheets, known)
-    quiz, later, bank = _answer_sheets(sheets, known)
+    warnings = list(roster.warnings)
+    warnings += _invalid_answer_warnings(roster.students, answers)
+    student_answers = [_StudentAnswers(each.events) for each in roster.students]
+    warnings += _unknown_item_warnings(roster.students, student_answers, known_items)
+    quiz, later, bank = _answer_sheets(student_answers, known_items)
     return ClassData(
         names,
         _ratings(form, answers),
@@ -66,7 +66,7 @@ def build_class_data(
         tuple(student_work(each.events) for each in roster.students),
         tuple(_free_text_answers(form, names, answers)),
         tuple(_option_counts(form, answers)),
-        tuple(cautions),
+        tuple(warnings),
     )
 
 
@@ -98,7 +98,7 @@ def _free_text_answers(
 def _option_counts(
     form: SurveyForm, answers: Sequence[FormAnswers]
 ) -> list[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]]]:
-    found: list[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]]] = []
+    counts: list[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]]] = []
     for question in form.questions:
         options = question.options if question.shape is AnswerShape.CHOICE else ("yes", "no")
         if question.shape not in (AnswerShape.CHOICE, AnswerShape.YES_NO):
@@ -111,17 +111,17 @@ def _option_counts(
                 "blank" if v is None else v if isinstance(v, str) else "yes" if v else "no" for v in asked
             ]
             if words:
-                found.append((question, phase, {word: words.count(word) for word in (*options, "blank")}))
-    return found
+                counts.append((question, phase, {word: words.count(word) for word in (*options, "blank")}))
+    return counts
 
 
 class _StudentAnswers:
     """One student's answers, sorted: in the quiz, first of all, and the newest of those given after the quiz."""
 
     def __init__(self, events: Sequence[ProgressEvent]) -> None:
-        self.quiz: dict[str, ItemReply] = {}
-        self.first: dict[str, ItemReply] = {}
-        self.again: dict[str, ItemReply] = {}
+        self.quiz_replies: dict[str, ItemReply] = {}
+        self.first_replies: dict[str, ItemReply] = {}
+        self.later_replies: dict[str, ItemReply] = {}
         self.topics: dict[str, str] = {}
         for event in events:
             try:
@@ -134,11 +134,11 @@ class _StudentAnswers:
             reply = ItemReply(answer.outcome, chosen if isinstance(chosen, int) else None)
             topic = event.content.get("topic")
             self.topics[answer.item] = topic if isinstance(topic, str) else "other"
-            self.first.setdefault(answer.item, reply)
-            if answer.item in self.quiz:
-                self.again[answer.item] = reply
+            self.first_replies.setdefault(answer.item, reply)
+            if answer.item in self.quiz_replies:
+                self.later_replies[answer.item] = reply
             elif answer.occasion is Occasion.QUIZ:
-                self.quiz[answer.item] = reply
+                self.quiz_replies[answer.item] = reply
 
 
 def _invalid_answer_warnings(students: Sequence[Student], answers: Sequence[FormAnswers]) -> Iterator[str]:
@@ -154,14 +154,16 @@ def _invalid_answer_warnings(students: Sequence[Student], answers: Sequence[Form
 
 
 def _unknown_item_warnings(
-    students: Sequence[Student], sheets: Sequence[_StudentAnswers], known: Mapping[str, ReportItem]
+    students: Sequence[Student],
+    student_answers: Sequence[_StudentAnswers],
+    known_items: Mapping[str, ReportItem],
 ) -> Iterator[str]:
     """Answers to questions that this kit does not have, so that nobody else could give any."""
-    if not known:
+    if not known_items:
         return
     found = [
-        (student.files[0], sheet.topics.keys() - known.keys())
-        for student, sheet in zip(students, sheets, strict=True)
+        (student.files[0], sheet.topics.keys() - known_items.keys())
+        for student, sheet in zip(students, student_answers, strict=True)
     ]
     files = sorted(str(file) for file, unknown in found if unknown)
     if files:
@@ -174,25 +176,31 @@ def _unknown_item_warnings(
 
 
 def _answer_sheets(
-    sheets: Sequence[_StudentAnswers], known: Mapping[str, ReportItem]
+    student_answers: Sequence[_StudentAnswers], known_items: Mapping[str, ReportItem]
 ) -> tuple[AnswerSheet, AnswerSheet, AnswerSheet]:
     """The quiz by first answers, the same items by newest ones, and the rest of the bank."""
-    found = {name: topic for sheet in sheets for name, topic in sheet.topics.items()}
-    answered = {name for sheet in sheets for name in sheet.quiz}
-    if known:
-        items = [item for name, item in known.items() if name in found]
+    topics = {name: topic for sheet in student_answers for name, topic in sheet.topics.items()}
+    answered = {name for sheet in student_answers for name in sheet.quiz_replies}
+    if known_items:
+        items = [item for name, item in known_items.items() if name in topics]
         asked = tuple(item for item in items if item.in_quiz and item.id in answered)
     else:
         items = [
-            ReportItem(name, topic) for name, topic in sorted(found.items(), key=lambda pair: pair[::-1])
+            ReportItem(name, topic) for name, topic in sorted(topics.items(), key=lambda pair: pair[::-1])
         ]
         asked = tuple(item for item in items if item.id in answered)
     rest = tuple(item for item in items if item not in asked)
     return (
         # Who took the quiz at all had every item before them: what they did not reach is blank.
         AnswerSheet(
-            asked, {i.id: tuple(s.quiz.get(i.id, BLANK) if s.quiz else None for s in sheets) for i in asked}
+            asked,
+            {
+                i.id: tuple(
+                    s.quiz_replies.get(i.id, BLANK) if s.quiz_replies else None for s in student_answers
+                )
+                for i in asked
+            },
         ),
-        AnswerSheet(asked, {i.id: tuple(s.again.get(i.id) for s in sheets) for i in asked}),
-        AnswerSheet(rest, {i.id: tuple(s.first.get(i.id) for s in sheets) for i in rest}),
+        AnswerSheet(asked, {i.id: tuple(s.later_replies.get(i.id) for s in student_answers) for i in asked}),
+        AnswerSheet(rest, {i.id: tuple(s.first_replies.get(i.id) for s in student_answers) for i in rest}),
     )

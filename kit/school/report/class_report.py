@@ -6,27 +6,27 @@ from collections.abc import Collection
 from typing import Final
 
 from kit.school.report.chapters import lessons, people, quiz, ratings, relations
-from kit.school.report.chapters.setting import Setting
+from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
 from kit.school.report.document import ClassReport, ReportChapter
 from kit.school.report.expertise import DIVISION_METHODS, divide_class, expertise_scores
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
-_MAKERS: Final = (
-    people.experience,
-    ratings.knowledge,
-    ratings.outcomes,
-    ratings.difficulty,
-    ratings.explanation,
-    quiz.quiz,
-    quiz.items,
-    relations.relations,
-    relations.robustness,
-    lessons.lessons,
-    lessons.words,
+_CHAPTER_BUILDERS: Final = (
+    people.experience_chapter,
+    ratings.knowledge_chapter,
+    ratings.outcomes_chapter,
+    ratings.difficulty_chapter,
+    ratings.explanation_chapter,
+    quiz.quiz_chapter,
+    quiz.items_chapter,
+    relations.relations_chapter,
+    relations.robustness_chapter,
+    lessons.lessons_chapter,
+    lessons.free_text_chapter,
 )
 
-CHAPTERS: Final = (
+CHAPTER_IDS: Final = (
     "class",
     "experience",
     "knowledge",
@@ -43,7 +43,7 @@ CHAPTERS: Final = (
 """The chapters' ids, in order."""
 
 
-def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> Setting:
+def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> ReportContext:
     """The class with its scores and groups. ``way``: one of ``WAYS``."""
     score = expertise_scores(
         data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE), question_topics(data)
@@ -54,20 +54,22 @@ def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> S
         if score is not None and (division := divide_class(score, each)) is not None
     )
     chosen = next((each for each in divisions if each.id == method), None)
-    return Setting(data, score, divisions, chosen, seed)
+    return ReportContext(data, score, divisions, chosen, seed)
 
 
-def build_chapters(setting: Setting, wanted: Collection[str] = ()) -> tuple[ReportChapter, ...]:
+def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) -> tuple[ReportChapter, ...]:
     """Those that there are numbers for, of ``wanted`` ones or all; without the one about files."""
-    made = (make(setting) for make in _MAKERS)
-    return tuple(each for each in made if each is not None and (not wanted or each.id in wanted))
+    chapters = (make(context) for make in _CHAPTER_BUILDERS)
+    return tuple(
+        each for each in chapters if each is not None and (not chapter_ids or each.id in chapter_ids)
+    )
 
 
-def build_report(setting: Setting, files: int, wanted: Collection[str] = ()) -> ClassReport:
+def build_report(context: ReportContext, file_count: int, chapter_ids: Collection[str] = ()) -> ClassReport:
     """The whole report of a class that was read from ``files`` files."""
-    first = people.people(setting, files)
-    head = (first,) if not wanted or first.id in wanted else ()
-    return ClassReport("Class report", (*head, *build_chapters(setting, wanted)))
+    first = people.class_chapter(context, file_count)
+    head = (first,) if not chapter_ids or first.id in chapter_ids else ()
+    return ClassReport("Class report", (*head, *build_chapters(context, chapter_ids)))
 
 
 def question_topics(data: ClassData) -> dict[str, str]:

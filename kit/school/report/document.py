@@ -16,7 +16,7 @@ class CellStyle(StrEnum):
 
     TEXT = "text"
     NUMBER = "number"
-    CHANCE = "chance"
+    P_VALUE = "chance"
     """A p value: three decimals, or below 0.001."""
 
 
@@ -147,7 +147,7 @@ def format_cell(cell: TableCell, column: TableColumn) -> str:
     if cell is None or cell != cell:
         return "-"
     if isinstance(cell, float):
-        if column.style is CellStyle.CHANCE:
+        if column.style is CellStyle.P_VALUE:
             return "< 0.001" if cell < 0.001 else f"{cell:.3f}"
         shown = f"{cell:.{column.decimals}f}"
         return shown.lstrip("-") if float(shown) == 0 else shown

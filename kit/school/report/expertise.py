@@ -28,14 +28,16 @@ def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str])
 
     ``topics``: of each measure, by its id.
     """
-    found = {topics[each.id]: each.values for each in prior}
-    if not set(TOPICS) <= set(found):
+    ratings = {topics[each.id]: each.values for each in prior}
+    if not set(TOPICS) <= set(ratings):
         return None
     ros = np.where(
-        np.isnan(found["ros1"]) | np.isnan(found["ros2"]), np.nan, np.maximum(found["ros1"], found["ros2"])
+        np.isnan(ratings["ros1"]) | np.isnan(ratings["ros2"]),
+        np.nan,
+        np.maximum(ratings["ros1"], ratings["ros2"]),
     )
     return np.asarray(
-        _expertise_score({**{topic: found[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64
+        _expertise_score({**{topic: ratings[topic] for topic in TOPICS}, "ros": ros}), dtype=np.float64
     )
 
 
@@ -54,11 +56,11 @@ def effective_weights() -> tuple[tuple[str, float], ...]:
     Several means of means hide this. ``ros`` is the greater of the two ROS ratings.
     """
     inputs = (*TOPICS, "ros")
-    found = [
+    weights = [
         (name, float(_expertise_score({other: np.array(float(other == name)) for other in inputs})))
         for name in inputs
     ]
-    return tuple(sorted(found, key=lambda each: -each[1]))
+    return tuple(sorted(weights, key=lambda each: -each[1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,14 +135,14 @@ DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[f
 
 
 def _division_warnings(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:
-    found = []
+    warnings = []
     gap = float(score[experts].min() - score[beginners].max())
     if gap <= 1e-9:
-        found.append("it cuts through a tie: students with the same score are on both sides")
+        warnings.append("it cuts through a tie: students with the same score are on both sides")
     elif gap < MIN_GAP:
-        found.append(f"the best beginner and the least expert are only {gap:.2f} apart")
+        warnings.append(f"the best beginner and the least expert are only {gap:.2f} apart")
     for name, members in (("beginners", beginners), ("experts", experts)):
         count = int(members.sum())
         if count < MIN_GROUP_SIZE:
-            found.append(f"only {count} {name[:-1] if count == 1 else name}")
-    return found
+            warnings.append(f"only {count} {name[:-1] if count == 1 else name}")
+    return warnings

@@ -77,13 +77,13 @@ class AnswerSheet:
 
     def outcome_counts(self, outcome: AnswerOutcome) -> Float64Array:
         """(n,) items with that outcome, by student."""
-        taken = [self.replies[item.id] for item in self.items]
+        replies = [self.replies[item.id] for item in self.items]
         return np.array(
             [
                 np.nan
-                if any(row[i] is None for row in taken)
-                else sum(_has_outcome(row[i], outcome) for row in taken)
-                for i in range(len(taken[0]) if taken else 0)
+                if any(row[i] is None for row in replies)
+                else sum(_has_outcome(row[i], outcome) for row in replies)
+                for i in range(len(replies[0]) if replies else 0)
             ],
             dtype=np.float64,
         )

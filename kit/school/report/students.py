@@ -46,46 +46,48 @@ class _StudentFiles:
     name: str
 
 
-def read_roster(paths: Sequence[Path], *, names: bool = False) -> ClassRoster:
+def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoster:
     """Reads every file, and every ``.json`` file directly in a folder; goes on past those that cannot be read.
 
     ``names``: students are called by the name they gave, else by their file's; otherwise S1, S2, ... in an order
     that tells nothing of them.
     """
-    cautions: list[str] = []
-    files = list(_files(paths, cautions))
-    found: list[_StudentFiles] = []
+    warnings: list[str] = []
+    files = list(_files(paths, warnings))
+    students_found: list[_StudentFiles] = []
     for file in files:
-        _add_file(file, found, cautions)
-    found.sort(key=lambda each: hashlib.sha256(min(each.events).encode()).digest())
-    cautions += _same_name_warnings(found)
-    width = len(str(len(found)))
-    labels = [each.name or each.files[0].stem for each in found] if names else []
-    labels = list(_unique_labels(labels)) or [f"S{number:0{width}}" for number in range(1, len(found) + 1)]
+        _add_file(file, students_found, warnings)
+    students_found.sort(key=lambda each: hashlib.sha256(min(each.events).encode()).digest())
+    warnings += _same_name_warnings(students_found)
+    width = len(str(len(students_found)))
+    labels = [each.name or each.files[0].stem for each in students_found] if use_names else []
+    labels = list(_unique_labels(labels)) or [
+        f"S{number:0{width}}" for number in range(1, len(students_found) + 1)
+    ]
     students = (
         Student(label, tuple(each.files), tuple(sorted(each.events.values(), key=lambda event: event.time)))
-        for label, each in zip(labels, found, strict=True)
+        for label, each in zip(labels, students_found, strict=True)
     )
-    return ClassRoster(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(cautions))
+    return ClassRoster(tuple(sorted(students, key=lambda each: each.label)), len(files), tuple(warnings))
 
 
-def _files(paths: Iterable[Path], cautions: list[str]) -> Iterator[Path]:
+def _files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
     """Each file once, by whatever name it was given."""
     seen: set[Path] = set()
     for path in paths:
         inside = sorted(path.glob("*.json")) if path.is_dir() else [path]
         if not inside:
-            cautions.append(f"{path}: there is no .json file in this folder.")
+            warnings.append(f"{path}: there is no .json file in this folder.")
         for file in inside:
             real = file.resolve()
             if real in seen:
-                cautions.append(f"{file}: was named twice, and is read once.")
+                warnings.append(f"{file}: was named twice, and is read once.")
             else:
                 seen.add(real)
                 yield file
 
 
-def _add_file(file: Path, found: list[_StudentFiles], cautions: list[str]) -> None:
+def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) -> None:
     """Reads a file, and puts it to the student whose entries it shares, if there is one."""
     try:
         if file.is_file() and file.stat().st_size > MAX_FILE_SIZE:
@@ -94,26 +96,26 @@ def _add_file(file: Path, found: list[_StudentFiles], cautions: list[str]) -> No
             )
         events = {event.uid: event for event in read_export(file)}
     except ProgressError as error:
-        cautions.append(f"{error} It is left out.")
+        warnings.append(f"{error} It is left out.")
         return
     except (RecursionError, OSError) as error:
-        cautions.append(f"{file}: is not an export of progress ({error}). It is left out.")
+        warnings.append(f"{file}: is not an export of progress ({error}). It is left out.")
         return
     if not events:
-        cautions.append(f"{file}: holds no entry yet. It is left out.")
+        warnings.append(f"{file}: holds no entry yet. It is left out.")
         return
     name = _student_name(events.values())
-    for other in found:
+    for other in students:
         shared = events.keys() & other.events.keys()
         if not shared:
             continue
         if name and other.name and name != other.name:
-            cautions.append(
+            warnings.append(
                 f"{file}: shares {_count_text(len(shared))} with {other.files[0]}, but they name different students. "
                 "They are kept apart, and count what they share twice."
             )
             continue
-        cautions.append(
+        warnings.append(
             f"{file}: is of the same student as {other.files[0]} ({_count_text(len(shared))} in common). "
             "The two are put together."
         )
@@ -121,22 +123,22 @@ def _add_file(file: Path, found: list[_StudentFiles], cautions: list[str]) -> No
         other.events.update(events)
         other.name = _student_name(other.events.values())
         return
-    found.append(_StudentFiles([file], events, name))
+    students.append(_StudentFiles([file], events, name))
 
 
 def _student_name(events: Iterable[ProgressEvent]) -> str:
     """The last name that the student gave; empty if none."""
-    given = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
-    last = max(given, key=lambda each: each.time, default=None)
+    name_events = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
+    last = max(name_events, key=lambda each: each.time, default=None)
     value = last.content.get("value") if last is not None else None
     if not isinstance(value, str):
         return ""
     return "".join(c if is_printable(c) else " " for c in value).strip()[:MAX_NAME_LENGTH]
 
 
-def _same_name_warnings(found: Sequence[_StudentFiles]) -> Iterator[str]:
+def _same_name_warnings(students: Sequence[_StudentFiles]) -> Iterator[str]:
     by_name: dict[str, list[_StudentFiles]] = {}
-    for each in found:
+    for each in students:
         by_name.setdefault(each.name.casefold(), []).append(each)
     for name, some in sorted(by_name.items()):
         if name and len(some) > 1:

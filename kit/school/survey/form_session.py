@@ -9,8 +9,8 @@ from typing import Final
 from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.survey.questions import (
-    HIGHEST,
-    LOWEST,
+    SCALE_MAX,
+    SCALE_MIN,
     AnswerShape,
     AnswerValue,
     SurveyForm,
@@ -40,18 +40,18 @@ class FormAnswers:
     @classmethod
     def from_events(cls, form: SurveyForm, events: Iterable[ProgressEvent]) -> FormAnswers:
         """Folds a student's events; those about questions that the form does not have are passed over."""
-        given: dict[tuple[SurveyPhase, str], AnswerValue] = {}
-        odd: dict[str, None] = {}
+        values: dict[tuple[SurveyPhase, str], AnswerValue] = {}
+        invalid: dict[str, None] = {}
         for event in events:
             question = form.find_question(event.subject) if event.kind is EventKind.FORM else None
             if question is None:
                 continue
             phase, value = event.content.get("phase"), event.content.get("value")
             if phase in question.phases and question.can_be_answered_with(value):
-                given[SurveyPhase(phase), question.id] = value
+                values[SurveyPhase(phase), question.id] = value
             else:
-                odd[question.id] = None
-        return cls(given, tuple(odd))
+                invalid[question.id] = None
+        return cls(values, tuple(invalid))
 
     def value(self, question: str, phase: SurveyPhase) -> AnswerValue:
         return self.values.get((phase, question))
@@ -94,8 +94,8 @@ def parse_answer(question: SurveyQuestion, line: str) -> AnswerValue:
 
 
 def _scale(question: SurveyQuestion, text: str) -> int:
-    if not (text.isascii() and text.isdigit() and len(text) <= 3 and LOWEST <= int(text) <= HIGHEST):
-        raise InvalidAnswer(f"Type a number from {LOWEST} to {HIGHEST}, or nothing to leave it blank.")
+    if not (text.isascii() and text.isdigit() and len(text) <= 3 and SCALE_MIN <= int(text) <= SCALE_MAX):
+        raise InvalidAnswer(f"Type a number from {SCALE_MIN} to {SCALE_MAX}, or nothing to leave it blank.")
     return int(text)
 
 

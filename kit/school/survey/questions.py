@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, TypeGuard
 
-LOWEST: Final = 1
-HIGHEST: Final = 7
+SCALE_MIN: Final = 1
+SCALE_MAX: Final = 7
 """Of every scale."""
 
 AnswerValue = int | str | bool | None
@@ -93,7 +93,7 @@ class SurveyQuestion:
         if isinstance(value, bool):
             return self.shape is AnswerShape.YES_NO
         if isinstance(value, int):
-            return self.shape is AnswerShape.SCALE and LOWEST <= value <= HIGHEST
+            return self.shape is AnswerShape.SCALE and SCALE_MIN <= value <= SCALE_MAX
         if isinstance(value, str):
             return (
                 value in self.options if self.shape is AnswerShape.CHOICE else self.shape is AnswerShape.TEXT

@@ -8,8 +8,8 @@ from typing import Final
 
 from kit.plain_text import quoted, suggestion
 from kit.school.survey.questions import (
-    HIGHEST,
-    LOWEST,
+    SCALE_MAX,
+    SCALE_MIN,
     AnswerShape,
     AskCondition,
     QuestionPurpose,
@@ -71,7 +71,7 @@ def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
     identity = group.name("id")
     shape = group.choice("shape", _SHAPES, AnswerShape.SCALE.value)
     text = group.name("text")
-    made = SurveyQuestion(
+    question = SurveyQuestion(
         id=identity,
         text=text,
         purpose=group.choice("purpose", _PURPOSES) or QuestionPurpose.WORDS,
@@ -84,22 +84,22 @@ def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
         only_if=_rule(group.section("only_if", None)),
     )
     if not group.has("rows"):
-        yield made, group
+        yield question, group
         return
     for row in group.sections("rows", at_least=1):
         yield (
             SurveyQuestion(
                 id=f"{identity}.{row.name('id')}",
                 text=row.name("text"),
-                purpose=made.purpose,
+                purpose=question.purpose,
                 shape=shape,
                 group_text=text,
-                topic=row.name("topic") if row.has("topic") else made.topic,
-                phases=made.phases,
-                low=made.low,
-                high=made.high,
-                options=made.options,
-                only_if=made.only_if,
+                topic=row.name("topic") if row.has("topic") else question.topic,
+                phases=question.phases,
+                low=question.low,
+                high=question.high,
+                options=question.options,
+                only_if=question.only_if,
             ),
             row,
         )
@@ -118,13 +118,13 @@ def _rule(section: Section | None) -> AskCondition | None:
     if section is None:
         return None
     question = section.name("question")
-    made = (
-        AskCondition(question, at_least=section.integer("at_least", minimum=LOWEST, maximum=HIGHEST))
+    condition = (
+        AskCondition(question, at_least=section.integer("at_least", minimum=SCALE_MIN, maximum=SCALE_MAX))
         if section.has("at_least")
         else AskCondition(question, answer=section.flag("answer"))
     )
     section.finish()
-    return made
+    return condition
 
 
 def _check_rule(rule: AskCondition, earlier: list[SurveyQuestion], group: Section) -> None:
@@ -134,8 +134,8 @@ def _check_rule(rule: AskCondition, earlier: list[SurveyQuestion], group: Sectio
         hint = suggestion(rule.question, [each.id for each in earlier])
         group.error(f"no earlier question is called {quoted(rule.question)}: {hint}", "only_if")
         return
-    wanted = AnswerShape.YES_NO if rule.at_least is None else AnswerShape.SCALE
-    if named.shape is not wanted:
+    shape = AnswerShape.YES_NO if rule.at_least is None else AnswerShape.SCALE
+    if named.shape is not shape:
         group.error(
             f"{quoted(rule.question)} is of shape {named.shape.value}: `answer` goes with yes_no, `at_least` with scale",
             "only_if",

@@ -18,7 +18,7 @@ from kit.school.quiz.answers import (
 )
 from kit.school.quiz.items import QuizTopic
 from kit.school.quiz.quiz_text import calibration_lines, tally_line
-from kit.school.quiz.rounds import round_history
+from kit.school.quiz.schedule import round_history
 from kit.school.quiz.scores import (
     OutcomeCounts,
     count_by_topic,

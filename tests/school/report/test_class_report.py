@@ -15,12 +15,12 @@ import pytest
 
 from kit.school.progress import EventKind
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, Occasion
-from kit.school.report.as_data import as_csv, as_json
-from kit.school.report.as_html import as_html
-from kit.school.report.as_svg import as_svg
-from kit.school.report.as_text import ASCII, BLOCKS, rows_of
+from kit.school.report.as_data import report_to_json, table_to_csv
+from kit.school.report.as_html import report_to_html
+from kit.school.report.as_svg import plot_to_svg
+from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
 from kit.school.report.class_data import ClassData, build_class_data
-from kit.school.report.class_report import CHAPTERS, build_report, prepare_report
+from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.document import (
     BarChart,
     ClassReport,
@@ -46,7 +46,7 @@ def known() -> Mapping[str, ReportItem]:
 def data_of(folder: Path, made: Sequence[Diary]) -> ClassData:
     for diary in made:
         diary.export(folder)
-    return build_class_data(read_roster([folder], names=True), the_form(), known())
+    return build_class_data(read_roster([folder], use_names=True), the_form(), known())
 
 
 def report_of(folder: Path, made: Sequence[Diary]) -> ClassReport:
@@ -57,7 +57,7 @@ def report_of(folder: Path, made: Sequence[Diary]) -> ClassReport:
 def report(tmp_path_factory: pytest.TempPathFactory) -> ClassReport:
     folder = tmp_path_factory.mktemp("class")
     classroom(folder)
-    roll = read_roster([folder], names=True)
+    roll = read_roster([folder], use_names=True)
     return build_report(prepare_report(build_class_data(roll, the_form(), known())), roll.file_count)
 
 
@@ -66,18 +66,18 @@ def table(report: ClassReport, identity: str) -> ReportTable:
 
 
 def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
-    assert tuple(each.id for each in report.chapters) == CHAPTERS
+    assert tuple(each.id for each in report.chapters) == CHAPTER_IDS
     assert len({each.id for each in (*report.tables, *report.plots)}) == len(report.tables) + len(
         report.plots
     )
 
 
-@pytest.mark.parametrize("glyphs", [BLOCKS, ASCII], ids=["blocks", "ascii"])
+@pytest.mark.parametrize("glyphs", [BLOCK_GLYPHS, ASCII_GLYPHS], ids=["blocks", "ascii"])
 def test_it_fits_eighty_columns(report: ClassReport, glyphs: Any) -> None:
-    rows = list(rows_of(report, glyphs))
+    rows = list(report_lines(report, glyphs))
     assert max(map(len, rows)) <= 79
     assert all(row == row.rstrip() for row in rows)
-    assert glyphs is BLOCKS or "\n".join(rows).isascii()
+    assert glyphs is BLOCK_GLYPHS or "\n".join(rows).isascii()
 
 
 def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
@@ -91,7 +91,7 @@ def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
 
 
 def test_the_same_class_makes_the_same_report(report: ClassReport, tmp_path: Path) -> None:
-    assert as_json(report_of(tmp_path, list(diaries(12)))) == as_json(report)
+    assert report_to_json(report_of(tmp_path, list(diaries(12)))) == report_to_json(report)
 
 
 def nothing_but(*kinds: EventKind, count: int = 3) -> list[Diary]:
@@ -103,7 +103,7 @@ def nothing_but(*kinds: EventKind, count: int = 3) -> list[Diary]:
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_small_classes_are_reported(tmp_path: Path, count: int) -> None:
-    rows = list(rows_of(report_of(tmp_path, list(diaries(count)))))
+    rows = list(report_lines(report_of(tmp_path, list(diaries(count)))))
     assert max(map(len, rows)) <= 79
     assert not any("nan" in row.split() for row in rows)
 
@@ -125,9 +125,9 @@ def test_a_class_that_did_only_a_part(
     chapters = {each.id for each in report.chapters}
     assert there in chapters
     assert missing not in chapters
-    assert list(rows_of(report))
-    assert json.loads(as_json(report))
-    assert as_html(report)
+    assert list(report_lines(report))
+    assert json.loads(report_to_json(report))
+    assert report_to_html(report)
 
 
 def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
@@ -149,7 +149,7 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
         for each in row[2:4]
         if isinstance(each, float)
     )
-    json.loads(as_json(report))
+    json.loads(report_to_json(report))
 
 
 def cautions(report: ClassReport) -> list[ReportWarning]:
@@ -218,20 +218,20 @@ def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
     ):
         diary.note(EventKind.ANSWER, the_bank().quiz_items[0].id, content)
     report = report_of(tmp_path, [diary])
-    text = "\n".join(rows_of(report))
-    page = as_html(report)
+    text = "\n".join(report_lines(report))
+    page = report_to_html(report)
     assert "\x1b" not in text + page
     assert "<script" not in page
     assert "&lt;script&gt;" in page
     for each in report.tables:
-        for row in csv.reader(io.StringIO(as_csv(each))):
+        for row in csv.reader(io.StringIO(table_to_csv(each))):
             assert not any(cell.startswith(("=", "@", "+")) for cell in row)
     said = [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, Quote)]
     assert [each.text for each in said] == [WICKED]
 
 
 def test_a_page_needs_nothing_from_elsewhere(report: ClassReport) -> None:
-    page = as_html(report)
+    page = report_to_html(report)
     assert "http://www.w3.org/2000/svg" in page
     loaders = ("<script", "<link", "<img", "src=", "@import", "url(")
     assert [each for each in loaders if each in page] == []
@@ -240,7 +240,7 @@ def test_a_page_needs_nothing_from_elsewhere(report: ClassReport) -> None:
 
 def test_every_plot_is_a_picture_with_what_it_shows(report: ClassReport) -> None:
     for plot in report.plots:
-        root = ElementTree.fromstring(as_svg(plot))
+        root = ElementTree.fromstring(plot_to_svg(plot))
         tags = [element.tag.rpartition("}")[2] for element in root.iter()]
         match plot:
             case BarChart():
@@ -253,7 +253,7 @@ def test_every_plot_is_a_picture_with_what_it_shows(report: ClassReport) -> None
 
 
 def test_tables_as_csv_hold_the_numbers_in_full(report: ClassReport) -> None:
-    rows = list(csv.reader(io.StringIO(as_csv(table(report, "gained")))))
+    rows = list(csv.reader(io.StringIO(table_to_csv(table(report, "gained")))))
     assert rows[0] == ["", "group", "n", "M", "SD", "95% of M low", "95% of M high", "p"]
     assert all(len(row) == len(rows[0]) and row[0] for row in rows[1:])
     overall = next(row for row in rows if row[1] == "overall")
@@ -264,14 +264,14 @@ def test_a_bar_is_as_long_as_its_value() -> None:
     bars = BarChart(
         "b", "Bars", ("one",), (("full", (7.0,)), ("none", (1.0,)), ("gone", (float("nan"),))), 1, 7
     )
-    lines = list(rows_of(ClassReport("r", (ReportChapter("c", "C", (bars,)),)), ASCII))
+    lines = list(report_lines(ClassReport("r", (ReportChapter("c", "C", (bars,)),)), ASCII_GLYPHS))
     assert [line.count("#") for line in lines if "|" in line] == [40, 0, 0]
     assert "nobody" in lines[-1]
 
 
 def test_a_point_lies_where_it_belongs() -> None:
     scatter = ScatterPlot("s", "S", "x", "y", ((1, 0), (7, 1), (7, 1)), (1, 7), (0, 1), (1 / 6, -1 / 6))
-    lines = list(rows_of(ClassReport("r", (ReportChapter("c", "C", (scatter,)),)), ASCII))
+    lines = list(report_lines(ClassReport("r", (ReportChapter("c", "C", (scatter,)),)), ASCII_GLYPHS))
     field = [line.partition("|")[2] for line in lines if "|" in line]
     assert field[-1][0] == "o"
     assert field[0][55] == "2"

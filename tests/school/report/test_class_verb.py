@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
-from kit.school.report.class_report import CHAPTERS
+from kit.school.report.class_report import CHAPTER_IDS
 from tests.school.report.classroom import NAMES, classroom
 
 
@@ -85,4 +85,4 @@ def test_mistakes_of_the_command_line(folder: Path, tmp_path: Path) -> None:
 
 def test_help_lists_every_chapter() -> None:
     words = report("--help").output.replace(",", " ").split()
-    assert set(CHAPTERS) <= set(words) | {word.rstrip(".") for word in words}
+    assert set(CHAPTER_IDS) <= set(words) | {word.rstrip(".") for word in words}

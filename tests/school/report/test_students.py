@@ -32,7 +32,7 @@ def test_students_have_numbers_unless_names_are_wanted(tmp_path: Path) -> None:
     classroom(tmp_path, 11)
     without = [each.label for each in read_roster([tmp_path]).students]
     assert without == [f"S{number:02}" for number in range(1, 12)]
-    assert {each.label for each in read_roster([tmp_path], names=True).students} == set(NAMES[:11])
+    assert {each.label for each in read_roster([tmp_path], use_names=True).students} == set(NAMES[:11])
 
 
 def test_the_numbers_do_not_follow_names_or_files(tmp_path: Path) -> None:
@@ -46,7 +46,7 @@ def test_the_file_names_who_gave_no_name(tmp_path: Path) -> None:
     nameless = Diary("x")
     nameless.note(EventKind.STEP, "01-drive/1")
     nameless.export(tmp_path, "a17.json")
-    assert [each.label for each in read_roster([tmp_path], names=True).students] == ["a17"]
+    assert [each.label for each in read_roster([tmp_path], use_names=True).students] == ["a17"]
 
 
 def test_two_exports_of_one_student_are_one(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_one_name_without_a_shared_entry_is_pointed_out(tmp_path: Path) -> None:
     first = diary("Ada")
     second = Diary("another")
     second.note(EventKind.ABOUT, "name", {"value": "ada "})
-    roll = read_roster([first.export(tmp_path), second.export(tmp_path)], names=True)
+    roll = read_roster([first.export(tmp_path), second.export(tmp_path)], use_names=True)
     assert len(roll.students) == 2
     assert "same name" in roll.warnings[0]
     assert len({each.label for each in roll.students}) == 2
@@ -152,14 +152,14 @@ def test_what_the_kit_itself_exports_is_read(tmp_path: Path) -> None:
         progress.add(EventKind.ABOUT, "name", {"value": "Ada"}, now=START)
         progress.add(EventKind.STEP, "01-drive/1", now=START + timedelta(minutes=1))
         progress.export(tmp_path / "ada.json")
-    roll = read_roster([tmp_path / "ada.json"], names=True)
+    roll = read_roster([tmp_path / "ada.json"], use_names=True)
     assert [(each.label, len(each.events)) for each in roll.students] == [("Ada", 2)]
 
 
 def test_a_name_cannot_command_the_terminal(tmp_path: Path) -> None:
     wicked = Diary("x")
     wicked.note(EventKind.ABOUT, "name", {"value": "\x1b[2J" + "A" * 500})
-    label = read_roster([wicked.export(tmp_path)], names=True).students[0].label
+    label = read_roster([wicked.export(tmp_path)], use_names=True).students[0].label
     assert "\x1b" not in label
     assert len(label) <= 40
 

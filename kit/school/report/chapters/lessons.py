@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from kit.school.quiz.answers import AnswerOutcome
-from kit.school.report.chapters.setting import Setting
+from kit.school.report.chapters.context import ReportContext
 from kit.school.report.document import (
     CellStyle,
     Quote,
@@ -21,18 +21,18 @@ from kit.school.report.document import (
 )
 from kit.school.report.work import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
 
-MOST_LOST: Final = 2
+MAX_NAMED_CRITERIA: Final = 2
 """Criteria named for an exercise."""
 
 
-def lessons(setting: Setting) -> ReportChapter | None:
+def lessons_chapter(context: ReportContext) -> ReportChapter | None:
     """Attempts, points and time."""
-    work = setting.data.work
+    work = context.data.work
     names = started_lessons(work)
     if not names:
         return None
     by_lesson = {name: [each[name] for each in work if name in each] for name in names}
-    tables = (_by_lesson(by_lesson), _by_exercise(by_lesson), _by_student(setting))
+    tables = (_lesson_table(by_lesson), _exercise_table(by_lesson), _student_table(context))
     blocks: list[ReportBlock] = [table for table in tables if table.rows]
     minutes = int(MAX_IDLE.total_seconds() // 60)
     blocks.append(
@@ -44,7 +44,7 @@ def lessons(setting: Setting) -> ReportChapter | None:
     return ReportChapter("lessons", "Lessons", tuple(blocks))
 
 
-def _by_lesson(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
+def _lesson_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             name,
@@ -72,7 +72,7 @@ def _by_lesson(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
     return ReportTable("lessons", "By lesson", heads, rows, note)
 
 
-def _by_exercise(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
+def _exercise_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
     rows: list[tuple[TableCell, ...]] = []
     for lesson, some in by_lesson.items():
         for name in dict.fromkeys(key for each in some for key in each.exercises):
@@ -87,7 +87,7 @@ def _by_exercise(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
                     float(median(passing)) if passing else None,
                     _share(sum(each.points for each in tried), sum(each.max_points for each in tried)),
                     sum(each.has_seen_solution for each in done),
-                    _lost(tried),
+                    _most_lost(tried),
                 )
             )
     heads = (
@@ -106,17 +106,17 @@ def _by_exercise(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
     return ReportTable("exercises", "By exercise", heads, tuple(rows), note)
 
 
-def _lost(tried: list[ExerciseWork]) -> str:
+def _most_lost(tried: list[ExerciseWork]) -> str:
     counts: dict[str, int] = {}
     for each in tried:
         for criterion in each.lost_criteria:
             counts[criterion] = counts.get(criterion, 0) + 1
-    most = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_LOST]
+    most = sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))[:MAX_NAMED_CRITERIA]
     return ", ".join(f"{name} {count}" for name, count in most)
 
 
-def _by_student(setting: Setting) -> ReportTable:
-    data = setting.data
+def _student_table(context: ReportContext) -> ReportTable:
+    data = context.data
     counts = (
         {outcome: data.quiz.outcome_counts(outcome) for outcome in AnswerOutcome} if data.quiz.items else {}
     )
@@ -154,13 +154,13 @@ def _share(part: float, whole: float) -> float | None:
     return part / whole if whole else None
 
 
-def words(setting: Setting) -> ReportChapter | None:
+def free_text_chapter(context: ReportContext) -> ReportChapter | None:
     """What they wrote, question by question, unchanged."""
     blocks: list[ReportBlock] = []
-    asked = ""
-    for each in setting.data.free_text_answers:
-        if each.question.id != asked:
-            asked = each.question.id
+    question_id = ""
+    for each in context.data.free_text_answers:
+        if each.question.id != question_id:
+            question_id = each.question.id
             blocks.append(ReportText(each.question.text))
         blocks.append(Quote(each.student, each.text))
     return ReportChapter("words", "In their own words", tuple(blocks)) if blocks else None

@@ -6,7 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kit.school.report.chapters.setting import SCALE, Setting, cautions_of, means_table, title_of
+from kit.school.report.chapters.context import (
+    SCALE_BOUNDS,
+    ReportContext,
+    division_warnings,
+    means_table,
+    topic_title,
+)
 from kit.school.report.document import (
     CellStyle,
     Histogram,
@@ -23,12 +29,12 @@ from kit.school.report.inference import non_blank, summary_statistics
 from kit.school.report.measures import StudentMeasure
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
-BINS = tuple(float(edge) for edge in np.linspace(*SCALE, 7))
+BINS = tuple(float(edge) for edge in np.linspace(*SCALE_BOUNDS, 7))
 
 
-def people(setting: Setting, files: int) -> ReportChapter:
+def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
     """The roll: how many, what they filled in, what was wrong with their files."""
-    data = setting.data
+    data = context.data
     quiz = [
         name
         for i, name in enumerate(data.names)
@@ -36,11 +42,11 @@ def people(setting: Setting, files: int) -> ReportChapter:
     ]
     blocks: list[ReportBlock] = [ReportWarning(text) for text in data.warnings]
     rows: tuple[tuple[TableCell, ...], ...] = (
-        ("files", files),
+        ("files", file_count),
         ("students", len(data.names)),
-        ("form before", _answered(setting, SurveyPhase.BEFORE)),
-        ("form after", _answered(setting, SurveyPhase.AFTER)),
-        ("form quizzed", _answered(setting, SurveyPhase.QUIZZED)),
+        ("form before", _rated_count(context, SurveyPhase.BEFORE)),
+        ("form after", _rated_count(context, SurveyPhase.AFTER)),
+        ("form quizzed", _rated_count(context, SurveyPhase.QUIZZED)),
         ("quiz", len(quiz)),
         ("lessons", sum(bool(work) for work in data.work)),
     )
@@ -49,15 +55,17 @@ def people(setting: Setting, files: int) -> ReportChapter:
             "class", "Who is in this report", (TableColumn("", CellStyle.TEXT), TableColumn("n")), rows
         )
     )
-    counted: tuple[tuple[TableCell, ...], ...] = tuple(
+    option_rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (question.text, word, count)
         for question, _, counts in data.option_counts
         for word, count in counts.items()
         if count
     )
-    if counted:
+    if option_rows:
         columns = (TableColumn("", CellStyle.TEXT), TableColumn("answer", CellStyle.TEXT), TableColumn("n"))
-        blocks.append(ReportTable("facts", "What they said of themselves", columns, counted, grouped=True))
+        blocks.append(
+            ReportTable("facts", "What they said of themselves", columns, option_rows, grouped=True)
+        )
     blocks.append(
         ReportText(
             "How to read: n counts who answered; blanks are left out, never taken for anything. SD is of the sample "
@@ -69,46 +77,46 @@ def people(setting: Setting, files: int) -> ReportChapter:
     return ReportChapter("class", "The class", tuple(blocks))
 
 
-def _answered(setting: Setting, phase: SurveyPhase) -> int:
+def _rated_count(context: ReportContext, phase: SurveyPhase) -> int:
     """Students with at least one rating of that phase."""
-    rows = [values for (of, _), values in setting.data.ratings.values.items() if of is phase]
+    rows = [values for (of, _), values in context.data.ratings.values.items() if of is phase]
     return int((~np.isnan(np.stack(rows))).any(axis=0).sum()) if rows else 0
 
 
-def experience(setting: Setting) -> ReportChapter | None:
+def experience_chapter(context: ReportContext) -> ReportChapter | None:
     """What they knew before, Algorithm 4, and the three divisions."""
-    prior = setting.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
+    prior = context.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     if not prior:
         return None
-    everybody = setting.data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
-    assert everybody is not None  # there are ratings
+    overall = context.data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
+    assert overall is not None  # there are ratings
     blocks: list[ReportBlock] = [
         means_table(
             "prior",
             "Experience before, 1 to 7",
-            (*prior, StudentMeasure("all", "All of it", everybody)),
-            setting,
+            (*prior, StudentMeasure("all", "All of it", overall)),
+            context,
         ),
-        histogram("prior-histogram", "Students by mean experience before", everybody),
-        *_scores(setting),
+        rating_histogram("prior-histogram", "Students by mean experience before", overall),
+        *_score_blocks(context),
     ]
     return ReportChapter("experience", "Experience and expertise", tuple(blocks))
 
 
-def _scores(setting: Setting) -> Iterator[ReportBlock]:
-    if setting.score is None or not len(non_blank(setting.score)):
+def _score_blocks(context: ReportContext) -> Iterator[ReportBlock]:
+    if context.score is None or not len(non_blank(context.score)):
         yield ReportWarning(
             "Nobody rated all six topics of Algorithm 4, so there are no scores and no groups."
         )
         return
-    missing = int(np.isnan(setting.score).sum())
+    missing = int(np.isnan(context.score).sum())
     if missing:
         yield ReportWarning(
-            f"{missing} of {len(setting.score)} left out a topic of Algorithm 4: no score, in no group."
+            f"{missing} of {len(context.score)} left out a topic of Algorithm 4: no score, in no group."
         )
     names = {"ros": "the greater of ROS 1 and 2"}
     weights: tuple[tuple[TableCell, ...], ...] = tuple(
-        (names.get(topic, title_of(topic)), weight) for topic, weight in effective_weights()
+        (names.get(topic, topic_title(topic)), weight) for topic, weight in effective_weights()
     )
     yield ReportTable(
         "weights",
@@ -116,14 +124,14 @@ def _scores(setting: Setting) -> Iterator[ReportBlock]:
         (TableColumn("rating", CellStyle.TEXT), TableColumn("weight", decimals=3)),
         weights,
     )
-    order = np.argsort(-np.nan_to_num(setting.score, nan=-np.inf), kind="stable")[
-        : len(setting.score) - missing
+    order = np.argsort(-np.nan_to_num(context.score, nan=-np.inf), kind="stable")[
+        : len(context.score) - missing
     ]
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
-            setting.data.names[i],
-            float(setting.score[i]),
-            *("expert" if each.experts.members[i] else "beginner" for each in setting.divisions),
+            context.data.names[i],
+            float(context.score[i]),
+            *("expert" if each.experts.members[i] else "beginner" for each in context.divisions),
         )
         for i in order
     )
@@ -133,33 +141,33 @@ def _scores(setting: Setting) -> Iterator[ReportBlock]:
         (
             TableColumn("student", CellStyle.TEXT),
             TableColumn("score"),
-            *(TableColumn(each.title, CellStyle.TEXT) for each in setting.divisions),
+            *(TableColumn(each.title, CellStyle.TEXT) for each in context.divisions),
         ),
         rows,
     )
-    if not setting.divisions:
+    if not context.divisions:
         yield ReportWarning("The scores cannot be divided into two groups.")
         return
-    yield _divisions(setting)
-    for each in setting.divisions:
-        yield from cautions_of(each)
-    if setting.division is None:
+    yield _division_table(context)
+    for each in context.divisions:
+        yield from division_warnings(each)
+    if context.division is None:
         yield ReportWarning(
             "The division asked for leaves one group empty, so the tables below do not divide the class."
         )
     else:
-        yield ReportText(f"The tables below divide the class {setting.division.title}.")
+        yield ReportText(f"The tables below divide the class {context.division.title}.")
 
 
-def _divisions(setting: Setting) -> ReportTable:
+def _division_table(context: ReportContext) -> ReportTable:
     rows: list[tuple[TableCell, ...]] = []
-    for each in setting.divisions:
-        assert setting.score is not None  # a division comes from scores
+    for each in context.divisions:
+        assert context.score is not None  # a division comes from scores
         parts: list[TableCell] = [each.title]
         for group in each.groups:
-            found = summary_statistics(setting.score[group.members])
-            parts += [found.n, found.mean, found.sd]
-        inside = setting.score[each.experts.members].min() - setting.score[each.beginners.members].max()
+            stats = summary_statistics(context.score[group.members])
+            parts += [stats.n, stats.mean, stats.sd]
+        inside = context.score[each.experts.members].min() - context.score[each.beginners.members].max()
         rows.append((*parts, float(inside)))
     heads = ("n", "M", "SD")
     return ReportTable(
@@ -175,7 +183,9 @@ def _divisions(setting: Setting) -> ReportTable:
     )
 
 
-def histogram(identity: str, title: str, values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Histogram:
+def rating_histogram(
+    identity: str, title: str, values: np.ndarray[tuple[int], np.dtype[np.float64]]
+) -> Histogram:
     """Of ratings from 1 to 7."""
     counts, _ = np.histogram(non_blank(values), BINS)
     return Histogram(identity, title, BINS, tuple(int(count) for count in counts))

@@ -9,7 +9,14 @@ import numpy as np
 
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.school.quiz.answers import AnswerOutcome
-from kit.school.report.chapters.setting import SHARE, Setting, means_bars, means_table, slug, title_of
+from kit.school.report.chapters.context import (
+    SHARE_BOUNDS,
+    ReportContext,
+    means_bars,
+    means_table,
+    slug,
+    topic_title,
+)
 from kit.school.report.document import (
     CellStyle,
     Histogram,
@@ -28,39 +35,43 @@ from kit.school.report.measures import AnswerSheet, StudentMeasure
 from kit.school.report.normality import shapiro_wilk
 
 BINS: Final = 6
-MARKED: Final = "*"
+RIGHT_MARK: Final = "*"
 
 
-def quiz(setting: Setting) -> ReportChapter | None:
+def quiz_chapter(context: ReportContext) -> ReportChapter | None:
     """Scores by topic and question, blanks apart from wrong answers, and what changed when asked again."""
-    sheet = setting.data.quiz
+    sheet = context.data.quiz
     if not sheet.items:
         return None
     topics = tuple(
-        StudentMeasure(topic, title_of(topic), sheet.share_right(sheet.of_topic(topic)))
+        StudentMeasure(topic, topic_title(topic), sheet.share_right(sheet.of_topic(topic)))
         for topic in sheet.topics
     )
     total = StudentMeasure("total", "Total", sheet.score)
     note = "Only a right answer counts; wrong, not sure and blank all count nothing here."
     blocks: list[ReportBlock] = [
-        means_table("quiz-topics", "Quiz: share of right answers", (*topics, total), setting, SHARE, note),
-        means_bars("quiz-topics-bars", "Quiz: share of right answers", (*topics, total), setting, SHARE),
-        _outcomes(setting),
-        *(_by_question(setting, topic) for topic in sheet.topics),
-        _histogram(sheet),
-        *_shape(sheet),
-        *_again(setting),
-        *_bank(setting),
+        means_table(
+            "quiz-topics", "Quiz: share of right answers", (*topics, total), context, SHARE_BOUNDS, note
+        ),
+        means_bars(
+            "quiz-topics-bars", "Quiz: share of right answers", (*topics, total), context, SHARE_BOUNDS
+        ),
+        _outcome_table(context),
+        *(_question_table(context, topic) for topic in sheet.topics),
+        _score_histogram(sheet),
+        *_normality_blocks(sheet),
+        *_gain_blocks(context),
+        *_bank_blocks(context),
     ]
     return ReportChapter("quiz", "The quiz", tuple(blocks))
 
 
-def _outcomes(setting: Setting) -> ReportTable:
+def _outcome_table(context: ReportContext) -> ReportTable:
     """Of all the answers: how many were what."""
-    sheet = setting.data.quiz
+    sheet = context.data.quiz
     counts = {outcome: sheet.outcome_counts(outcome) for outcome in AnswerOutcome}
     rows: list[tuple[TableCell, ...]] = []
-    for group in setting.groups:
+    for group in context.groups:
         sums = [int(np.nansum(counts[outcome][group.members])) for outcome in AnswerOutcome]
         taken = int((~np.isnan(sheet.score[group.members])).sum())
         rows.append((group.name, taken, *sums, sum(sums)))
@@ -74,13 +85,13 @@ def _outcomes(setting: Setting) -> ReportTable:
     return ReportTable("quiz-outcomes", "Answers by what became of them", heads, tuple(rows), note)
 
 
-def _by_question(setting: Setting, topic: str) -> ReportTable:
-    sheet = setting.data.quiz
+def _question_table(context: ReportContext, topic: str) -> ReportTable:
+    sheet = context.data.quiz
     rows: list[tuple[TableCell, ...]] = []
     for item in sheet.of_topic(topic):
         right = sheet.correctness(item)
-        chance = setting.chance(right)
-        for i, group in enumerate(setting.groups):
+        test = context.group_difference_test(right)
+        for i, group in enumerate(context.groups):
             replies = [
                 each
                 for each, inside in zip(sheet.replies[item.id], group.members, strict=True)
@@ -88,7 +99,7 @@ def _by_question(setting: Setting, topic: str) -> ReportTable:
             ]
             counts = [sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome]
             share = counts[0] / len(replies) if replies else None
-            p = chance.p_value if chance is not None and i == len(setting.groups) - 1 else ""
+            p = test.p_value if test is not None and i == len(context.groups) - 1 else ""
             rows.append(
                 (
                     item.id,
@@ -109,19 +120,19 @@ def _by_question(setting: Setting, topic: str) -> ReportTable:
         TableColumn("wrong"),
         TableColumn("unsure"),
         TableColumn("blank"),
-        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("p", CellStyle.P_VALUE, 3),
     )
-    divided = setting.division is not None
+    divided = context.division is not None
     return ReportTable(
         f"quiz-{slug(topic)}",
-        f"Questions on {title_of(topic)}",
+        f"Questions on {topic_title(topic)}",
         heads if divided else heads[:-1],
         tuple(row if divided else row[:-1] for row in rows),
         grouped=True,
     )
 
 
-def _histogram(sheet: AnswerSheet) -> Histogram:
+def _score_histogram(sheet: AnswerSheet) -> Histogram:
     edges = np.linspace(0, 1, BINS + 1)
     counts, _ = np.histogram(non_blank(sheet.score), edges)
     return Histogram(
@@ -132,7 +143,7 @@ def _histogram(sheet: AnswerSheet) -> Histogram:
     )
 
 
-def _shape(sheet: AnswerSheet) -> Iterator[ReportBlock]:
+def _normality_blocks(sheet: AnswerSheet) -> Iterator[ReportBlock]:
     w, p = shapiro_wilk(sheet.score)
     if p == p:
         n = len(non_blank(sheet.score))
@@ -145,9 +156,9 @@ def _shape(sheet: AnswerSheet) -> Iterator[ReportBlock]:
         )
 
 
-def _again(setting: Setting) -> Iterator[ReportBlock]:
+def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
     """The same items, first and newest answers, of who answered them again."""
-    data = setting.data
+    data = context.data
     if not any(each is not None for row in data.later_quiz.replies.values() for each in row):
         yield ReportText("Nobody has answered a question of the quiz a second time yet: no gain can be told.")
         return
@@ -163,18 +174,18 @@ def _again(setting: Setting) -> Iterator[ReportBlock]:
             continue
         before = np.where(both, first, 0).sum(axis=0)[some] / count[some]
         after = np.where(both, later, 0).sum(axis=0)[some] / count[some]
-        found = summary_statistics(after - before)
-        chance = paired_test(after - before, np.random.default_rng(setting.seed))
-        title = title_of(topic) if topic else "Total"
+        stats = summary_statistics(after - before)
+        test = paired_test(after - before, np.random.default_rng(context.seed))
+        title = topic_title(topic) if topic else "Total"
         rows.append(
             (
                 title,
-                found.n,
+                stats.n,
                 float(before.mean()),
                 float(after.mean()),
-                found.mean,
-                found.interval,
-                chance.p_value,
+                stats.mean,
+                stats.interval,
+                test.p_value,
             )
         )
     yield ReportTable(
@@ -187,16 +198,16 @@ def _again(setting: Setting) -> Iterator[ReportBlock]:
             TableColumn("newest"),
             TableColumn("gain"),
             TableColumn("95% of gain"),
-            TableColumn("p", CellStyle.CHANCE, 3),
+            TableColumn("p", CellStyle.P_VALUE, 3),
         ),
         tuple(rows),
         "Only questions that a student answered more than once.",
     )
 
 
-def _bank(setting: Setting) -> Iterator[ReportBlock]:
+def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
     """The questions that lessons and repetition ask: each as often as it was answered."""
-    bank = setting.data.bank
+    bank = context.data.bank
     rows: list[tuple[TableCell, ...]] = []
     for item in bank.items:
         replies = [each for each in bank.replies[item.id] if each is not None]
@@ -204,7 +215,7 @@ def _bank(setting: Setting) -> Iterator[ReportBlock]:
         share = counts[0] / len(replies) if replies else None
         rows.append(
             (
-                title_of(item.topic),
+                topic_title(item.topic),
                 item.id,
                 len(replies),
                 share,
@@ -231,41 +242,41 @@ def _bank(setting: Setting) -> Iterator[ReportBlock]:
         )
 
 
-def items(setting: Setting) -> ReportChapter | None:
+def items_chapter(context: ReportContext) -> ReportChapter | None:
     """Item analysis: difficulty, item-rest correlation, distractors, KR-20."""
-    sheet = setting.data.quiz
+    sheet = context.data.quiz
     if not sheet.items:
         return None
-    found = [analyse_item(sheet, item) for item in sheet.items]
+    analyses = [analyse_item(sheet, item) for item in sheet.items]
     reliability = kr20(sheet)
     blanks = int(np.nansum(sheet.outcome_counts(AnswerOutcome.BLANK)))
-    blocks: list[ReportBlock] = [_difficulties(found), _distractors(found)]
+    blocks: list[ReportBlock] = [_difficulty_table(analyses), _distractor_table(analyses)]
     blocks += [
-        ReportWarning(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in found if each.warnings
+        ReportWarning(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in analyses if each.warnings
     ]
     if reliability == reliability:
         inflated = " Blanks go together and make it look better than it is." if blanks else ""
         blocks.append(
             ReportText(
-                f"KR-20 = {reliability:.2f}: how consistently the {len(found)} questions measure one thing "
+                f"KR-20 = {reliability:.2f}: how consistently the {len(analyses)} questions measure one thing "
                 f"(0.7 and more is usual for comparing groups). {blanks} of the answers are blank.{inflated}"
             )
         )
-    blocks += [block for each in found for block in _texts(each)]
+    blocks += [block for each in analyses for block in _option_text_blocks(each)]
     return ReportChapter("items", "The questions themselves", tuple(blocks))
 
 
-def _difficulties(found: list[ItemAnalysis]) -> ReportTable:
+def _difficulty_table(analyses: list[ItemAnalysis]) -> ReportTable:
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
-            title_of(each.item.topic),
+            topic_title(each.item.topic),
             each.item.id,
             each.n,
             each.difficulty,
             each.interval,
             each.rest_correlation,
         )
-        for each in found
+        for each in analyses
     )
     heads = (
         TableColumn("topic", CellStyle.TEXT),
@@ -280,20 +291,22 @@ def _difficulties(found: list[ItemAnalysis]) -> ReportTable:
     )
 
 
-def _distractors(found: list[ItemAnalysis]) -> ReportTable:
-    most = max((max((*each.choice_counts, len(each.item.options) - 1, 0)) for each in found), default=0) + 1
+def _distractor_table(analyses: list[ItemAnalysis]) -> ReportTable:
+    most = (
+        max((max((*each.choice_counts, len(each.item.options) - 1, 0)) for each in analyses), default=0) + 1
+    )
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
-            title_of(each.item.topic),
+            topic_title(each.item.topic),
             each.item.id,
             *(
-                f"{each.choice_counts.get(option, 0)}{MARKED if option in each.right_options else ' '}"
+                f"{each.choice_counts.get(option, 0)}{RIGHT_MARK if option in each.right_options else ' '}"
                 for option in range(most)
             ),
             each.outcomes[AnswerOutcome.NOT_SURE],
             each.outcomes[AnswerOutcome.BLANK],
         )
-        for each in found
+        for each in analyses
     )
     heads = (
         TableColumn("topic", CellStyle.TEXT),
@@ -302,19 +315,17 @@ def _distractors(found: list[ItemAnalysis]) -> ReportTable:
         TableColumn("unsure"),
         TableColumn("blank"),
     )
-    note = (
-        f"{MARKED} counted as right. A wrong option that nobody takes can go; one that many take is a lesson."
-    )
+    note = f"{RIGHT_MARK} counted as right. A wrong option that nobody takes can go; one that many take is a lesson."
     return ReportTable("distractors", "Who chose which option", heads, rows, note, grouped=True)
 
 
-def _texts(each: ItemAnalysis) -> Iterator[ReportBlock]:
+def _option_text_blocks(each: ItemAnalysis) -> Iterator[ReportBlock]:
     """The options in words, of items that need a look."""
     if not each.warnings or not each.item.options:
         return
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
-            f"{number + 1}{MARKED if number in each.right_options else ''}",
+            f"{number + 1}{RIGHT_MARK if number in each.right_options else ''}",
             text,
             each.choice_counts.get(number, 0),
         )

@@ -7,7 +7,15 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from kit.school.report.chapters.setting import SCALE, Setting, means_bars, means_table, slug, title_of, within
+from kit.school.report.chapters.context import (
+    SCALE_BOUNDS,
+    ReportContext,
+    clip_interval,
+    means_bars,
+    means_table,
+    slug,
+    topic_title,
+)
 from kit.school.report.document import (
     CellStyle,
     ReportBlock,
@@ -22,40 +30,40 @@ from kit.school.report.measures import StudentMeasure
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 
-class _Kind(NamedTuple):
+class _TopicRating(NamedTuple):
     id: str
     title: str
-    all: str
+    overall_label: str
 
 
-_KINDS: Final = {
-    QuestionPurpose.DIFFICULTY: _Kind(
+_TOPIC_RATINGS: Final = {
+    QuestionPurpose.DIFFICULTY: _TopicRating(
         "difficulty", "How hard it was: 1 very easy, 7 very hard", "All topics"
     ),
-    QuestionPurpose.EXPLANATION: _Kind(
+    QuestionPurpose.EXPLANATION: _TopicRating(
         "explanation", "How well it was explained: 1 not at all, 7 very well", "All topics"
     ),
 }
 
 
-def knowledge(setting: Setting) -> ReportChapter | None:
+def knowledge_chapter(context: ReportContext) -> ReportChapter | None:
     """What they say they learned, and how their rating of themselves changed."""
-    ratings = setting.data.ratings
+    ratings = context.data.ratings
     blocks: list[ReportBlock] = []
     gained = ratings.measures(QuestionPurpose.GAINED, SurveyPhase.AFTER)
     if gained:
         everything = ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER)
         assert everything is not None  # there are ratings
         rows = (*gained, StudentMeasure("all", "All of it", everything))
-        blocks.append(means_table("gained", "Learned, by their own account, 1 to 7", rows, setting))
-        blocks.append(means_bars("gained-bars", "Learned, by their own account", gained, setting))
-    blocks += _change(setting, _EXPERIENCE)
+        blocks.append(means_table("gained", "Learned, by their own account, 1 to 7", rows, context))
+        blocks.append(means_bars("gained-bars", "Learned, by their own account", gained, context))
+    blocks += _change_blocks(context, _EXPERIENCE)
     if gained:
-        blocks += _change(setting, _GAINED)
+        blocks += _change_blocks(context, _GAINED)
     return ReportChapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
 
 
-class _Twice(NamedTuple):
+class _RepeatedRating(NamedTuple):
     """A rating that is asked twice."""
 
     id: str
@@ -64,10 +72,10 @@ class _Twice(NamedTuple):
     first: SurveyPhase
     second: SurveyPhase
     heads: tuple[str, str]
-    nobody: str
+    missing_text: str
 
 
-_EXPERIENCE: Final = _Twice(
+_EXPERIENCE: Final = _RepeatedRating(
     "change",
     "Experience before and after, rated the same way",
     QuestionPurpose.EXPERIENCE,
@@ -77,7 +85,7 @@ _EXPERIENCE: Final = _Twice(
     "Nobody rated their experience both before and after: no change can be told.",
 )
 _QUIZZED: Final = ("then", "quizzed")
-_GAINED: Final = _Twice(
+_GAINED: Final = _RepeatedRating(
     "gained-quizzed",
     "What they learned, before the quiz and once more after it",
     QuestionPurpose.GAINED,
@@ -86,7 +94,7 @@ _GAINED: Final = _Twice(
     _QUIZZED,
     "Nobody rated what they learned once more after the quiz (`kit form quizzed`).",
 )
-_OUTCOME: Final = _Twice(
+_OUTCOME: Final = _RepeatedRating(
     "outcomes-quizzed",
     "Outcomes, before the quiz and once more after it",
     QuestionPurpose.OUTCOME,
@@ -97,97 +105,104 @@ _OUTCOME: Final = _Twice(
 )
 
 
-def _change(setting: Setting, asked: _Twice) -> Iterator[ReportBlock]:
+def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[ReportBlock]:
     """The same rating at two times, of those who gave both."""
-    ratings = setting.data.ratings
-    after = {each.id: each for each in ratings.measures(asked.purpose, asked.second)}
+    ratings = context.data.ratings
+    after = {each.id: each for each in ratings.measures(rating.purpose, rating.second)}
     pairs = [
         (each.label, each.values, after[each.id].values)
-        for each in ratings.measures(asked.purpose, asked.first)
+        for each in ratings.measures(rating.purpose, rating.first)
         if each.id in after
     ]
     rows: list[tuple[TableCell, ...]] = []
     for label, first, second in pairs:
         change = second - first
-        found = summary_statistics(change)
-        if not found.n:
+        stats = summary_statistics(change)
+        if not stats.n:
             continue
         both = ~np.isnan(change)
-        chance = paired_test(change, np.random.default_rng(setting.seed))
+        test = paired_test(change, np.random.default_rng(context.seed))
         rows.append(
             (
                 label,
-                found.n,
+                stats.n,
                 float(first[both].mean()),
                 float(second[both].mean()),
-                found.mean,
-                found.interval,
-                chance.p_value,
+                stats.mean,
+                stats.interval,
+                test.p_value,
             )
         )
-    if not rows and any((asked.second, each.id) in ratings.values for each in ratings.questions):
-        yield ReportWarning(asked.nobody)  # the form does ask it twice
+    if not rows and any((rating.second, each.id) in ratings.values for each in ratings.questions):
+        yield ReportWarning(rating.missing_text)  # the form does ask it twice
     if not rows:
         return
     yield ReportTable(
-        asked.id,
-        asked.title,
+        rating.id,
+        rating.title,
         (
             TableColumn("", CellStyle.TEXT),
             TableColumn("n"),
-            TableColumn(asked.heads[0]),
-            TableColumn(asked.heads[1]),
+            TableColumn(rating.heads[0]),
+            TableColumn(rating.heads[1]),
             TableColumn("change"),
             TableColumn("95% of change"),
-            TableColumn("p", CellStyle.CHANCE, 3),
+            TableColumn("p", CellStyle.P_VALUE, 3),
         ),
         tuple(rows),
         "Only who rated it twice. p: by the signs of the differences, all 2^n of them.",
     )
 
 
-def outcomes(setting: Setting) -> ReportChapter | None:
+def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
     """How far the lessons enabled them."""
-    ratings = setting.data.ratings
+    ratings = context.data.ratings
     blocks: list[ReportBlock] = []
     for topic in ratings.topics(QuestionPurpose.OUTCOME, SurveyPhase.AFTER):
         measures = ratings.of_topic(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
-        name = title_of(topic)
+        name = topic_title(topic)
         blocks.append(
             means_table(
-                f"outcomes-{slug(topic)}", f"Outcomes, {name}: 1 not at all, 7 completely", measures, setting
+                f"outcomes-{slug(topic)}", f"Outcomes, {name}: 1 not at all, 7 completely", measures, context
             )
         )
-        blocks.append(means_bars(f"outcomes-{slug(topic)}-bars", f"Outcomes, {name}", measures, setting))
+        blocks.append(means_bars(f"outcomes-{slug(topic)}-bars", f"Outcomes, {name}", measures, context))
     if blocks:
-        blocks += _change(setting, _OUTCOME)
+        blocks += _change_blocks(context, _OUTCOME)
     return ReportChapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
 
 
-def difficulty(setting: Setting) -> ReportChapter | None:
+def difficulty_chapter(context: ReportContext) -> ReportChapter | None:
     """How hard each topic was."""
-    return _by_topic(setting, QuestionPurpose.DIFFICULTY, "Difficulty")
+    return _topic_chapter(context, QuestionPurpose.DIFFICULTY, "Difficulty")
 
 
-def explanation(setting: Setting) -> ReportChapter | None:
+def explanation_chapter(context: ReportContext) -> ReportChapter | None:
     """How well each topic was explained."""
-    return _by_topic(setting, QuestionPurpose.EXPLANATION, "Explanation")
+    return _topic_chapter(context, QuestionPurpose.EXPLANATION, "Explanation")
 
 
-def _by_topic(setting: Setting, purpose: QuestionPurpose, title: str) -> ReportChapter | None:
-    ratings, kind = setting.data.ratings, _KINDS[purpose]
+def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str) -> ReportChapter | None:
+    ratings, kind = context.data.ratings, _TOPIC_RATINGS[purpose]
     everything = ratings.overall(purpose, SurveyPhase.AFTER)
     if everything is None:
         return None
     topics = tuple(
-        StudentMeasure(each.id, title_of(each.id), each.values)
+        StudentMeasure(each.id, topic_title(each.id), each.values)
         for each in ratings.by_topic(purpose, SurveyPhase.AFTER)
     )
     single: tuple[tuple[TableCell, ...], ...] = tuple(
-        (title_of(topic), each.label, found.n, found.mean, found.sd, within(found.interval, SCALE))
+        (
+            topic_title(topic),
+            each.label,
+            stats.n,
+            stats.mean,
+            stats.sd,
+            clip_interval(stats.interval, SCALE_BOUNDS),
+        )
         for topic in ratings.topics(purpose, SurveyPhase.AFTER)
         for each in ratings.of_topic(purpose, SurveyPhase.AFTER, topic)
-        for found in [summary_statistics(non_blank(each.values))]
+        for stats in [summary_statistics(non_blank(each.values))]
     )
     heads = (
         TableColumn("topic", CellStyle.TEXT),
@@ -205,12 +220,12 @@ def _by_topic(setting: Setting, purpose: QuestionPurpose, title: str) -> ReportC
             means_table(
                 kind.id,
                 kind.title,
-                (*topics, StudentMeasure("all", kind.all, everything)),
-                setting,
-                SCALE,
+                (*topics, StudentMeasure("all", kind.overall_label, everything)),
+                context,
+                SCALE_BOUNDS,
                 note,
             ),
-            means_bars(f"{kind.id}-bars", kind.title, topics, setting),
+            means_bars(f"{kind.id}-bars", kind.title, topics, context),
             ReportTable(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
         ),
     )

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from kit.kernels.arrays import Float64Array
-from kit.school.report.chapters.setting import SCALE, SHARE, Setting
+from kit.school.report.chapters.context import SCALE_BOUNDS, SHARE_BOUNDS, ReportContext
 from kit.school.report.document import (
     CellStyle,
     ReportBlock,
@@ -35,7 +35,7 @@ from kit.school.report.robustness import Sensitivity, correlation_sensitivity, d
 from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 
-class Quantity(NamedTuple):
+class StudentQuantity(NamedTuple):
     """Something that is known of each student."""
 
     id: str
@@ -53,64 +53,64 @@ PAIRS: Final = (
 )
 """What is compared with what: the dissertation's plots, and the score."""
 
-FEWEST: Final = 4
+MIN_PAIRS: Final = 4
 
 
-def quantities(setting: Setting) -> dict[str, Quantity]:
+def quantities(context: ReportContext) -> dict[str, StudentQuantity]:
     """Those that this class has."""
-    data = setting.data
+    data = context.data
     found = (
-        ("score", "expertise score", setting.score, SCALE),
+        ("score", "expertise score", context.score, SCALE_BOUNDS),
         (
             "prior",
             "experience before",
             data.ratings.overall(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE),
-            SCALE,
+            SCALE_BOUNDS,
         ),
         (
             "gained",
             "learned, as rated",
             data.ratings.overall(QuestionPurpose.GAINED, SurveyPhase.AFTER),
-            SCALE,
+            SCALE_BOUNDS,
         ),
         (
             "difficulty",
             "difficulty",
             data.ratings.overall(QuestionPurpose.DIFFICULTY, SurveyPhase.AFTER),
-            SCALE,
+            SCALE_BOUNDS,
         ),
         (
             "explanation",
             "explanation",
             data.ratings.overall(QuestionPurpose.EXPLANATION, SurveyPhase.AFTER),
-            SCALE,
+            SCALE_BOUNDS,
         ),
-        ("quiz", "quiz score", data.quiz.score if data.quiz.items else None, SHARE),
+        ("quiz", "quiz score", data.quiz.score if data.quiz.items else None, SHARE_BOUNDS),
     )
     return {
-        name: Quantity(name, title, values, bounds)
+        name: StudentQuantity(name, title, values, bounds)
         for name, title, values, bounds in found
         if values is not None and len(non_blank(values))
     }
 
 
-def relations(setting: Setting) -> ReportChapter | None:
+def relations_chapter(context: ReportContext) -> ReportChapter | None:
     """Correlations, with the plots they are of."""
-    known = quantities(setting)
+    known = quantities(context)
     pairs = [
         (known[a], known[b])
         for a, b in PAIRS
-        if a in known and b in known and _shared(known[a].values, known[b].values) >= FEWEST
+        if a in known and b in known and _pair_count(known[a].values, known[b].values) >= MIN_PAIRS
     ]
     if not pairs:
         return None
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(_row(a, b, setting.seed) for a, b in pairs)
+    rows: tuple[tuple[TableCell, ...], ...] = tuple(_correlation_row(a, b, context.seed) for a, b in pairs)
     heads = (
         TableColumn("", CellStyle.TEXT),
         TableColumn("n"),
         TableColumn("r"),
         TableColumn("95% of r"),
-        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("p", CellStyle.P_VALUE, 3),
         TableColumn("rho"),
     )
     note = (
@@ -119,24 +119,24 @@ def relations(setting: Setting) -> ReportChapter | None:
     )
     blocks: list[ReportBlock] = [ReportTable("relations", "Correlations", heads, rows, note)]
     for a, b in pairs:
-        blocks.append(_scatter(a, b))
+        blocks.append(_scatter_plot(a, b))
         if (a.id, b.id) == ("prior", "gained"):
-            blocks += _bend(a, b)
+            blocks += _curvature_blocks(a, b)
     return ReportChapter("relations", "What goes together", tuple(blocks))
 
 
-def _shared(x: Float64Array, y: Float64Array) -> int:
+def _pair_count(x: Float64Array, y: Float64Array) -> int:
     return int((~(np.isnan(x) | np.isnan(y))).sum())
 
 
-def _row(a: Quantity, b: Quantity, seed: int) -> tuple[TableCell, ...]:
-    n, r = _shared(a.values, b.values), correlation(a.values, b.values)
-    chance = correlation_test(a.values, b.values, np.random.default_rng(seed))
+def _correlation_row(a: StudentQuantity, b: StudentQuantity, seed: int) -> tuple[TableCell, ...]:
+    n, r = _pair_count(a.values, b.values), correlation(a.values, b.values)
+    test = correlation_test(a.values, b.values, np.random.default_rng(seed))
     rho = rank_correlation(a.values, b.values)
-    return (f"{a.title} and {b.title}", n, r, correlation_interval(r, n), chance.p_value, rho)
+    return (f"{a.title} and {b.title}", n, r, correlation_interval(r, n), test.p_value, rho)
 
 
-def _scatter(a: Quantity, b: Quantity) -> ScatterPlot:
+def _scatter_plot(a: StudentQuantity, b: StudentQuantity) -> ScatterPlot:
     both = ~(np.isnan(a.values) | np.isnan(b.values))
     line = fit_polynomial(a.values, b.values)
     return ScatterPlot(
@@ -151,7 +151,7 @@ def _scatter(a: Quantity, b: Quantity) -> ScatterPlot:
     )
 
 
-def _bend(a: Quantity, b: Quantity) -> list[ReportBlock]:
+def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[ReportBlock]:
     """Whether a parabola has its top among the students."""
     curve = fit_polynomial(a.values, b.values, 2)
     if curve is None or curve[0] >= 0:
@@ -167,24 +167,24 @@ def _bend(a: Quantity, b: Quantity) -> list[ReportBlock]:
     ]
 
 
-def robustness(setting: Setting) -> ReportChapter | None:
+def robustness_chapter(context: ReportContext) -> ReportChapter | None:
     """The results that a reader will quote, without each student in turn."""
-    known = quantities(setting)
-    found: list[tuple[str, Sensitivity]] = []
-    if setting.division is not None:
+    known = quantities(context)
+    sensitivities: list[tuple[str, Sensitivity]] = []
+    if context.division is not None:
         for name in ("quiz", "gained", "difficulty", "explanation"):
             if name in known:
-                result = difference_sensitivity(known[name].values, setting.division, setting.seed)
+                result = difference_sensitivity(known[name].values, context.division, context.seed)
                 if result is not None:
-                    found.append((f"experts minus beginners, {known[name].title}", result))
+                    sensitivities.append((f"experts minus beginners, {known[name].title}", result))
     for a, b in PAIRS:
         if a in known and b in known:
-            result = correlation_sensitivity(known[a].values, known[b].values, setting.seed)
+            result = correlation_sensitivity(known[a].values, known[b].values, context.seed)
             if result is not None:
-                found.append((f"r of {known[a].title} and {known[b].title}", result))
-    if not found:
+                sensitivities.append((f"r of {known[a].title} and {known[b].title}", result))
+    if not sensitivities:
         return None
-    names = setting.data.names
+    names = context.data.names
     rows: tuple[tuple[TableCell, ...], ...] = tuple(
         (
             title,
@@ -195,18 +195,18 @@ def robustness(setting: Setting) -> ReportChapter | None:
             each.highest.value,
             names[each.highest.student],
         )
-        for title, each in found
+        for title, each in sensitivities
     )
     heads = (
         TableColumn("result", CellStyle.TEXT),
         TableColumn("value"),
-        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("p", CellStyle.P_VALUE, 3),
         TableColumn("least"),
         TableColumn("without", CellStyle.TEXT),
         TableColumn("most"),
         TableColumn("without", CellStyle.TEXT),
     )
-    cautions = [_caution(title, each, names) for title, each in found if each.decisive]
+    warnings = [_sensitivity_warning(title, each, names) for title, each in sensitivities if each.decisive]
     table = ReportTable(
         "robustness",
         "The same without each student in turn (groups as they are)",
@@ -215,10 +215,10 @@ def robustness(setting: Setting) -> ReportChapter | None:
         "least, most: the smallest and greatest value, and who was left out for it.",
     )
     text = ReportText("No result changes its side of p = 0.05 without any one student.")
-    return ReportChapter("robustness", "How much rests on one student", (table, *(cautions or (text,))))
+    return ReportChapter("robustness", "How much rests on one student", (table, *(warnings or (text,))))
 
 
-def _caution(title: str, each: Sensitivity, names: Sequence[str]) -> ReportWarning:
+def _sensitivity_warning(title: str, each: Sensitivity, names: Sequence[str]) -> ReportWarning:
     """A result that is on the other side of the line without this student or that."""
     most = sorted(each.decisive, key=lambda one: -abs(one.test.p_value - each.test.p_value))
     shown = "; ".join(

@@ -16,12 +16,12 @@ from kit.school.report.document import BarChart, CellStyle, ReportTable, ReportW
 from kit.school.report.expertise import MIN_GROUP_SIZE, ClassDivision
 from kit.school.report.inference import PermutationTestResult, difference_test, summary_statistics
 from kit.school.report.measures import StudentGroup, StudentMeasure
-from kit.school.survey.questions import HIGHEST, LOWEST
+from kit.school.survey.questions import SCALE_MAX, SCALE_MIN
 
-SCALE: Final = (float(LOWEST), float(HIGHEST))
-SHARE: Final = (0.0, 1.0)
+SCALE_BOUNDS: Final = (float(SCALE_MIN), float(SCALE_MAX))
+SHARE_BOUNDS: Final = (0.0, 1.0)
 
-TITLES: Final[Mapping[str, str]] = MappingProxyType(
+TOPIC_TITLES: Final[Mapping[str, str]] = MappingProxyType(
     {
         "robotics": "Robotics",
         "ros1": "ROS 1",
@@ -37,13 +37,13 @@ TITLES: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 
-def title_of(topic: str) -> str:
+def topic_title(topic: str) -> str:
     """A topic as one speaks of it."""
-    return TITLES.get(topic, topic)
+    return TOPIC_TITLES.get(topic, topic)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Setting:
+class ReportContext:
     """What a chapter is made from."""
 
     data: ClassData
@@ -61,7 +61,7 @@ class Setting:
         everybody = StudentGroup("overall", np.ones(len(self.data.names), dtype=np.bool_))
         return (*(self.division.groups if self.division is not None else ()), everybody)
 
-    def chance(self, values: Float64Array) -> PermutationTestResult | None:
+    def group_difference_test(self, values: Float64Array) -> PermutationTestResult | None:
         """Of the difference between experts and beginners; None where the class is not divided."""
         if self.division is None:
             return None
@@ -73,8 +73,8 @@ def means_table(
     identity: str,
     title: str,
     measures: Sequence[StudentMeasure],
-    setting: Setting,
-    bounds: tuple[float, float] = SCALE,
+    context: ReportContext,
+    bounds: tuple[float, float] = SCALE_BOUNDS,
     note: str = "",
 ) -> ReportTable:
     """For each measure and group: n, mean, SD, the mean's interval; and p of the groups' difference.
@@ -83,13 +83,13 @@ def means_table(
     """
     rows: list[tuple[TableCell, ...]] = []
     for measure in measures:
-        chance = setting.chance(measure.values)
-        for i, group in enumerate(setting.groups):
-            found = summary_statistics(measure.values[group.members])
-            last = i == len(setting.groups) - 1
-            p = chance.p_value if chance is not None and last else ""
-            cut = within(found.interval, bounds)
-            rows.append((measure.label, group.name, found.n, found.mean, found.sd, cut, p))
+        test = context.group_difference_test(measure.values)
+        for i, group in enumerate(context.groups):
+            stats = summary_statistics(measure.values[group.members])
+            last = i == len(context.groups) - 1
+            p = test.p_value if test is not None and last else ""
+            interval = clip_interval(stats.interval, bounds)
+            rows.append((measure.label, group.name, stats.n, stats.mean, stats.sd, interval, p))
     columns = (
         TableColumn("", CellStyle.TEXT),
         TableColumn("group", CellStyle.TEXT),
@@ -97,9 +97,9 @@ def means_table(
         TableColumn("M"),
         TableColumn("SD"),
         TableColumn("95% of M"),
-        TableColumn("p", CellStyle.CHANCE, 3),
+        TableColumn("p", CellStyle.P_VALUE, 3),
     )
-    divided = setting.division is not None
+    divided = context.division is not None
     if any(isinstance(row[2], int) and row[2] < MIN_GROUP_SIZE for row in rows):
         note = f"{note} Groups with n below {MIN_GROUP_SIZE} are too small to speak for others.".strip()
     return ReportTable(
@@ -116,11 +116,11 @@ def means_bars(
     identity: str,
     title: str,
     measures: Sequence[StudentMeasure],
-    setting: Setting,
-    bounds: tuple[float, float] = SCALE,
+    context: ReportContext,
+    bounds: tuple[float, float] = SCALE_BOUNDS,
 ) -> BarChart:
     """The same means as bars: the groups', or everybody's where there are none."""
-    groups = setting.groups[:-1] or setting.groups
+    groups = context.groups[:-1] or context.groups
     return BarChart(
         identity,
         title,
@@ -133,7 +133,7 @@ def means_bars(
     )
 
 
-def within(interval: ConfidenceInterval, bounds: tuple[float, float]) -> ConfidenceInterval:
+def clip_interval(interval: ConfidenceInterval, bounds: tuple[float, float]) -> ConfidenceInterval:
     """The part of an interval that can be."""
     low, high = bounds
     return ConfidenceInterval(
@@ -142,7 +142,7 @@ def within(interval: ConfidenceInterval, bounds: tuple[float, float]) -> Confide
     )
 
 
-def cautions_of(division: ClassDivision | None) -> tuple[ReportWarning, ...]:
+def division_warnings(division: ClassDivision | None) -> tuple[ReportWarning, ...]:
     """What is doubtful about a division."""
     if division is None:
         return ()
