@@ -12,7 +12,7 @@ from grader.scoring import Anchors
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.school.result import Visibility
 
 
@@ -38,7 +38,7 @@ class Trial:
     """A kind of episode: where, for how long, and with which seeds."""
 
     name: str
-    place: Place
+    place: Scenario
     time_s: float
     """Simulated."""
     seeds: tuple[int, ...]

@@ -7,13 +7,13 @@ import math
 import pytest
 
 from kit.controllers import find_controller
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from kit.run.session import Session
 
 
 @pytest.mark.parametrize("turn", ["left", "right"])
 def test_a_pair_stays_side_by_side_round_a_bend(turn: str) -> None:
-    with Session(find_place("pair_straight", None)) as session:
+    with Session(find_scenario("pair_straight", None)) as session:
         session.drive_with(find_controller("teleop_pair"))
         session.wait_until_driven()
         simulation = session.runner.simulation

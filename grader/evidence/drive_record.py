@@ -17,7 +17,7 @@ from kit.render.scene import Body, Disc, Scene
 from kit.render.world_text import nearest_wall, plain_rows
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.world.records import Circle, Polygon
 
 CLEARANCE_INTERVAL = 5
@@ -49,7 +49,7 @@ class DriveRecord:
     """In words that give no secret away: ``maze, secret seed 2``."""
     seed: int
     secret: bool
-    place: Place
+    place: Scenario
     limit_s: float
     recording: Recording
     score: DriveMetrics

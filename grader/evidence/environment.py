@@ -30,7 +30,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.episode import controller_arguments, run_until, when, when_failed
 from kit.run.metrics import MetricsRecorder
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
 
 EXAMINER_FILE: Final = Path(__file__).with_name("environment_examiner.py")
@@ -49,7 +49,7 @@ class EnvironmentTask:
     """The kind's task: which environment is to be written, and where it lives."""
 
     class_name: str
-    place: Place
+    place: Scenario
     moves: tuple[tuple[float, float], ...]
     """What each action does: m/s, rad/s."""
     step_s: float

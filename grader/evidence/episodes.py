@@ -25,7 +25,7 @@ from kit.run.headless import Fingerprint
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder
 from kit.run.runner import Runner
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError
 from kit.world.records import Model, World
@@ -206,7 +206,7 @@ def shifted_start(trial: Trial, seed: int) -> Pose:
     )
 
 
-def _place(trial: Trial) -> Place:
+def _place(trial: Trial) -> Scenario:
     place = trial.place
     if trial.noise is None:
         return place

@@ -40,7 +40,7 @@ from kit.ros.packages import PackageError
 from kit.run.episode import run_until, when
 from kit.run.recording import Recorder
 from kit.run.runner import Runner
-from kit.run.view import Showing
+from kit.run.view import ViewBuilder
 from kit.world.problems import WorldError
 
 MAX_PROGRAMS: Final = 12
@@ -197,7 +197,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         raise ProcessStartError(
             f"{launch.world.where}the world must be one of the package's, not {launch.world.path}"
         )
-    with LaunchSession(launch, seed=1, watched=True) as session:
+    with LaunchSession(launch, seed=1, always_scan=True) as session:
         sink = launch.graph.log.sink
         launch.start_processes()
         launch.graph.log.sink = sink
@@ -211,7 +211,9 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         ways = {
             name: _driven_distance(recording.track(name)) for name in session.runner.simulation.model_names
         }
-        drawn = "\n".join(row.rstrip() for row in plain_rows(Showing(session).view().scene, COLUMNS, ROWS))
+        drawn = "\n".join(
+            row.rstrip() for row in plain_rows(ViewBuilder(session).build().scene, COLUMNS, ROWS)
+        )
         return {
             **_graph_record(launch.graph, traffic_recorder),
             "parameters": _parameters(launch.graph, session.runner, queries),

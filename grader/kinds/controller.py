@@ -15,8 +15,7 @@ from grader.evidence.service_calls import read_service_call
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
-from kit.run.scenario import Place as Where
-from kit.run.scenario import find_place
+from kit.run.scenario import Scenario, find_scenario
 from kit.sim.simulation import SERVICES
 from kit.world.catalogue import MapCase
 from kit.world.problems import WorldError
@@ -97,7 +96,7 @@ def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, .
     return seeds
 
 
-def read_scenario(section: Section, folder: Path) -> Where | None:
+def read_scenario(section: Section, folder: Path) -> Scenario | None:
     """A map of the kit or a world of the folder, with its case or target; None if there is a mistake, which is noted."""
     name = section.name("place")
     case = section.name("case") if section.has("case") else None
@@ -108,7 +107,7 @@ def read_scenario(section: Section, folder: Path) -> Where | None:
     try:
         inside = (folder / name).resolve()
         is_ours = inside.exists() and inside.is_relative_to(folder.resolve())
-        place = find_place(str(folder / name) if is_ours else name, case, folder if is_ours else None)
+        place = find_scenario(str(folder / name) if is_ours else name, case, folder if is_ours else None)
     except (LookupError, WorldError, OSError) as error:
         section.error(str(error), "place")
         return None

@@ -43,7 +43,7 @@ from kit.run.headless import Fingerprint
 from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.recording import ACCEPT, Playback, Recorder, Recording, RecordingError, load
 from kit.run.runner import Runner
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
 
 STEP: Final = 0.01
@@ -64,7 +64,7 @@ ARRAYS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy":
 class HandDriveTask:
     """The kind's task."""
 
-    place: Place | None
+    place: Scenario | None
     """None only where the sheet is wrong."""
     time_s: float
     """No recording may be longer."""

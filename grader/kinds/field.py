@@ -43,7 +43,7 @@ from kit.run.headless import Fingerprint
 from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.runner import Runner
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
 from kit.world.problems import WorldError
 
@@ -281,7 +281,7 @@ def _check_limits(layout: ChargeLayout) -> ChargeLayout:
     return layout
 
 
-def _shifted_scenario(trial: Trial, seed: int) -> Place:
+def _shifted_scenario(trial: Trial, seed: int) -> Scenario:
     """The place with its robots moved together, as the seed says."""
     place, home, start = trial.place, trial.home(), shifted_start(trial, seed)
     moved = {
@@ -296,7 +296,7 @@ def _shifted_scenario(trial: Trial, seed: int) -> Place:
 class _FieldRun:
     """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
 
-    def __init__(self, place: Place, course: ControllerSetup, simulation: Simulation) -> None:
+    def __init__(self, place: Scenario, course: ControllerSetup, simulation: Simulation) -> None:
         self._place = place
         self._course = course
         self._simulation = simulation

@@ -29,7 +29,7 @@ from kit.controllers import find_controller
 from kit.host.failure import GuestError
 from kit.host.sandbox.confinement import Level
 from kit.plain_text import quoted
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.world.records import World
 from kit.world.yaml_section import Section
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
-UNKNOWN_SCENARIO: Final = Place("what was handed in", "", World(Path("world.yaml")), None)
+UNKNOWN_SCENARIO: Final = Scenario("what was handed in", "", World(Path("world.yaml")), None)
 """Where a run takes place is known only when something was handed in."""
 
 

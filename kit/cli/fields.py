@@ -17,7 +17,7 @@ from kit.controllers import find_controller
 
 if TYPE_CHECKING:
     from kit.fields.controller_setup import ControllerSetup
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.study.pairs import PairSummary, PrintedPairResult
 
 FAILED: Final = 1
@@ -234,7 +234,7 @@ def _print_test(summary: PairSummary, *, first: bool) -> None:
         click.echo(f"  {count} of {each.runs} {failure}")
 
 
-def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
+def _described(place: Scenario, course: ControllerSetup) -> Iterator[str]:
     """The field in characters and in words."""
     from kit.fields.controller_setup import mean_position
     from kit.fields.planner import Unreachable
@@ -243,12 +243,12 @@ def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
     from kit.render.field import FieldPicture, with_field
     from kit.render.painter import Painter
     from kit.run.session import Session
-    from kit.run.view import Showing
+    from kit.run.view import ViewBuilder
 
     picture = FieldPicture(course)
     traps = picture.traps()
     with Session(place) as session:
-        scene = Showing(session).view().scene
+        scene = ViewBuilder(session).build().scene
     camera = Camera.fit(scene.bounds, *PICTURE)
     yield from (
         Painter(Ascii()).paint(with_field(scene, picture, camera, picture.forces, traps), camera).rows()
@@ -271,7 +271,7 @@ def _described(place: Place, course: ControllerSetup) -> Iterator[str]:
         yield str(reason)
 
 
-def _course(place: Place, derived: bool) -> ControllerSetup:
+def _course(place: Scenario, derived: bool) -> ControllerSetup:
     from kit.fields.controller_setup import ControllerSetup
 
     if place.case is None:
@@ -289,10 +289,10 @@ def _course(place: Place, derived: bool) -> ControllerSetup:
     )
 
 
-def _place(name: str, case: str | None) -> Place:
-    from kit.run.scenario import find_place
+def _place(name: str, case: str | None) -> Scenario:
+    from kit.run.scenario import find_scenario
 
-    return find_place(name, case)
+    return find_scenario(name, case)
 
 
 @contextmanager

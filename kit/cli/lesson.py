@@ -112,19 +112,19 @@ def _watch(scene: LessonScene) -> None:
     from kit.controllers import find_controller
     from kit.render.world_text import plain_rows, report
     from kit.run.episode import run_until, when_failed
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
     from kit.run.session import Session
-    from kit.run.view import Showing
+    from kit.run.view import ViewBuilder
 
-    place = find_place(scene.map_name, scene.case, None)
-    with Session(place, seed=scene.seed, watched=True) as session:
+    place = find_scenario(scene.map_name, scene.case, None)
+    with Session(place, seed=scene.seed, always_scan=True) as session:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
-        showing = Showing(session)
-        click.echo(f"At the start: {report(showing.view().scene)}")
+        view_builder = ViewBuilder(session)
+        click.echo(f"At the start: {report(view_builder.build().scene)}")
         run_until(session.runner, limit_s=scene.seconds, ends=(when_failed(session),))
-        session.look_around()
-        view = showing.view()
+        session.poll()
+        view = view_builder.build()
         click.echo("\n".join(plain_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
         way = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
         click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
@@ -134,9 +134,9 @@ def _drive(scene: LessonScene, file: str, desk: Workspace, intake: Intake) -> No
     """The student drives line by line; the recording is kept in ``file``."""
     from kit.cli.plain import Plain, play_plainly
     from kit.controllers import find_controller
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
 
-    place = find_place(scene.map_name, scene.case, None)
+    place = find_scenario(scene.map_name, scene.case, None)
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in."
     )

@@ -29,14 +29,14 @@ def command(name: str | None, glyphs: str | None) -> None:
         options.fail(str(error))
     from kit.render.encode import ENCODERS
     from kit.render.world_text import plain_rows
-    from kit.run.scenario import place_on_map
+    from kit.run.scenario import scenario_on_map
     from kit.run.session import Session
-    from kit.run.view import Showing
+    from kit.run.view import ViewBuilder
 
     chosen = options.terminal(glyphs=glyphs).glyphs.value
     columns, rows = shutil.get_terminal_size()
-    with Session(place_on_map(card)) as session:
-        scene = Showing(session).view().scene
+    with Session(scenario_on_map(card)) as session:
+        scene = ViewBuilder(session).build().scene
     click.echo(f"{card.title}: {card.summary}")
     click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:

@@ -20,16 +20,16 @@ from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
 from kit.run.recording import Recorder, save
-from kit.run.scenario import Place, find_place
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
-from kit.run.view import Showing, clock, said
+from kit.run.view import ViewBuilder, format_clock, format_log
 from kit.world.catalogue import all_maps
 from kit.world.problems import WorldError
 
 LONGEST: Final = 3600.0
 """Seconds that one line may run."""
 
-LISTEN_EVERY: Final = 10
+OUTPUT_INTERVAL: Final = 10
 """Ticks after which the controller's output is read."""
 
 WIDTH, HEIGHT = 78, 20
@@ -50,7 +50,7 @@ class Plain:
 
     def __init__(
         self,
-        place: Place,
+        scenario: Scenario,
         controller: ControllerFile,
         *,
         seed: int,
@@ -73,7 +73,7 @@ class Plain:
         self._says_where = says_where
         self._controller = controller
         self.lines = Lines(self.attend, intake)
-        self._session = self._open(place)
+        self._session = self._open(scenario)
         self.is_over = False
 
     def attend(self) -> None:
@@ -93,16 +93,16 @@ class Plain:
             limit_s=seconds,
             ends=(EndCondition(EndReason.FAILED, lambda: session.failure is not failure),),
             schedule=Schedule(session.runner.step_size, factor=factor),
-            before_tick=lambda number: session.listen() if number % LISTEN_EVERY == 0 else None,
+            before_tick=lambda number: session.read_output() if number % OUTPUT_INTERVAL == 0 else None,
         )
-        session.look_around()
+        session.poll()
         if session.failure is not failure:
             click.echo(f"the controller stopped: {session.failure}")
         self.look()
 
     def drive(self, forward: float, turn: float, seconds: float) -> None:
         session = self._session
-        topics = session.command_topics(session.place.robot or "")
+        topics = session.command_topics(session.scenario.robot or "")
         if not topics:
             raise Mistake("nothing here can be driven")
         session.drive_with(None)
@@ -115,25 +115,25 @@ class Plain:
             session.stop_robot()
 
     def look(self) -> None:
-        view = Showing(self._session).view()
+        view = ViewBuilder(self._session).build()
         score = view.metrics
-        click.echo(f"at {clock(view.time_s)}: {report(view.scene)}")
+        click.echo(f"at {format_clock(view.time_s)}: {report(view.scene)}")
         for side, distance in view.nearest:
             click.echo(f"  {side}: {'nothing in range' if distance is None else f'{distance:.2f} m'}")
         done = "" if score.reached_s is None else f"; target reached after {score.reached_s:.1f} s"
         click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
 
     def picture(self) -> None:
-        click.echo("\n".join(plain_rows(Showing(self._session).view().scene, WIDTH, HEIGHT)))
+        click.echo("\n".join(plain_rows(ViewBuilder(self._session).build().scene, WIDTH, HEIGHT)))
 
     def use(self, name: str) -> None:
         self._controller = find_controller(name, self._folder)
         self._seat(self._session)
 
     def open(self, name: str, case: str | None) -> None:
-        place = find_place(name, case, self._root)
+        scenario = find_scenario(name, case, self._root)
         self._leave()
-        self._session = self._open(place)
+        self._session = self._open(scenario)
         self.look()
 
     def reset(self) -> None:
@@ -154,18 +154,18 @@ class Plain:
             if self._says_where:
                 click.echo(f"The drive is kept in {self._record}.")
 
-    def _open(self, place: Place) -> Session:
-        session = Session(place, seed=self._seed, watched=True, on_message=_say)
+    def _open(self, scenario: Scenario) -> Session:
+        session = Session(scenario, seed=self._seed, always_scan=True, on_message=_say)
         if self._socket_dir is not None:
             self._inspection_server = open_inspection_server(
-                session.graph, self._socket_dir, place.name, self.lines.wake
+                session.graph, self._socket_dir, scenario.name, self.lines.wake
             )
             if self._inspection_server is not None:
                 session.runner.participants.append(self._inspection_server)
         self._recorder: Recorder | None = None
         if self._record is not None:
-            case = place.case.name if place.case else None
-            self._recorder = Recorder(place.name, case, session.runner.simulation)
+            case = scenario.case.name if scenario.case else None
+            self._recorder = Recorder(scenario.name, case, session.runner.simulation)
             session.runner.observers.append(self._recorder)
         self._seat(session)
         return session
@@ -189,7 +189,7 @@ def _wait(session: Session) -> None:
     if session.failure is not None:
         click.echo(f"the controller does not run: {session.failure}")
     elif session.controller is not None:
-        click.echo(f"{session.controller.name} drives in {session.place.title}")
+        click.echo(f"{session.controller.name} drives in {session.scenario.title}")
 
 
 def _modified(file: Path) -> int | None:
@@ -200,7 +200,7 @@ def _modified(file: Path) -> int | None:
 
 
 def _say(record: LogRecord) -> None:
-    click.echo(said(record))
+    click.echo(format_log(record))
 
 
 def _help(plain: Plain, words: Sequence[str]) -> None:

@@ -67,12 +67,12 @@ def command(
     socket_dir = sockets_folder(desk.folder)
     if terminal.plain.value:
         from kit.cli.plain import Plain, play_plainly
-        from kit.run.scenario import find_place
+        from kit.run.scenario import find_scenario
         from kit.world.problems import WorldError
 
         click.echo(f"The kit, line by line. {terminal.plain.reason}")
         try:
-            where = find_place(place, case, root)
+            where = find_scenario(place, case, root)
         except (LookupError, WorldError) as error:
             options.fail(str(error))
         line_by_line = Plain(

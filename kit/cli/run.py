@@ -80,8 +80,8 @@ def command(
     from kit.run.headless import run_headless
     from kit.run.lockstep import ClosableParticipant
     from kit.run.pacing import MAXIMUM, REAL_TIME
-    from kit.run.scenario import find_place
-    from kit.run.view import said
+    from kit.run.scenario import find_scenario
+    from kit.run.view import format_log
     from kit.workspace import WorkspaceError, open_workspace
     from kit.world.problems import WorldError
 
@@ -102,7 +102,7 @@ def command(
         company.append(lambda graph: BagRecorder(graph, bag, storage=storage))
     try:
         summary = run_headless(
-            find_place(place, case, root),
+            find_scenario(place, case, root),
             find_controller(controller, desk.controllers),
             steps=steps,
             seed=seed,
@@ -110,7 +110,7 @@ def command(
             until_reached=until_reached,
             record=record,
             company=company,
-            on_message=lambda record: click.echo(said(record), err=True),
+            on_message=lambda record: click.echo(format_log(record), err=True),
         )
     except (LookupError, WorldError) as error:
         options.fail(str(error))

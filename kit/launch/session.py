@@ -9,23 +9,23 @@ from dataclasses import replace
 from pathlib import Path
 
 from kit.launch.launch_run import Launch
-from kit.run.scenario import place_in_file
+from kit.run.scenario import scenario_in_file
 from kit.run.session import Session
 
 
 class LaunchSession(Session):
     """A session in whose ticks the launch takes part; closing it ends the launch. Raises WorldError, OSError."""
 
-    def __init__(self, launch: Launch, *, seed: int = 0, watched: bool = False) -> None:
+    def __init__(self, launch: Launch, *, seed: int = 0, always_scan: bool = False) -> None:
         request = launch.world
         assert request is not None, "a launch without a world"
         file = request.path.absolute()
-        place = place_in_file(file, _root(file, launch.target.folder))
+        place = scenario_in_file(file, _root(file, launch.target.folder))
         super().__init__(
             replace(place, title=launch.target.name),
             seed=seed,
             step_size=request.step_size,
-            watched=watched,
+            always_scan=always_scan,
             graph=launch.graph,
         )
         self.launch = launch

@@ -1,9 +1,8 @@
-"""The driver's seat: one controller drives, the next one starts beside it and takes over only if it starts well."""
+"""Switches controllers while a world runs: the next one starts beside the active one and replaces it once it has started well."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from kit.controllers import ControllerFile
@@ -15,16 +14,8 @@ from kit.host.sandbox.limits import Limits
 from kit.run.runner import Runner
 
 
-@dataclass(slots=True)
-class _Coming:
-    """A controller that is starting."""
-
-    controller: ControllerFile
-    guest: Guest
-
-
-class Seat:
-    """Whose guest takes part in the runner's ticks. Belongs to the thread that ticks."""
+class ControllerSwitcher:
+    """Owns the process of the controller that takes part in the runner's ticks. Belongs to the thread that ticks."""
 
     def __init__(
         self,
@@ -34,83 +25,83 @@ class Seat:
         seed: int,
         limits: Limits,
         level: Level = DESK_LEVEL,
-        on_empty: Callable[[], object] = lambda: None,
+        on_stop: Callable[[], object] = lambda: None,
         on_print: Callable[[str], object] = lambda line: None,
     ) -> None:
-        """``on_empty``: called when a controller has stopped driving; ``on_print``: with each line it prints."""
+        """``on_stop``: called when a controller has stopped driving; ``on_print``: with each line it prints."""
         self._runner = runner
-        self._on_empty = on_empty
+        self._on_stop = on_stop
         self._on_print = on_print
         self._arguments: Final = tuple(arguments)
         self._seed = seed
         self._limits = limits
         self._level = level
-        self._guest: Guest | None = None
-        self._coming: _Coming | None = None
+        self._active: Guest | None = None
+        self._pending: Guest | None = None
         self._failure: Failure | None = None
         self._file: FileWatch | None = None
         self.controller: ControllerFile | None = None
-        """Who drives or is about to."""
+        """The one that drives or is about to."""
 
     @property
     def failure(self) -> Failure | None:
-        """Why the present controller has stopped, or why its newest version was not taken."""
-        if self._failure is None and self._guest is not None:
-            return self._guest.failure
+        """Why the active controller has stopped, or why its newest version was not taken."""
+        if self._failure is None and self._active is not None:
+            return self._active.failure
         return self._failure
 
-    def seat(self, controller: ControllerFile | None) -> None:
-        """Starts a controller, without waiting; None leaves the seat empty."""
-        self._give_up_coming()
+    def load(self, controller: ControllerFile | None) -> None:
+        """Starts a controller without waiting for it; None only stops the active one."""
+        self._cancel_pending()
         self._failure = None
         self.controller = controller
         if controller is None:
-            self._leave()
+            self._unload()
             return
         self._file = FileWatch(controller.file)
         self._start(controller)
 
     def restart(self) -> None:
-        """The same controller, from its beginning; the old one stops driving at once."""
-        self._leave()
-        self.seat(self.controller)
+        """Stops the active controller at once and starts the same one from its beginning."""
+        self._unload()
+        self.load(self.controller)
 
     def wait(self) -> None:
-        """Until the coming controller drives or has failed."""
-        if self._coming is not None:
-            self._settle(self._coming.guest.wait_until_started)
+        """Waits until the pending controller drives or has failed."""
+        if self._pending is not None:
+            self._finish_start(self._pending.wait_until_started)
 
-    def look(self) -> None:
-        """Lets a controller that is ready take over, and starts a new version of a file that was saved."""
-        coming = self._coming
-        self.listen()
-        if self._guest is not None and self._guest.failure is not None and self._failure is None:
-            self._failure = self._guest.failure
-            self._on_empty()
-        if coming is not None:
-            self._settle(coming.guest.is_started)
+    def poll(self) -> None:
+        """Activates a pending controller that has started, and starts a new version of a file that was saved."""
+        pending = self._pending
+        self.read_output()
+        if self._active is not None and self._active.failure is not None and self._failure is None:
+            self._failure = self._active.failure
+            self._on_stop()
+        if pending is not None:
+            self._finish_start(pending.is_started)
         elif self.controller is not None and self._file is not None and self._file.has_changed():
             self._failure = None
             self._start(self.controller)
 
-    def hang_up(self) -> None:
-        """From any thread: who drives, or is about to, is not waited for any more."""
-        guests = (self._guest, self._coming.guest if self._coming is not None else None)
-        for guest in filter(None, guests):
-            guest.hang_up()
+    def disconnect(self) -> None:
+        """Stops waiting for the active and the pending controller; may be called in any thread."""
+        for process in filter(None, (self._active, self._pending)):
+            process.hang_up()
 
-    def listen(self) -> None:
-        """Takes in what who drives has printed."""
-        if self._guest is not None:
-            self._hear(self._guest)
+    def read_output(self) -> None:
+        """Passes on what the active controller has printed since the last time."""
+        if self._active is not None:
+            self._pass_on_output(self._active)
 
     def close(self) -> None:
-        self._give_up_coming()
-        self._leave()
+        """Ends both processes."""
+        self._cancel_pending()
+        self._unload()
 
     def _start(self, controller: ControllerFile) -> None:
         try:
-            guest = Guest(
+            self._pending = Guest(
                 self._runner.graph,
                 controller.file,
                 args=self._arguments,
@@ -120,39 +111,38 @@ class Seat:
             )
         except GuestError as error:
             self._failure = error.failure
-            return
-        self._coming = _Coming(controller, guest)
 
-    def _settle(self, is_ready: Callable[[], bool | None]) -> None:
-        coming = self._coming
-        assert coming is not None
+    def _finish_start(self, is_started: Callable[[], bool | None]) -> None:
+        """Activates the pending controller unless ``is_started`` returns False; discards it if that raises."""
+        pending = self._pending
+        assert pending is not None
         try:
-            if is_ready() is False:
+            if is_started() is False:
                 return
         except GuestError as error:
             self._failure = error.failure
-            self._hear(coming.guest)
-            self._give_up_coming()
+            self._pass_on_output(pending)
+            self._cancel_pending()
             return
-        self._coming = self._failure = None
-        self._leave()
-        coming.guest.join()
-        self._guest = coming.guest
-        self._runner.participants.append(coming.guest)
+        self._pending = self._failure = None
+        self._unload()
+        pending.join()
+        self._active = pending
+        self._runner.participants.append(pending)
 
-    def _give_up_coming(self) -> None:
-        if self._coming is not None:
-            self._coming.guest.close()
-            self._coming = None
+    def _cancel_pending(self) -> None:
+        if self._pending is not None:
+            self._pending.close()
+            self._pending = None
 
-    def _leave(self) -> None:
-        if self._guest is not None:
-            self._hear(self._guest)
-            self._runner.participants.remove(self._guest)
-            self._guest.close()
-            self._guest = None
-            self._on_empty()
+    def _unload(self) -> None:
+        if self._active is not None:
+            self._pass_on_output(self._active)
+            self._runner.participants.remove(self._active)
+            self._active.close()
+            self._active = None
+            self._on_stop()
 
-    def _hear(self, guest: Guest) -> None:
-        for line in guest.take_output().lines:
+    def _pass_on_output(self, process: Guest) -> None:
+        for line in process.take_output().lines:
             self._on_print(line.text)

@@ -17,10 +17,10 @@ if TYPE_CHECKING:  # a launch without a world must not load the physics
     from kit.host.failure import Failure
     from kit.run.metrics import MetricsRecorder
     from kit.run.pacing import Schedule
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
 
 
-def controller_arguments(scenario: Place, home: Pose | None = None) -> list[str]:
+def controller_arguments(scenario: Scenario, home: Pose | None = None) -> list[str]:
     """Command line arguments for every program that drives in ``scenario``, as ROS 2 has them.
 
     Parameters: ``home`` [x m, y m, theta rad], ``model`` (the robot's name), ``models`` (all that drive), ``world``

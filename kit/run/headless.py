@@ -21,12 +21,12 @@ from kit.run.lockstep import ClosableParticipant, Observer
 from kit.run.metrics import DriveMetrics
 from kit.run.pacing import MAXIMUM, Schedule
 from kit.run.recording import Recorder, save
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
 from kit.workspace import check_writable
 
-LISTEN_EVERY = 100
+OUTPUT_INTERVAL = 100
 """Ticks after which the controller's output is read."""
 
 
@@ -49,7 +49,7 @@ class Fingerprint(Observer):
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class RunSummary:
     """What came of a run."""
 
     place: str
@@ -119,7 +119,7 @@ class Summary:
 
 
 def run_headless(
-    place: Place,
+    place: Scenario,
     controller: ControllerFile,
     *,
     steps: int,
@@ -129,7 +129,7 @@ def run_headless(
     record: Path | None = None,
     company: Sequence[Callable[[Graph], ClosableParticipant]] = (),
     on_message: Callable[[LogRecord], object] = lambda record: None,
-) -> Summary:
+) -> RunSummary:
     """Runs ``steps`` ticks, fewer if the controller fails, if the target is reached and that was asked for, or
     on Ctrl-C. ``factor``: simulated seconds per second; a run that is paced waits while it is paused.
 
@@ -168,16 +168,16 @@ def run_headless(
                 ticks=None if is_paced else steps,
                 ends=ends,
                 schedule=Schedule(runner.step_size, factor=factor) if is_paced else None,
-                before_tick=lambda number: session.listen() if number % LISTEN_EVERY == 0 else None,
+                before_tick=lambda number: session.read_output() if number % OUTPUT_INTERVAL == 0 else None,
             )
         except KeyboardInterrupt:
             interrupted = True
-        session.listen()
+        session.read_output()
         wall = time.perf_counter() - start
         if recorder is not None and record is not None:
             save(recorder.recording(), record)
         poses = dict(zip(runner.simulation.model_names, runner.simulation.poses(), strict=False))
-        return Summary(
+        return RunSummary(
             place.title,
             controller.name,
             seed,

@@ -11,7 +11,7 @@ from kit.run.lockstep import Observer
 from kit.world.records import Circle, Model, Polygon
 
 if TYPE_CHECKING:
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.sim.simulation import Simulation
 
 
@@ -83,7 +83,7 @@ class MetricsRecorder(Observer):
         """When all robots were in the target together for the first time [simulated s]; None if they never were."""
 
     @classmethod
-    def for_scenario(cls, scenario: Place) -> Self:
+    def for_scenario(cls, scenario: Scenario) -> Self:
         """Of all that drive from start to target, the robot first."""
         models = {model.name: model for model in scenario.world.models}
         robots = [models[name] for name in scenario.partners]

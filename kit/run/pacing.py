@@ -15,12 +15,12 @@ CATCH_UP: Final = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class Pacing:
+class PacingStatus:
     """How a run goes at the moment."""
 
     factor: float
     """Asked for: simulated seconds per second; ``inf`` is as fast as it goes."""
-    reached: float
+    actual_factor: float
     """Really reached, over the last second or so."""
     paused: bool
 
@@ -69,7 +69,7 @@ class Schedule:
         self._next += self._step_size / self._factor
 
 
-class Meter:
+class SpeedMeter:
     """The speed really reached: simulated over wall seconds, over the last one to two seconds."""
 
     def __init__(self) -> None:

@@ -16,7 +16,7 @@ BEACON = "beacon"
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Scenario:
     """Where a session takes place: a world, who drives in it, and from where to where."""
 
     name: str
@@ -59,7 +59,7 @@ class Place:
         return None if self.driven is None else self.driven.pose
 
 
-def place_on_map(card: MapCard, case: MapCase | None = None) -> Place:
+def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
     """A map of the catalogue, by default its first case. Raises WorldError."""
     case = case or card.cases[0]
     poses = {card.robot: case.start, BEACON: Pose(*case.target)}
@@ -67,16 +67,16 @@ def place_on_map(card: MapCard, case: MapCase | None = None) -> Place:
         poses[card.partner] = case.partner_start
     world = load_world(card.world_file, root=card.root)
     models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in world.models)
-    return Place(card.name, card.title, replace(world, models=models), card.robot, case)
+    return Scenario(card.name, card.title, replace(world, models=models), card.robot, case)
 
 
-def place_in_file(file: Path, root: Path | None = None) -> Place:
+def scenario_in_file(file: Path, root: Path | None = None) -> Scenario:
     """A world file of the user's; its first model with a drive is the robot. Raises WorldError."""
     world = load_world(file, root=root)
     driven = _drivers(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)
     title = file.stem if file.stem != "world" else file.parent.name
-    return Place(str(file), title, world, robot)
+    return Scenario(str(file), title, world, robot)
 
 
 def _drivers(world: World) -> tuple[str, ...]:
@@ -85,7 +85,7 @@ def _drivers(world: World) -> tuple[str, ...]:
     )
 
 
-def find_place(name: str, case: str | None = None, root: Path | None = None) -> Place:
+def find_scenario(name: str, case: str | None = None, root: Path | None = None) -> Scenario:
     """By the name of a shipped map, or a world file or its folder; a map goes before a folder of that name.
 
     Raises WorldError, UnknownMap, or LookupError for the case.
@@ -95,13 +95,13 @@ def find_place(name: str, case: str | None = None, root: Path | None = None) -> 
         if path.is_dir():
             path = path / WORLD_FILE
         if path.is_file() or path.suffix in (".yaml", ".yml"):
-            return place_in_file(path.absolute(), root)
+            return scenario_in_file(path.absolute(), root)
     card = find_map(name)
     if case is None:
-        return place_on_map(card)
+        return scenario_on_map(card)
     for known in card.cases:
         if known.name == case:
-            return place_on_map(card, known)
+            return scenario_on_map(card, known)
     raise LookupError(
         f"The map {name} has no case {case}; it has: {', '.join(each.name for each in card.cases)}."
     )

@@ -10,14 +10,14 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-from kit.run.pacing import REAL_TIME, Meter, Pacing, Schedule
+from kit.run.pacing import REAL_TIME, PacingStatus, Schedule, SpeedMeter
 from kit.run.runner import Runner
 
 SLICE: Final = 0.02
 """Longest stretch of ticks [s] between two looks at what was posted: keys never wait longer than this."""
 
 
-class LiveRun:
+class WorldThread:
     """Runs ``runner`` in a worker thread until ``stop``. Use as a context manager.
 
     ``on_change`` is called in the worker thread after each stretch of ticks and each posted job: at most a
@@ -35,11 +35,11 @@ class LiveRun:
         self._jobs: list[Callable[[Runner], object]] = []
         self._steps = 0
         self._stopping = False
-        self._meter = Meter()
+        self._meter = SpeedMeter()
         self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._guarded, name="world", daemon=True)
 
-    def __enter__(self) -> LiveRun:
+    def __enter__(self) -> WorldThread:
         self._thread.start()
         return self
 
@@ -47,8 +47,8 @@ class LiveRun:
         self.stop()
 
     @property
-    def pacing(self) -> Pacing:
-        return Pacing(self._factor, self._meter.factor, self._runner.paused)
+    def pacing(self) -> PacingStatus:
+        return PacingStatus(self._factor, self._meter.factor, self._runner.paused)
 
     def post(self, job: Callable[[Runner], object]) -> None:
         """Has ``job`` done in the world's thread, between two ticks, as soon as possible."""

@@ -19,7 +19,7 @@ from kit.render.world_text import nearest_wall
 from kit.run.episode import run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
 
@@ -100,7 +100,7 @@ class PairSummary:
 
 
 def run_repeatedly(
-    place: Place,
+    place: Scenario,
     controller: ControllerFile,
     *,
     runs: int,
@@ -116,7 +116,7 @@ def run_repeatedly(
     return PairSummary.of(name, controller.name, outcomes)
 
 
-def shift_starts(place: Place, seed: int, number: int) -> Place:
+def shift_starts(place: Scenario, seed: int, number: int) -> Scenario:
     """The place with its robots a little beside where they start; exactly there in run 0."""
     generator = np.random.default_rng((seed, number))
     shift = {name: generator.uniform(-1, 1, 3) * START_SHIFT * (number > 0) for name in place.partners}
@@ -129,7 +129,7 @@ def shift_starts(place: Place, seed: int, number: int) -> Place:
     return replace(place, world=replace(place.world, models=models))
 
 
-def run_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
+def run_once(place: Scenario, controller: ControllerFile, *, seed: int = 0) -> PairRunResult:
     """One run to its end. Raises LookupError for a place without a target, WorldError for a wrong layout."""
     if place.case is None:
         raise LookupError(f"{place.name} has no target to drive to: it needs a map of the catalogue.")
@@ -137,13 +137,13 @@ def run_once(place: Place, controller: ControllerFile, *, seed: int = 0) -> Pair
     course = ControllerSetup.open(
         place.world.file, place.partners, case.target, case.target_radius, charges=place.charges
     )
-    with Session(place, seed=seed, watched=True) as session:
+    with Session(place, seed=seed, always_scan=True) as session:
         log = _PairObserver(place)
         session.runner.observers.append(log)
         session.drive_with(controller)
         session.wait_until_driven()
         run_until(session.runner, ends=(when(lambda: log.end is not None), when_failed(session)))
-        session.look_around()
+        session.poll()
         return log.outcome(log.end or "failed", _failure_reason(log, session, course))
 
 
@@ -174,7 +174,7 @@ def _describe_stuck(course: ControllerSetup, middle: tuple[float, float]) -> str
 class _PairObserver(Observer):
     """Watches a run, as one of the runner's observers, until it is over."""
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Scenario) -> None:
         assert place.case is not None
         self._metrics = MetricsRecorder.for_scenario(place)
         self._names = place.partners
@@ -304,8 +304,8 @@ def run_tables(
     runs: int, seed: int, controllers: tuple[ControllerFile, ...]
 ) -> Iterator[tuple[PrintedPairResult, tuple[PairSummary, ...]]]:
     """Both tables, row by row, as they are done."""
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
 
     for printed in (*TABLE_46, *TABLE_53):
-        place = find_place(printed.map, printed.case)
+        place = find_scenario(printed.map, printed.case)
         yield printed, tuple(run_repeatedly(place, each, runs=runs, seed=seed) for each in controllers)

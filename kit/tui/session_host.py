@@ -12,8 +12,8 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from kit.controllers import ControllerFile
-from kit.run.pacing import Pacing
-from kit.run.view import Showing, View
+from kit.run.pacing import PacingStatus
+from kit.run.view import View, ViewBuilder
 
 if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn first
     from pathlib import Path
@@ -21,9 +21,9 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
     from kit.inspection.server import InspectionServer
     from kit.run.recording import Recorder, Recording
     from kit.run.runner import Runner
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
-    from kit.run.world_thread import LiveRun
+    from kit.run.world_thread import WorldThread
 
 VIEW_INTERVAL: Final = 0.045
 """Seconds between two views while the world runs: a little over twenty a second."""
@@ -53,8 +53,8 @@ class SessionHost:
         self._recorder: Recorder | None = None
         self._inspection_server: InspectionServer | None = None
         self._session: Session | None = None
-        self._live: LiveRun | None = None
-        self._showing: Showing | None = None
+        self._live: WorldThread | None = None
+        self.view_builder: ViewBuilder | None = None
         self._last_view_s = 0.0
         self._beams = False
         self._listener: SessionJob | None = None
@@ -66,16 +66,16 @@ class SessionHost:
         self._helper.start()
 
     @property
-    def pacing(self) -> Pacing:
-        return self._live.pacing if self._live is not None else Pacing(1.0, 0.0, False)
+    def pacing(self) -> PacingStatus:
+        return self._live.pacing if self._live is not None else PacingStatus(1.0, 0.0, False)
 
-    def open(self, find: Callable[[], Place], controller: ControllerFile, *, paused: bool = False) -> None:
+    def open(self, find: Callable[[], Scenario], controller: ControllerFile, *, paused: bool = False) -> None:
         """Opens another world in place of the present one, which stays if that fails. ``paused``: it stands still."""
 
         def job() -> None:
             from kit.run.session import Session
 
-            session = Session(find(), seed=self._seed, watched=True)
+            session = Session(find(), seed=self._seed, always_scan=True)
             self._record(session)
             session.drive_with(controller)
             session.runner.paused = paused
@@ -155,7 +155,7 @@ class SessionHost:
         if self._records:
             from kit.run.recording import Recorder
 
-            place = session.place
+            place = session.scenario
             case = place.case.name if place.case is not None else None
             self._recorder = Recorder(place.name, case, session.runner.simulation)
             session.runner.observers.append(self._recorder)
@@ -168,18 +168,20 @@ class SessionHost:
                 self._start(session, self.pacing.factor if factor is None else factor)
 
     def _start(self, session: Session, factor: float) -> None:
-        from kit.run.world_thread import LiveRun
+        from kit.run.world_thread import WorldThread
 
         runner = session.runner
         self._drop_session()
-        self._session, self._showing = session, Showing(session)
-        self._live = live = LiveRun(runner, factor=factor, on_change=self._world_changed)
+        self._session, self.view_builder = session, ViewBuilder(session)
+        self._live = live = WorldThread(runner, factor=factor, on_change=self._world_changed)
         runner.on_rate = lambda rate: self.set_factor(rate * runner.simulation.step_size)
         if self._socket_dir is not None:
             from kit.inspection.server import open_inspection_server
 
             name = (
-                session.place.title if session.place.name.endswith((".yaml", ".yml")) else session.place.name
+                session.scenario.title
+                if session.scenario.name.endswith((".yaml", ".yml"))
+                else session.scenario.name
             )
 
             def wake() -> None:
@@ -195,9 +197,9 @@ class SessionHost:
 
     def _drop_session(self) -> None:
         live, session, server = self._live, self._session, self._inspection_server
-        self._live = self._session = self._showing = self._inspection_server = None
+        self._live = self._session = self.view_builder = self._inspection_server = None
         if session is not None:
-            session.hang_up()  # or a controller that loops would have us wait for its deadline
+            session.disconnect()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()
         if server is not None:
@@ -207,17 +209,17 @@ class SessionHost:
 
     def _world_changed(self, runner: Runner) -> None:
         """In the world's thread, after every stretch of ticks."""
-        showing, live, session = self._showing, self._live, self._session
-        if showing is None or live is None or session is None:
+        view_builder, live, session = self.view_builder, self._live, self._session
+        if view_builder is None or live is None or session is None:
             return
         if live.failure is not None:
             self._on_error(f"the world stopped: {live.failure}")
         now = time.monotonic()
         if runner.paused or now - self._last_view_s >= VIEW_INTERVAL:
             self._last_view_s = now
-            session.look_around()
-            showing.beams = self._beams
-            self._on_view(showing.view())
+            session.poll()
+            view_builder.shows_beams = self._beams
+            self._on_view(view_builder.build())
             if (listener := self._listener) is not None:
                 listener(session)
 

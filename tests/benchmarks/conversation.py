@@ -22,7 +22,7 @@ from kit.ros.execution.executors import SingleThreadedExecutor
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.runner import Runner
-from kit.run.scenario import place_on_map
+from kit.run.scenario import scenario_on_map
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 
@@ -99,7 +99,7 @@ LISTENED = ("/static_laser", "/cmd_vel")
 
 def bare_ticks() -> Callable[[], object]:
     """Ticks of the maze with the driver called directly."""
-    simulation = Simulation(place_on_map(find_map("maze")).world, has_subscribers=LISTENED.__contains__)
+    simulation = Simulation(scenario_on_map(find_map("maze")).world, has_subscribers=LISTENED.__contains__)
 
     def work() -> None:
         for _ in range(TICKS):
@@ -113,7 +113,7 @@ def bare_ticks() -> Callable[[], object]:
 def graph_ticks() -> Callable[[], object]:
     """Ticks of the same world with the same driver, through nodes and topics."""
     graph = Graph()
-    world = place_on_map(find_map("maze")).world
+    world = scenario_on_map(find_map("maze")).world
     runner = Runner(
         Simulation(world, has_subscribers=lambda topic: graph.subscription_count(topic) > 0), graph
     )

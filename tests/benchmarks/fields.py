@@ -21,7 +21,7 @@ from kit.fields.occupancy_grid import load_occupancy_grid
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, changed, with_field
 from kit.render.scene import Scene
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 
 PROMISED_MS = 50.0
 """A 200 x 200 grid on a map of 500 segments."""
@@ -57,7 +57,7 @@ def milliseconds(work: Callable[[], object], times: int = 20) -> float:
 
 
 def print_map(name: str) -> None:
-    place = find_place(name)
+    place = find_scenario(name)
     assert place.case is not None
     target, world = place.case.target, place.world.file
     course = ControllerSetup.open(world, place.partners, target)
@@ -74,12 +74,12 @@ def main() -> int:
     kept = taken < PROMISED_MS
     print(f"{GRID} x {GRID} places, 500 walls: {taken:.1f} ms (promised: below {PROMISED_MS:.0f})")
     for name in ("house", "roundabout", "forest"):
-        occupancy = load_occupancy_grid(find_place(name).world.file)[1]
+        occupancy = load_occupancy_grid(find_scenario(name).world.file)[1]
         field = derived_layout(occupancy).field
         across, up = occupancy.walls.reshape(-1, 2).max(axis=0)
         taken = milliseconds(partial(field.forces, grid(across, up)))
         print(f"{GRID} x {GRID} places, {name}, {len(occupancy.walls)} walls: {taken:.1f} ms")
-    place = find_place("pair_turn_180")
+    place = find_scenario("pair_turn_180")
     assert place.case is not None
     course = ControllerSetup.open(place.world.file, place.partners, place.case.target)
     picture = FieldPicture(course)

@@ -27,7 +27,7 @@ FIXED_BY_ROS: Final = frozenset({"msg", "names", "shims"})
 """Folders whose class names ROS, gym or pynput prescribe."""
 
 _OLD_NAMES: Final = """
-    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place Showing _Standing tell
+    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place ViewBuilder _Standing tell
     accepted called ticked allow Stage StandingModel Site GuestError Embassy Delegation Mirror Census Cage Rung
     condemn hang_up Pump LonePump PipePump Door Visit Visitor Line Standing Logbook look Looks Examined Examiner
     Courses Ground TaskChoice Falling Rollouts deal remember recall foresee begin_again lay_out Judged Chance Said

@@ -14,7 +14,7 @@ from pathlib import Path
 from kit.inspection.server import InspectionServer
 from kit.inspection.world_sockets import sockets_folder
 from kit.run.runner import Runner
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from kit.run.session import Session
 
 SECONDS, REPEATS = 1.0, 5
@@ -30,7 +30,7 @@ CASES: tuple[tuple[str, bool, tuple[tuple[str, ...], ...]], ...] = (
 
 def measure(has_server: bool, clients: Sequence[Sequence[str]]) -> float:
     """Ticks per second, the best of several stretches."""
-    with tempfile.TemporaryDirectory() as folder, Session(find_place("maze"), watched=True) as session:
+    with tempfile.TemporaryDirectory() as folder, Session(find_scenario("maze"), always_scan=True) as session:
         runner = session.runner
         processes = []
         if has_server:

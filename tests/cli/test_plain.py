@@ -15,7 +15,7 @@ from kit.cli import main
 from kit.cli.plain import Plain, obey, play_plainly
 from kit.controllers import find_controller
 from kit.run.recording import load, rerun
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 
 DRIVER = """
 import rclpy
@@ -48,7 +48,7 @@ def file(tmp_path: Path) -> Path:
 @pytest.fixture
 def say(file: Path, capsys: pytest.CaptureFixture[str]) -> Iterator[Say]:
     """Says a line to a kit on the simple map, driven by ``file``, and returns the answer."""
-    plain = Plain(find_place("simple"), find_controller(str(file)), seed=0, folder=file.parent)
+    plain = Plain(find_scenario("simple"), find_controller(str(file)), seed=0, folder=file.parent)
 
     def answer(line: str) -> str:
         capsys.readouterr()
@@ -146,7 +146,7 @@ def test_lines_are_read_until_they_end(tmp_path: Path) -> None:
 
 def test_without_any_standard_input_it_just_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", None)
-    plain = Plain(find_place("simple"), find_controller("forward"), seed=0, folder=tmp_path)
+    plain = Plain(find_scenario("simple"), find_controller("forward"), seed=0, folder=tmp_path)
     play_plainly(plain)
     assert plain.is_over is False
 
@@ -189,7 +189,7 @@ def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
     assert str(file) in result.output
     recording = load(file)
     assert recording.ticks == 200
-    again = rerun(recording, find_place("simple").world)
+    again = rerun(recording, find_scenario("simple").world)
     assert (again.poses == recording.poses).all()
 
 

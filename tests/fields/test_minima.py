@@ -12,7 +12,7 @@ from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.layout import ChargeLayout, Intensities
 from kit.fields.minima import ForceFlow
 from kit.fields.occupancy_grid import OccupancyGrid
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 
 ROOM = [(-2, -2, 2, -2), (2, -2, 2, 4), (2, 4, -2, 4), (-2, 4, -2, -2)]
 
@@ -45,7 +45,7 @@ def test_a_target_alone_has_no_trap() -> None:
 def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: str) -> None:
     for case in ("left", "right") if name != "pair_straight" else ("",):
         whole = name.replace("_90", f"_{case}_90").replace("_180", f"_{case}_180")
-        place = find_place(name, whole)
+        place = find_scenario(name, whole)
         assert place.case is not None
         course = ControllerSetup.open(
             place.world.file, place.partners, place.case.target, place.case.target_radius
@@ -56,7 +56,7 @@ def test_the_hallways_that_turn_right_round_are_traps_and_the_others_not(name: s
 
 
 def test_the_navigation_function_leads_from_everywhere_to_the_target() -> None:
-    place = find_place("pair_turn_180")
+    place = find_scenario("pair_turn_180")
     assert place.case is not None
     course = ControllerSetup.open(place.world.file, ["left"], place.case.target)
     ways = course.cost_to_go((0.63, 0.5))

@@ -12,10 +12,10 @@ from click.testing import CliRunner
 from grader.__main__ import main
 from grader.evidence.exploit import TICKS_PER_MOVE
 from kit.run.recording import load, rerun
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
-KIT_MAPS = Path(str(find_place("turn").world.file)).parents[1]
+KIT_MAPS = Path(str(find_scenario("turn").world.file)).parents[1]
 
 
 def checked(*arguments: str) -> tuple[int, str]:
@@ -32,7 +32,7 @@ def test_a_drive_on_a_map_of_the_kit(tmp_path: Path) -> None:
     code, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
     assert f"Watch it move: kit replay {out}\n" in text
     kept = load(out)
-    assert np.array_equal(rerun(kept, find_place(kept.place, kept.case).world).poses, kept.poses)
+    assert np.array_equal(rerun(kept, find_scenario(kept.place, kept.case).world).poses, kept.poses)
 
 
 def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
     _, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
     assert f"kit replay {out} --root {folder}" in text
     kept = load(out)
-    place = find_place(kept.place, kept.case, folder)
+    place = find_scenario(kept.place, kept.case, folder)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
 
 
@@ -56,7 +56,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     _, text = checked(str(wrong), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
     assert "Watch it move" in text
     kept = load(out)
-    place = find_place(kept.place)
+    place = find_scenario(kept.place)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
     assert kept.ticks >= 10 * TICKS_PER_MOVE
     way, (target,) = kept.track("robot"), np.unique(kept.track("target"), axis=0)

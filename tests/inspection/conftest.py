@@ -20,9 +20,9 @@ from kit.msg.std_srvs import SetBool
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.time import Time
-from kit.run.scenario import place_on_map
+from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
-from kit.run.world_thread import LiveRun
+from kit.run.world_thread import WorldThread
 from kit.world.catalogue import find_map
 
 SPEED = 20.0
@@ -62,10 +62,10 @@ class Stage:
 
     def __init__(self, workspace: Path) -> None:
         self.workspace = workspace
-        self.session = Session(place_on_map(find_map("simple")), seed=1)
+        self.session = Session(scenario_on_map(find_map("simple")), seed=1)
         self.graph = self.session.graph
         self.talker = Talker(self.graph)
-        self.live = LiveRun(self.session.runner, factor=SPEED, on_change=lambda runner: None)
+        self.live = WorldThread(self.session.runner, factor=SPEED, on_change=lambda runner: None)
         self.server = InspectionServer(self.graph, sockets_folder(workspace), "simple", wake=self._wake)
         self.session.runner.participants.append(self.server)
 

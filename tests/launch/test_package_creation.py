@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.launch.package_creation import create_package
 from kit.ros.packages import PackageError, read_package
-from kit.run.scenario import place_in_file
+from kit.run.scenario import scenario_in_file
 from kit.world.catalogue import UnknownMap
 from tests.launch.conftest import Launched
 
@@ -32,7 +32,7 @@ def test_a_new_package_is_launched_as_it_lies(map_name: str, launch: Launched, t
     folder = create_package("my_robot", tmp_path / "src", map_name=map_name, node="walker")
     package = read_package(folder)
     assert package.file_of(package.executable("walker")) == folder / "my_robot" / "walker.py"
-    place_in_file(folder / "world" / "world.yaml")  # nothing outside the package is named
+    scenario_in_file(folder / "world" / "world.yaml")  # nothing outside the package is named
     out, err, code = launch(folder, "speed:=0.3", "--until", "1")
     assert code == 0, err
     assert "[walker-2]: process started" in out

@@ -32,7 +32,7 @@ from kit.run.episode import (
     when_reached,
 )
 from kit.run.metrics import DriveMetrics, MetricsRecorder
-from kit.run.scenario import find_place, place_in_file
+from kit.run.scenario import find_scenario, scenario_in_file
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import race_controller
@@ -81,7 +81,15 @@ def level_on(map_name: str, case: str, par: float = 1.0) -> GameLevel:
 
 def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
     return Trial(
-        "test", find_place(map_name, case), seconds, (1,), (), Shift(), None, True, frozenset({"move_model"})
+        "test",
+        find_scenario(map_name, case),
+        seconds,
+        (1,),
+        (),
+        Shift(),
+        None,
+        True,
+        frozenset({"move_model"}),
     )
 
 
@@ -96,7 +104,7 @@ class OnlyLimits:
 def test_a_controller_gets_the_same_arguments_everywhere(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
 ) -> None:
-    place = find_place(map_name, case)
+    place = find_scenario(map_name, case)
     file = tmp_path / "driver.py"
     file.write_text(DRIVER)
     with Session(place) as session:
@@ -116,7 +124,7 @@ def test_a_controller_gets_the_same_arguments_everywhere(
 def test_a_graded_world_tells_its_driver_the_same(
     map_name: str, case: str, given: list[list[str]], tmp_path: Path
 ) -> None:
-    place = find_place(map_name, case)
+    place = find_scenario(map_name, case)
     assert place.case is not None
     alone = replace(place, case=replace(place.case, partner_start=None))
     target, radius = place.case.target, place.case.target_radius
@@ -126,7 +134,7 @@ def test_a_graded_world_tells_its_driver_the_same(
 
 @pytest.mark.parametrize(("map_name", "case"), CASES)
 def test_the_arguments_say_what_the_scenario_is(map_name: str, case: str) -> None:
-    place = find_place(map_name, case)
+    place = find_scenario(map_name, case)
     assert place.case is not None
     assert place.driven is not None
     parsed = parse_ros_arguments(controller_arguments(place))
@@ -152,7 +160,7 @@ class Outcome:
 
 
 def at_the_desk(map_name: str, case: str | None, controller: ControllerFile, seconds: float) -> Outcome:
-    with Session(find_place(map_name, case), seed=1) as session:
+    with Session(find_scenario(map_name, case), seed=1) as session:
         session.drive_with(controller)
         session.wait_until_driven()
         ends = (when_failed(session), when_reached(session.metrics))
@@ -197,7 +205,7 @@ def test_the_same_metrics_and_end_everywhere(
 
 
 def test_arrival_is_at_most_the_radius() -> None:
-    place = find_place("simple")
+    place = find_scenario("simple")
     assert place.case is not None
     assert place.robot is not None
     with Session(place) as session:
@@ -214,7 +222,7 @@ def test_arrival_is_at_most_the_radius() -> None:
 
 
 def test_both_of_a_pair_must_arrive() -> None:
-    place = find_place("pair_straight")
+    place = find_scenario("pair_straight")
     assert place.case is not None
     left, right = place.partners
     with Session(place) as session:
@@ -266,11 +274,11 @@ def test_an_end_that_is_met_by_the_last_tick_counts() -> None:
 
 def test_a_world_without_a_robot_has_no_arguments(tmp_path: Path) -> None:
     (tmp_path / "world.yaml").write_text("properties: {}\nlayers: []\nmodels: []\n")
-    assert controller_arguments(place_in_file(tmp_path / "world.yaml")) == []
+    assert controller_arguments(scenario_in_file(tmp_path / "world.yaml")) == []
 
 
 def test_home_may_be_elsewhere() -> None:
-    words = controller_arguments(find_place("simple"), Pose(0.5, -0.25, 1.0))
+    words = controller_arguments(find_scenario("simple"), Pose(0.5, -0.25, 1.0))
     assert "home:=[0.5, -0.25, 1.0]" in words
 
 

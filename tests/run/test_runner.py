@@ -17,7 +17,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.recording import Recorder, Recording, RecordingError, load, rerun, save
 from kit.run.runner import Runner
-from kit.run.scenario import place_on_map
+from kit.run.scenario import scenario_on_map
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 from kit.world.records import World
@@ -25,7 +25,7 @@ from kit.world.records import World
 
 @pytest.fixture(scope="module")
 def maze() -> World:
-    return place_on_map(find_map("maze")).world
+    return scenario_on_map(find_map("maze")).world
 
 
 def build(world: World, seed: int = 0) -> Runner:

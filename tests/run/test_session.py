@@ -14,9 +14,9 @@ import pytest
 from kit.controllers import find_controller, kit_controllers, prepare_workspace, user_controllers
 from kit.run.headless import run_headless
 from kit.run.recording import load, rerun
-from kit.run.scenario import find_place, place_on_map
+from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
-from kit.run.view import SIDES, Showing, clock
+from kit.run.view import ROBOT_SIDES, ViewBuilder, format_clock
 from kit.world.catalogue import UnknownMap, all_maps, find_map
 
 DRIVER = """
@@ -52,7 +52,7 @@ def run(session: Session, seconds: float, *, until: Callable[[], object] | None 
     ticks = round(seconds / 0.01)
     while ticks > 0 or (until is not None and not until()):
         session.runner.tick()
-        session.look_around()
+        session.poll()
         ticks -= 1
         if ticks <= 0 and until is not None:
             time.sleep(0.002)
@@ -60,14 +60,14 @@ def run(session: Session, seconds: float, *, until: Callable[[], object] | None 
 
 
 def speed(session: Session) -> float:
-    assert session.place.robot
+    assert session.scenario.robot
     vx, vy, _ = session.runner.simulation.state().bodies[0].velocity
     return float(np.hypot(vx, vy))
 
 
 @pytest.mark.parametrize("name", [each.name for each in kit_controllers()])
 def test_every_controller_of_the_kit_drives(name: str) -> None:
-    with Session(place_on_map(find_map("simple")), seed=1) as session:
+    with Session(scenario_on_map(find_map("simple")), seed=1) as session:
         session.drive_with(find_controller(name))
         session.wait_until_driven()
         session.keys.publish(["p_up"])
@@ -79,7 +79,7 @@ def test_every_controller_of_the_kit_drives(name: str) -> None:
 def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
     desk = prepare_workspace(tmp_path / "desk")
     (mine,) = user_controllers(desk.controllers)
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(mine)
         session.wait_until_driven()
         run(session, 1.0)
@@ -92,7 +92,7 @@ def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
 
 
 def test_the_robot_stops_when_its_controller_does(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(
             find_controller(str(write(tmp_path, 0.2, "if self.count == 10: raise ValueError('tired')")))
         )
@@ -107,7 +107,7 @@ def test_the_robot_stops_when_its_controller_does(tmp_path: Path) -> None:
 
 
 def test_nobody_drives_any_more(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path))))
         session.wait_until_driven()
         run(session, 0.2)
@@ -118,7 +118,7 @@ def test_nobody_drives_any_more(tmp_path: Path) -> None:
 
 
 def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         file = write(tmp_path, 0.1)
         session.drive_with(find_controller(str(file)))
         session.wait_until_driven()
@@ -134,7 +134,7 @@ def test_a_broken_new_version_leaves_the_old_one_at_the_wheel(tmp_path: Path) ->
 
 def test_what_a_controller_prints_and_logs_is_heard(tmp_path: Path) -> None:
     more = "print('by hand') if self.count == 1 else self.get_logger().warning('by the logger')"
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.1, more))))
         session.wait_until_driven()
         run(session, 0.5, until=lambda: len(session.messages) > 3)
@@ -144,7 +144,7 @@ def test_what_a_controller_prints_and_logs_is_heard(tmp_path: Path) -> None:
 
 
 def test_keys_pressed_before_the_listener_came_are_told_to_it() -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.keys.publish(["p_up", "p_left", "r_left"])
         session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
@@ -156,7 +156,7 @@ def test_keys_pressed_before_the_listener_came_are_told_to_it() -> None:
 
 
 def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
-    with Session(place_on_map(find_map("maze"))) as session:
+    with Session(scenario_on_map(find_map("maze"))) as session:
         session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         start = session.runner.simulation.pose("serp")
@@ -176,7 +176,7 @@ def test_teleop_slows_near_a_wall_and_goes_home_after_a_bump() -> None:
 
 
 def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.3))))
         session.wait_until_driven()
         run(session, 1.0)
@@ -191,7 +191,7 @@ def test_a_reset_starts_everything_anew(tmp_path: Path) -> None:
 def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
     def fingerprint(seed: int) -> str:
         return run_headless(
-            find_place("maze"), find_controller("random_walk"), steps=1500, seed=seed
+            find_scenario("maze"), find_controller("random_walk"), steps=1500, seed=seed
         ).fingerprint
 
     assert fingerprint(3) == fingerprint(3) != fingerprint(4)
@@ -199,14 +199,14 @@ def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
 
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_place("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
+    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
     recording = load(file)
-    again = rerun(recording, find_place(recording.place, recording.case).world)
+    again = rerun(recording, find_scenario(recording.place, recording.case).world)
     assert np.array_equal(again.poses, recording.poses)
 
 
 def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
-    place = find_place("hall_straight")
+    place = find_scenario("hall_straight")
     summary = run_headless(place, find_controller(str(write(tmp_path, 0.3))), steps=2000, until_reached=True)
     assert place.case is not None
     assert summary.metrics.reached_s is not None
@@ -218,7 +218,7 @@ def test_the_target_is_reached_by_the_hull(tmp_path: Path) -> None:
 
 
 def test_a_controller_is_in_the_namespace_of_its_robot(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("pair_straight"))) as session:
+    with Session(scenario_on_map(find_map("pair_straight"))) as session:
         session.drive_with(find_controller(str(write(tmp_path))))
         session.wait_until_driven()
         run(session, 1.0)
@@ -236,7 +236,7 @@ def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> No
         "self.right = getattr(self, 'right', None) or self.create_publisher(Twist, '/right/cmd_vel', 10); "
         "self.right.publish(command)"
     )
-    with Session(place_on_map(find_map("pair_straight"))) as session:
+    with Session(scenario_on_map(find_map("pair_straight"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.2, both))))
         session.wait_until_driven()
         run(session, 0.5)
@@ -250,10 +250,10 @@ def test_a_robots_partner_stops_with_it_when_nobody_drives(tmp_path: Path) -> No
 
 
 def test_hanging_up_frees_a_tick_that_waits_for_a_controller(tmp_path: Path) -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         session.drive_with(find_controller(str(write(tmp_path, 0.2, "while self.count == 3: pass"))))
         session.wait_until_driven()
-        timer = threading.Timer(0.5, session.hang_up)
+        timer = threading.Timer(0.5, session.disconnect)
         timer.start()
         start = time.monotonic()
         run(session, 1.0)
@@ -262,7 +262,7 @@ def test_hanging_up_frees_a_tick_that_waits_for_a_controller(tmp_path: Path) -> 
 
 
 def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         run(session, 0.05)
         for x in (0.01, 0.5, -0.5):
             session.runner.call_service("move_model", "serp", (x, 0.0, 0.0))
@@ -271,7 +271,7 @@ def test_a_robot_that_is_put_elsewhere_has_not_driven_there() -> None:
 
 
 def test_the_drivers_stand_in_the_order_of_the_file() -> None:
-    place = place_on_map(find_map("pair_straight"))
+    place = scenario_on_map(find_map("pair_straight"))
     models = place.world.models
     more = tuple(replace(models[0], name=f"r{i}", namespace=f"r{i}") for i in range(20))
     crowd = replace(place, world=replace(place.world, models=(*more, *models)), case=None)
@@ -283,21 +283,21 @@ def test_a_map_goes_before_a_folder_of_its_name(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "maze").mkdir()
     (tmp_path / "maze" / "world.yaml").write_text("properties: {}\nlayers: []\n")
     monkeypatch.chdir(tmp_path)
-    assert find_place("maze").case is not None
-    assert find_place("./maze").case is None
+    assert find_scenario("maze").case is not None
+    assert find_scenario("./maze").case is None
 
 
 def test_a_place_is_found_by_name_case_folder_or_file() -> None:
     card = find_map("turn")
-    assert find_place("turn").case == card.cases[0]
-    assert find_place("turn", card.cases[1].name).case == card.cases[1]
-    assert find_place("turn", card.cases[1].name).start == card.cases[1].start
-    assert find_place(str(card.folder), root=card.root).robot == "serp"
-    assert find_place(str(card.world_file), root=card.root).world.models
+    assert find_scenario("turn").case == card.cases[0]
+    assert find_scenario("turn", card.cases[1].name).case == card.cases[1]
+    assert find_scenario("turn", card.cases[1].name).start == card.cases[1].start
+    assert find_scenario(str(card.folder), root=card.root).robot == "serp"
+    assert find_scenario(str(card.world_file), root=card.root).world.models
     with pytest.raises(LookupError, match="turn_a_to_b"):
-        find_place("turn", "nowhere")
+        find_scenario("turn", "nowhere")
     with pytest.raises(UnknownMap, match="maze"):
-        find_place("maz")
+        find_scenario("maz")
 
 
 @pytest.mark.parametrize("card", all_maps(), ids=lambda card: card.name)
@@ -306,12 +306,12 @@ def test_every_case_of_every_map_can_be_shown(card: object) -> None:
 
     assert isinstance(card, MapCard)
     for case in card.cases:
-        with Session(place_on_map(card, case), watched=True) as session:
+        with Session(scenario_on_map(card, case), always_scan=True) as session:
             session.runner.tick()
-            view = Showing(session).view()
+            view = ViewBuilder(session).build()
         assert view.pose == pytest.approx(case.start, abs=1e-6)
         assert view.scene.robots
-        assert [side for side, _ in view.nearest] == [side for side, _ in SIDES]
+        assert [side for side, _ in view.nearest] == [side for side, _ in ROBOT_SIDES]
 
 
 @pytest.mark.parametrize(
@@ -319,4 +319,4 @@ def test_every_case_of_every_map_can_be_shown(card: object) -> None:
     [(0.0, 1, "0:00.0"), (59.99, 1, "0:59.9"), (60.0, 1, "1:00.0"), (61.234, 2, "1:01.23")],
 )
 def test_clock(seconds: float, digits: int, text: str) -> None:
-    assert clock(seconds, digits) == text
+    assert format_clock(seconds, digits) == text

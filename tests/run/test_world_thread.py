@@ -9,10 +9,10 @@ from collections.abc import Callable
 import pytest
 
 from kit.ros.graph.graph import Graph
-from kit.run.pacing import CATCH_UP, MAXIMUM, Meter, Schedule
+from kit.run.pacing import CATCH_UP, MAXIMUM, Schedule, SpeedMeter
 from kit.run.runner import Runner
-from kit.run.scenario import place_on_map
-from kit.run.world_thread import LiveRun
+from kit.run.scenario import scenario_on_map
+from kit.run.world_thread import WorldThread
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
 
@@ -49,7 +49,7 @@ def test_as_fast_as_it_goes_is_always_due() -> None:
 
 
 def test_the_meter_says_what_was_reached() -> None:
-    meter = Meter()
+    meter = SpeedMeter()
     for step in range(1, 300):
         meter.add(0.05, step * 0.01)
     assert meter.factor == pytest.approx(5.0, rel=0.05)
@@ -67,11 +67,11 @@ def until(condition: Callable[[], object]) -> None:
 @pytest.fixture
 def runner() -> Runner:
     graph = Graph()
-    return Runner(Simulation(place_on_map(find_map("gate")).world), graph)
+    return Runner(Simulation(scenario_on_map(find_map("gate")).world), graph)
 
 
 def test_it_pauses_steps_and_goes_on(runner: Runner) -> None:
-    with LiveRun(runner, factor=MAXIMUM, on_change=lambda runner: None) as live:
+    with WorldThread(runner, factor=MAXIMUM, on_change=lambda runner: None) as live:
         until(lambda: runner.simulation.tick > 100)
         live.set_paused(True)
         until(lambda: live.pacing.paused)
@@ -84,7 +84,7 @@ def test_it_pauses_steps_and_goes_on(runner: Runner) -> None:
 
 def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) -> None:
     threads: list[str] = []
-    with LiveRun(runner, on_change=lambda runner: None) as live:
+    with WorldThread(runner, on_change=lambda runner: None) as live:
         live.set_paused(True)
         until(lambda: live.pacing.paused)
         live.post(lambda runner: threads.append(threading.current_thread().name))
@@ -93,7 +93,7 @@ def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) ->
 
 
 def test_real_time_is_kept(runner: Runner) -> None:
-    with LiveRun(runner, on_change=lambda runner: None):
+    with WorldThread(runner, on_change=lambda runner: None):
         start, tick = time.monotonic(), runner.simulation.tick
         time.sleep(1.0)
         passed = time.monotonic() - start
@@ -103,7 +103,7 @@ def test_real_time_is_kept(runner: Runner) -> None:
 
 def test_a_job_that_fails_ends_the_run_and_is_told(runner: Runner) -> None:
     changes: list[int] = []
-    with LiveRun(runner, on_change=lambda runner: changes.append(runner.simulation.tick)) as live:
+    with WorldThread(runner, on_change=lambda runner: changes.append(runner.simulation.tick)) as live:
 
         def fail(runner: Runner) -> None:
             raise ValueError("no")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from kit.controllers import find_controller
-from kit.run.scenario import Place, find_place
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.recording import Recorder, Recording, save
 from kit.run.session import Session
 
@@ -47,7 +47,7 @@ STILL: Final = Leg("", 0.5)
 AGAIN: Final = Leg("reset", 0.0)
 
 
-def driven(place: Place, legs: Sequence[Leg], seed: int = 0) -> Recording:
+def driven(place: Scenario, legs: Sequence[Leg], seed: int = 0) -> Recording:
     """What the screen would have kept: keys to teleop, teleop to the wheels."""
     with Session(place, seed=seed) as session:
         case = place.case.name if place.case else None
@@ -90,7 +90,7 @@ def main() -> None:
         folder = (LESSONS if where else FOLDER) / "01-drive" / "flag"
         file = folder / f"{stem}.npz"
         file.parent.mkdir(parents=True, exist_ok=True)
-        save(driven(find_place(place), legs), file)
+        save(driven(find_scenario(place), legs), file)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller
-from kit.run.scenario import Place, find_place, place_in_file
+from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.study.pairs import (
     START_SHIFT,
     TABLE_46,
@@ -27,8 +27,8 @@ NINETY = {"pair_turn_left_90": 0.54, "pair_turn_right_90": 0.62}
 """The dissertation's adjacency."""
 
 
-def at(printed: PrintedPairResult) -> Place:
-    return find_place(printed.map, printed.case)
+def at(printed: PrintedPairResult) -> Scenario:
+    return find_scenario(printed.map, printed.case)
 
 
 @pytest.mark.parametrize("printed", [pytest.param(each, id=each.case) for each in (*TABLE_46, *TABLE_53)])
@@ -56,7 +56,7 @@ def test_the_dissertations_controller_where_it_succeeds(printed: PrintedPairResu
 
 @pytest.mark.parametrize("case", ["pair_turn_left_180", "pair_turn_right_180"])
 def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown(case: str) -> None:
-    found = run_once(find_place("pair_turn_180", case), find_controller("fields"))
+    found = run_once(find_scenario("pair_turn_180", case), find_controller("fields"))
     assert found.end == "stuck"
     assert "trap" in found.why
     assert "46%" in found.why
@@ -64,14 +64,14 @@ def test_the_dissertations_controller_fails_where_it_did_and_the_reason_is_shown
 
 
 def test_the_same_seed_is_the_same_run() -> None:
-    place = shift_starts(find_place("pair_straight"), 5, 1)
+    place = shift_starts(find_scenario("pair_straight"), 5, 1)
     assert run_once(place, find_controller("abreast"), seed=7) == run_once(
         place, find_controller("abreast"), seed=7
     )
 
 
 def test_starts_differ_a_little_but_for_the_first() -> None:
-    place = find_place("pair_turn")
+    place = find_scenario("pair_turn")
     assert shift_starts(place, 3, 0).starts == place.starts
     moved = shift_starts(place, 3, 1)
     assert moved.starts == shift_starts(place, 3, 1).starts
@@ -96,18 +96,18 @@ def test_a_collision_says_who_touched_what(tmp_path: Path) -> None:
         "        for drive in self.drives:\n"
         "            drive.publish(command)\n"
     )
-    found = run_once(find_place("pair_turn"), find_controller(str(straight)))
+    found = run_once(find_scenario("pair_turn"), find_controller(str(straight)))
     assert found.end == "collided"
     assert "touched a wall" in found.why
 
 
 def test_where_no_way_is_wide_enough_it_says_so_and_does_not_drive(tmp_path: Path) -> None:
-    pair, door = find_place("pair_straight"), maps_folder() / "hall_center_door"
+    pair, door = find_scenario("pair_straight"), maps_folder() / "hall_center_door"
     for file in (*door.glob("map.*"), *(maps_folder() / "robots").glob("*.yaml")):
         shutil.copy(file, tmp_path)
     text = pair.world.file.read_text()
     (tmp_path / "world.yaml").write_text(text.replace("../hall_straight/", "").replace("../robots/", ""))
-    narrow = replace(place_in_file(tmp_path / "world.yaml"), case=pair.case, robot="left")
+    narrow = replace(scenario_in_file(tmp_path / "world.yaml"), case=pair.case, robot="left")
     found = run_once(narrow, find_controller("abreast"))
     assert found.end == "stuck"
     assert "Not driving. No way" in found.why
@@ -128,7 +128,7 @@ def test_a_summary_counts_ways_to_fail() -> None:
 def test_runs_are_told_as_they_end() -> None:
     told: list[int] = []
     found = run_repeatedly(
-        find_place("pair_straight"),
+        find_scenario("pair_straight"),
         find_controller("abreast"),
         runs=2,
         on_run=lambda number, _: told.append(number),

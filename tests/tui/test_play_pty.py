@@ -17,7 +17,7 @@ import kit as kit_package
 from kit.controllers import find_controller
 from kit.run.headless import run_headless
 from kit.run.recording import load, rerun
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
 from tests.tui.widgets.test_world_view_pty import run_on
@@ -238,7 +238,7 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
 
 def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_place("maze"), find_controller("random_walk"), steps=150, seed=2, record=file)
+    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=150, seed=2, record=file)
     terminal = kit("replay", str(file))
     assert "run.npz" in terminal.text or "maze" in terminal.text
     terminal.until(lambda: "0:01.50" in terminal.text, "the end")
@@ -258,7 +258,7 @@ def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) 
     assert terminal.wait() == 0
     recording = load(file)
     assert (recording.place, recording.case) == ("simple", "simple")
-    assert (rerun(recording, find_place("simple").world).poses == recording.poses).all()
+    assert (rerun(recording, find_scenario("simple").world).poses == recording.poses).all()
 
 
 def test_the_keys_drive_a_robot_in_a_namespace(kit: Open) -> None:

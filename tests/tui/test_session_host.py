@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from kit.controllers import find_controller
-from kit.run.scenario import Place, find_place
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.view import View
 from kit.tui.session_host import SessionHost
 
@@ -38,16 +38,16 @@ def face() -> Iterator[Face]:
 
 def test_one_world_takes_the_place_of_another(face: Face) -> None:
     for name in ("simple", "maze"):
-        face.host.open(lambda name=name: find_place(name), find_controller("forward"))  # type: ignore[misc]  # mypy on lambdas
-        face.until(lambda name=name: face.views and face.views[-1].place == name)  # type: ignore[misc]  # same
+        face.host.open(lambda name=name: find_scenario(name), find_controller("forward"))  # type: ignore[misc]  # mypy on lambdas
+        face.until(lambda name=name: face.views and face.views[-1].title == name)  # type: ignore[misc]  # same
     face.until(lambda: face.views[-1].time_s > 0.2)
     assert not face.troubles
 
 
 def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
-    face.host.open(lambda: find_place("simple"), find_controller("forward"))
+    face.host.open(lambda: find_scenario("simple"), find_controller("forward"))
     face.until(lambda: face.views)
-    face.host.open(lambda: find_place("nowhere"), find_controller("forward"))
+    face.host.open(lambda: find_scenario("nowhere"), find_controller("forward"))
     face.until(lambda: face.troubles)
     assert "nowhere" in face.troubles[0]
     seen = len(face.views)
@@ -57,10 +57,10 @@ def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
 def test_closing_does_not_wait_for_a_world_that_is_being_opened(face: Face) -> None:
     begun, opened = threading.Event(), threading.Event()
 
-    def slowly() -> Place:
+    def slowly() -> Scenario:
         begun.set()
         opened.wait(20)
-        return find_place("simple")
+        return find_scenario("simple")
 
     face.host.open(slowly, find_controller("forward"))
     assert begun.wait(20)
@@ -86,7 +86,7 @@ def test_closing_does_not_wait_for_a_controller_that_does_not_come_back(
         "        self.get_logger().info('now')\n"
         "        while True: pass\n"
     )
-    face.host.open(lambda: find_place("simple"), find_controller(str(file)))
+    face.host.open(lambda: find_scenario("simple"), find_controller(str(file)))
     face.until(lambda: face.views and face.views[-1].time_s > 0.05)
     time.sleep(0.5)
     start = time.monotonic()

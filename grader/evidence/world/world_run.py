@@ -25,7 +25,7 @@ from kit.run.episode import EndReason, controller_arguments, run_until, when_fai
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
 from kit.run.runner import Runner
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import MapCase
 from kit.world.records import Circle, Model, World
@@ -118,7 +118,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     case = None
     if spec.target is not None and model is not None:
         case = MapCase("", model.pose, spec.target, spec.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    scenario = Place(str(world.file), "", world, None if model is None else model.name, case)
+    scenario = Scenario(str(world.file), "", world, None if model is None else model.name, case)
     metrics, path_recorder, topic_recorder = (
         MetricsRecorder.for_scenario(scenario),
         PathRecorder(model, world),
@@ -156,7 +156,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
 
 
 def _drive(
-    runner: Runner, metrics: MetricsRecorder, spec: WorldRunSpec, scenario: Place, drives: bool
+    runner: Runner, metrics: MetricsRecorder, spec: WorldRunSpec, scenario: Scenario, drives: bool
 ) -> str:
     """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
     with ExitStack() as stack:

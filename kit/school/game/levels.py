@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.run.scenario import Place, find_place
+from kit.run.scenario import Scenario, find_scenario
 from kit.school.lessons.reading import lessons_folder
 from kit.world.documents import WorldDocuments
 from kit.world.files import AllowedRoot
@@ -40,9 +40,9 @@ class GameLevel:
     row: int
     """On the map of levels: how many levels come before it at least."""
 
-    def find_scenario(self) -> Place:
+    def find_scenario(self) -> Scenario:
         """Where it is driven. Raises LookupError and WorldError."""
-        return find_place(self.map_name, self.case, None)
+        return find_scenario(self.map_name, self.case, None)
 
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:

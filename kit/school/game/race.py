@@ -19,7 +19,7 @@ from kit.run.episode import EndCondition, EndReason, run_until, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.school.game.reference_driver import ReferenceDriver
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 TIME_LIMIT_PARS: Final = 6.0
 """A drive ends when it has taken so many times the level's par."""
-LISTEN_EVERY: Final = 10
+OUTPUT_INTERVAL: Final = 10
 """Ticks after which the program's output is read."""
 MAX_SPEED: Final = 1.05
 """m/s that the robot may be driven at: it could be told more, but no such robot would do it."""
@@ -84,13 +84,13 @@ class RaceFinish:
 class RaceReferee(Observer):
     """Watches a runner's ticks: when all who drive have reached the target, and how often they touched something."""
 
-    def __init__(self, place: Place) -> None:
-        self._place = place
+    def __init__(self, scenario: Scenario) -> None:
+        self._scenario = scenario
         self._last_tick = -1
         self._reset()
 
     def _reset(self) -> None:
-        self._metrics = MetricsRecorder.for_scenario(self._place)
+        self._metrics = MetricsRecorder.for_scenario(self._scenario)
         self._seconds = 0.0
         self._foul = ""
         self._positions: dict[str, tuple[float, float]] = {}
@@ -112,7 +112,7 @@ class RaceReferee(Observer):
         """Whoever changes the world does not race in it."""
         if service in ALLOWED_SERVICES[1:] or self._metrics.all_reached_s is not None:
             return
-        homes = dict(zip(self._place.partners, self._place.starts, strict=True))
+        homes = dict(zip(self._scenario.partners, self._scenario.starts, strict=True))
         if service != ALLOWED_SERVICES[0] or tuple(arguments[1]) != tuple(homes.get(arguments[0], ())):
             self._foul = f"the world was changed during the race ({service})"
 
@@ -124,7 +124,7 @@ class RaceReferee(Observer):
         if self._metrics.all_reached_s is not None:
             return
         self._metrics.on_step(simulation)
-        for name in self._place.partners:
+        for name in self._scenario.partners:
             pose = simulation.pose(name)
             before = self._positions.get(name, (pose.x, pose.y))
             stride = math.hypot(pose.x - before[0], pose.y - before[1])
@@ -135,11 +135,11 @@ class RaceReferee(Observer):
 
 def drive_reference(level: GameLevel) -> tuple[RaceFinish, Recording]:
     """The drive to be measured against: the guide's for one robot, the kit's own controller's for two."""
-    place = level.find_scenario()
-    if len(place.partners) > 1:
+    scenario = level.find_scenario()
+    if len(scenario.partners) > 1:
         return race_controller(level, find_controller(PAIR_DRIVER))
     return _run_race(
-        level, place, lambda session: session.runner.participants.append(ReferenceDriver(session))
+        level, scenario, lambda session: session.runner.participants.append(ReferenceDriver(session))
     )
 
 
@@ -173,11 +173,11 @@ def race_agent(
 
 def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
     """How a recorded drive of the level ended: it is run again, to the bit. ValueError if it is of another level."""
-    place = level.find_scenario()
-    if (recording.place, recording.case) != (place.name, level.case):
+    scenario = level.find_scenario()
+    if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
-    with Session(place, seed=recording.seed, step_size=recording.step_size) as session:
-        referee = RaceReferee(place)
+    with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
+        referee = RaceReferee(scenario)
         session.runner.observers.append(referee)
         session.play_back(recording)
         run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
@@ -186,21 +186,21 @@ def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
 
 def _run_race(
     level: GameLevel,
-    place: Place,
+    scenario: Scenario,
     install_driver: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
     confinement: Confinement = DESK_LEVEL,
 ) -> tuple[RaceFinish, Recording]:
-    with Session(place, seed=SEED, level=confinement) as session:
+    with Session(scenario, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation
-        referee, recorder = RaceReferee(place), Recorder(place.name, level.case, simulation)
+        referee, recorder = RaceReferee(scenario), Recorder(scenario.name, level.case, simulation)
         session.runner.observers += [referee, recorder]
         install_driver(session)
         step = simulation.step_size
 
         def listen(tick: int) -> None:
-            if tick % LISTEN_EVERY == 0:
-                session.listen()
+            if tick % OUTPUT_INTERVAL == 0:
+                session.read_output()
                 if on_second is not None:
                     on_second(tick * step)
 

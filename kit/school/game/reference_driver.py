@@ -14,7 +14,7 @@ from kit.geometry import wrap_angle
 from kit.learning.environment.batch_map import BatchMap, batch_map_of_world
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.run.session import Session
 
 MAX_SPEED: Final = 0.5
@@ -42,7 +42,7 @@ class ReferenceDriver:
 
     def __init__(self, session: Session) -> None:
         """Raises ValueError where the place has no robot or no target, or a world the way cannot be found in."""
-        place = session.place
+        place = session.scenario
         if place.robot is None or place.case is None:
             raise ValueError(f"{place.title}: nothing says from where to where")
         self._session = session
@@ -93,5 +93,5 @@ class ReferenceDriver:
         return AimPoint(corner[0] + CELL * column, corner[1] + CELL * row)
 
 
-def _batch_map(place: Place) -> BatchMap:
+def _batch_map(place: Scenario) -> BatchMap:
     return batch_map_of_world(place.world, place.name, (place.robot,))

@@ -6,8 +6,8 @@ import math
 import textwrap
 
 from kit.ros.log import LoggingSeverity, LogRecord
-from kit.run.pacing import MAXIMUM, Pacing
-from kit.run.view import View, clock
+from kit.run.pacing import MAXIMUM, PacingStatus
+from kit.run.view import View, format_clock
 from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 PANEL_WIDTH = 22
@@ -15,22 +15,29 @@ PANEL_WIDTH = 22
 _LOUD = {LoggingSeverity.WARN: "warn", LoggingSeverity.ERROR: "bad", LoggingSeverity.FATAL: "bad"}
 
 
-def heading(view: View, pacing: Pacing, width: int) -> Row:
+def heading(view: View, pacing: PacingStatus, width: int) -> Row:
     """Map and controller on the left; state, speed and time on the right."""
     who = view.controller or "nobody drives"
-    left = row((view.place, "bold"), "  ", who)
+    left = row((view.title, "bold"), "  ", who)
     return spread(
-        left, (*_state(view, pacing), (f"  {clock(view.time_s, 2 if view.paused else 1)}", "bold")), width
+        left,
+        (*_state(view, pacing), (f"  {format_clock(view.time_s, 2 if view.paused else 1)}", "bold")),
+        width,
     )
 
 
-def _state(view: View, pacing: Pacing) -> Row:
+def _state(view: View, pacing: PacingStatus) -> Row:
     if view.paused:
         return row(("paused", "warn"))
     asked = "max" if pacing.factor == MAXIMUM else f"x{pacing.factor:g}"
     return row(
         f"speed {asked}",
-        ("" if not pacing.reached else f" (x{pacing.reached:.{1 if pacing.reached < 100 else 0}f})", "dim"),
+        (
+            ""
+            if not pacing.actual_factor
+            else f" (x{pacing.actual_factor:.{1 if pacing.actual_factor < 100 else 0}f})",
+            "dim",
+        ),
     )
 
 
@@ -89,7 +96,7 @@ def said(view: View, rows: int, width: int) -> tuple[Row, ...]:
 
 
 def _message(record: LogRecord, width: int) -> Row:
-    head = f"{clock(record.time_ns / 1e9):>7} {record.name}: "
+    head = f"{format_clock(record.time_ns / 1e9):>7} {record.name}: "
     text: StyledText = (
         record.text.partition("\n")[0][: max(0, width - len(head))],
         _LOUD.get(record.severity, ""),

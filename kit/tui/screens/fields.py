@@ -28,7 +28,7 @@ from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
     from kit.controllers.tuning import ParameterTuner
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
 
 STEP: Final = 1.1
@@ -49,7 +49,7 @@ class ArrowSource(Enum):
 class _FieldSetup:
     """What was made for one session's place."""
 
-    place: Place
+    place: Scenario
     picture: FieldPicture
     tuner: ParameterTuner
 
@@ -133,7 +133,7 @@ class FieldsScreen(PlayScreen):
     def _attend(self, session: Session) -> None:
         """Makes the picture of another place, and keeps the controller's intensities as they are on the screen."""
         opened = self._opened
-        if opened is None or opened.place is not session.place:
+        if opened is None or opened.place is not session.scenario:
             opened = self._open(session)
         if opened is not None:
             values = asdict(opened.picture.intensities)
@@ -143,7 +143,7 @@ class FieldsScreen(PlayScreen):
         from kit.controllers.tuning import ParameterTuner
         from kit.world.problems import WorldError
 
-        place = session.place
+        place = session.scenario
         if place.case is None:
             self.host.set_listener(None)
             self._error_arrived(
@@ -230,5 +230,5 @@ class FieldsScreen(PlayScreen):
         return rows
 
 
-def _with_charges(find: Callable[[], Place], charges: Path) -> Place:
+def _with_charges(find: Callable[[], Scenario], charges: Path) -> Scenario:
     return replace(find(), charges=charges)

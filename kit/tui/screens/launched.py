@@ -106,7 +106,7 @@ class LaunchScreen(WatchScreen):
             launch.load()
             self.has_no_world = launch.world is None
             if not self.has_no_world:
-                self._session = session = LaunchSession(launch, seed=self._seed, watched=True)
+                self._session = session = LaunchSession(launch, seed=self._seed, always_scan=True)
                 for line in self._early:
                     self._said(line)
                 launch.start_processes()
@@ -128,4 +128,4 @@ class LaunchScreen(WatchScreen):
         if self._session is None:
             self._early.append(line)
         else:
-            self._session.note(line.text, line.program)
+            self._session.log_line(line.text, line.program)

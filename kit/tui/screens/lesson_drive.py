@@ -19,7 +19,7 @@ from kit.tui.widgets.text_rows import Row, row
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.school.lessons.records import LessonScene
     from kit.tui.theme import Theme
@@ -86,11 +86,11 @@ class RecordedDriveScreen(WatchScreen):
         self.host.set_paused(True)
         self.host.open(self._place, self._teleop, paused=True)
 
-    def _place(self) -> Place:
+    def _place(self) -> Scenario:
         """In the helper thread."""
-        from kit.run.scenario import find_place
+        from kit.run.scenario import find_scenario
 
-        return find_place(self._scene.map_name, self._scene.case)
+        return find_scenario(self._scene.map_name, self._scene.case)
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)

@@ -19,7 +19,7 @@ from kit.tui.widgets.text_rows import Row, row
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.records import LessonStep
     from kit.tui.exercise_model import ExerciseModel
@@ -250,13 +250,13 @@ class ExerciseActions(Screen[None]):
         self._notice = row(text)
 
 
-def _load(file: Path) -> tuple[Recording, Place]:
+def _load(file: Path) -> tuple[Recording, Scenario]:
     """In another thread: the physics takes a moment to import."""
     from kit.run.recording import load
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
 
     recording = load(file)
-    return recording, find_place(recording.place, recording.case)
+    return recording, find_scenario(recording.place, recording.case)
 
 
 def _log_lines(model: ExerciseModel) -> list[str]:

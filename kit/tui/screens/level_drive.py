@@ -16,7 +16,7 @@ from textual.message import Message
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
 from kit.render.scene import Mark, Path, Scene
-from kit.run.view import clock
+from kit.run.view import format_clock
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel
@@ -31,7 +31,7 @@ from kit.tui.screens.watch import WatchScreen
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.tui.theme import Theme
     from kit.workspace import Workspace
@@ -124,7 +124,7 @@ class LevelDrive(WatchScreen):
         self._judge, self._is_over, self.view, self._said = None, False, None, ()
         place = self._level.find_scenario()
         self.host.open(lambda: place, find_controller(TWO if len(place.partners) > 1 else ONE), paused=True)
-        self._place: Place = place
+        self._place: Scenario = place
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
@@ -162,7 +162,7 @@ class LevelDrive(WatchScreen):
         left = row((self._level.title, "bold"), f"  par {self._level.par:g} s")
         bumps = 0 if judge is None else judge.finish.bumps
         self._rows("heading").show(
-            [spread(left, row(f"bumps {bumps}  ", (clock(view.time_s), "bold")), self.size.width)]
+            [spread(left, row(f"bumps {bumps}  ", (format_clock(view.time_s), "bold")), self.size.width)]
         )
         if judge is None:
             ghosts = ", ".join(f"{LETTERS.get(each.name, 'G')} {each.seconds:.1f} s" for each in self._ghosts)

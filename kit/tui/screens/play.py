@@ -22,7 +22,7 @@ from kit.world.catalogue import all_maps
 
 if TYPE_CHECKING:
     from kit.learning.training.runs import TrainingRun
-    from kit.run.scenario import Place
+    from kit.run.scenario import Scenario
     from kit.run.session import Session
 
 TELEOP: Final = "teleop"
@@ -61,7 +61,7 @@ class PlayScreen(WatchScreen):
         self._theme = theme
         self._runs = runs
         self._folder = folder
-        self._find = partial(_find_place, place, case, root)
+        self._find = partial(_find_scenario, place, case, root)
         self._controller = find_controller(controller, folder)
         self._before_takeover: ControllerFile | None = None
         self._teleop = find_controller(TELEOP)
@@ -94,7 +94,7 @@ class PlayScreen(WatchScreen):
         from kit.tui.screens.graph import GraphScreen  # of no use to the first frame
 
         if self.view is not None:
-            self.app.push_screen(GraphScreen(self._theme, self.host, self.view.place))
+            self.app.push_screen(GraphScreen(self._theme, self.host, self.view.title))
 
     @work
     async def action_maps(self) -> None:
@@ -109,7 +109,7 @@ class PlayScreen(WatchScreen):
         chosen = await self.app.push_screen_wait(Picker("Maps", choices))
         if chosen is not None:
             name, _, case = chosen.partition("/")
-            self._find = partial(_find_place, name, case)
+            self._find = partial(_find_scenario, name, case)
             self.host.open(self._find, self._controller)
 
     @work
@@ -154,8 +154,8 @@ def _trainings(folder: Path) -> dict[str, tuple[TrainingRun, str]]:
     return found
 
 
-def _find_place(name: str, case: str | None, root: Path | None = None) -> Place:
+def _find_scenario(name: str, case: str | None, root: Path | None = None) -> Scenario:
     """Called in the helper thread, which imports the physics while the frame is on the screen already."""
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
 
-    return find_place(name, case, root)
+    return find_scenario(name, case, root)

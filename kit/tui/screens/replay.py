@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kit.run.recording import Recording
-from kit.run.scenario import Place
+from kit.run.scenario import Scenario
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.screens.watch_keys import REPLAY_HELP, REPLAY_KEYS
 from kit.tui.theme import Theme
@@ -21,7 +21,7 @@ class ReplayScreen(WatchScreen):
     help = REPLAY_HELP
     shows_mode = False
 
-    def __init__(self, theme: Theme, place: Place, recording: Recording, title: str) -> None:
+    def __init__(self, theme: Theme, place: Scenario, recording: Recording, title: str) -> None:
         super().__init__(theme, f"{place.title}, {title}", seed=recording.seed)
         self._place = place
         self._recording = recording
@@ -34,7 +34,7 @@ class ReplayScreen(WatchScreen):
         from kit.run.session import Session
 
         told = self._recording
-        session = Session(self._place, seed=told.seed, step_size=told.step_size, watched=True)
+        session = Session(self._place, seed=told.seed, step_size=told.step_size, always_scan=True)
         session.play_back(told)
         return session
 

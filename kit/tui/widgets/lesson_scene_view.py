@@ -70,10 +70,10 @@ class LessonSceneView(WorldView):
 
         def make() -> Session:
             """Called in the helper thread, which imports the physics while the words are on the screen already."""
-            from kit.run.scenario import find_place
+            from kit.run.scenario import find_scenario
             from kit.run.session import Session
 
-            session = Session(find_place(scene.map_name, scene.case), seed=scene.seed, watched=True)
+            session = Session(find_scenario(scene.map_name, scene.case), seed=scene.seed, always_scan=True)
             try:
                 if scene.controller:
                     session.drive_with(find_controller(scene.controller, folder))

@@ -19,7 +19,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.run.recording import Input, Recording, load, save
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
 
@@ -47,7 +47,7 @@ def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
 
 @pytest.fixture(scope="module")
 def recording() -> Recording:
-    return driven(find_place("simple"), [ahead(1.2), STILL])
+    return driven(find_scenario("simple"), [ahead(1.2), STILL])
 
 
 def handed_in(assignment: Assignment, data: bytes) -> GradingResult:
@@ -79,9 +79,9 @@ def test_a_true_drive_earns_what_it_drove(
 
 def test_the_best_attempt_counts(assignment: Assignment, tmp_path: Path) -> None:
     legs = [ahead(2.9), AGAIN, left(90), ahead(1.1), AGAIN, STILL]
-    result = handed_in(assignment, as_bytes(driven(find_place("simple"), legs), tmp_path))
+    result = handed_in(assignment, as_bytes(driven(find_scenario("simple"), legs), tmp_path))
     assert result.points == 3
-    bumped = handed_in(assignment, as_bytes(driven(find_place("simple"), [ahead(3.0)]), tmp_path))
+    bumped = handed_in(assignment, as_bytes(driven(find_scenario("simple"), [ahead(3.0)]), tmp_path))
     assert next(test for test in bumped.tests if test.id == "bumps").points == 0
 
 
@@ -133,7 +133,7 @@ def test_what_no_keys_can_do_is_refused(
 
 
 def test_a_long_recording_is_refused(assignment: Assignment, tmp_path: Path) -> None:
-    recording = driven(find_place("simple"), [STILL])
+    recording = driven(find_scenario("simple"), [STILL])
     ticks = 2100
     long = replace(recording, poses=np.zeros((ticks, 3)), counts=np.ones(ticks, dtype=np.int64), inputs=())
     assert "at most 20 s" in refused(handed_in(assignment, as_bytes(long, tmp_path)))
@@ -220,4 +220,4 @@ def test_the_solutions_are_as_their_script_makes_them(tmp_path: Path) -> None:
 
     place, legs = FLAG["solution"]
     kept = load(FOLDER / "01-drive" / "flag" / "solution.npz")
-    assert np.abs(driven(find_place(place), legs).poses - kept.poses).max() < 1e-6
+    assert np.abs(driven(find_scenario(place), legs).poses - kept.poses).max() < 1e-6

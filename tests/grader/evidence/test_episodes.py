@@ -18,11 +18,19 @@ from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER
 from kit.run.recording import rerun
-from kit.run.scenario import find_place
+from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD
 
 TURN = Trial(
-    "turn", find_place("turn"), 3.0, (1,), (), Shift(0.05, 0.05, 0.2), None, True, frozenset({"move_model"})
+    "turn",
+    find_scenario("turn"),
+    3.0,
+    (1,),
+    (),
+    Shift(0.05, 0.05, 0.2),
+    None,
+    True,
+    frozenset({"move_model"}),
 )
 
 
@@ -99,7 +107,7 @@ def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_pa
 
 
 def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
-    trial = dataclasses.replace(TURN, place=find_place("simple"), time_s=30.0, shift=Shift())
+    trial = dataclasses.replace(TURN, place=find_scenario("simple"), time_s=30.0, shift=Shift())
     seen = drive(tmp_path, find_controller("avoid").file.read_text(), trial)
     assert seen.score.reached_s is not None
     assert seen.seconds == pytest.approx(seen.score.reached_s, abs=0.02)

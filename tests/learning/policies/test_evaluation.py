@@ -146,12 +146,12 @@ def test_a_node_knows_what_the_policy_knows() -> None:
 def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     from kit.controllers import find_controller
     from kit.run.headless import run_headless
-    from kit.run.scenario import find_place
+    from kit.run.scenario import find_scenario
 
     file = tmp_path / "ahead.py"
     file.write_text(format_policy_node(always(TaskSpec("hallway"), 1)))
     summary = run_headless(
-        find_place("hall_straight"), find_controller(str(file)), steps=1200, until_reached=True
+        find_scenario("hall_straight"), find_controller(str(file)), steps=1200, until_reached=True
     )
     assert summary.failure is None
     assert summary.metrics.reached_s is not None

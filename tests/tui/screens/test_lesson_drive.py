@@ -110,8 +110,10 @@ def test_the_target_ends_the_drive_and_keeps_it(
         # Nobody can steer round a corner here: the robot is put there.
 
         def put(session: Session) -> None:
-            assert session.place.case is not None
-            session.runner.call_service("move_model", session.place.robot, (*session.place.case.target, 0.0))
+            assert session.scenario.case is not None
+            session.runner.call_service(
+                "move_model", session.scenario.robot, (*session.scenario.case.target, 0.0)
+            )
 
         screen.host.post(put)
         await seen(pilot, "The target is reached, and the drive is kept.")

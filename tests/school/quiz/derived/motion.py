@@ -10,7 +10,7 @@ from kit.controllers import find_controller
 from kit.geometry import Pose
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
-from kit.run.scenario import place_on_map
+from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.quiz.items import QuizItem
 from kit.sim.simulation import Simulation
@@ -94,10 +94,10 @@ def forward_from_a_heading(item: QuizItem, folder: Path) -> Finding:
 
 def teleop_home(item: QuizItem, folder: Path) -> Finding:
     """Drives with the keys until it bumps, and looks where it is then."""
-    with Session(place_on_map(find_map("simple")), seed=1) as session:
-        start = session.place.start
+    with Session(scenario_on_map(find_map("simple")), seed=1) as session:
+        start = session.scenario.start
         assert start is not None
-        assert session.place.robot is not None
+        assert session.scenario.robot is not None
         session.drive_with(find_controller("teleop"))
         session.wait_until_driven()
         assert session.failure is None
@@ -105,7 +105,7 @@ def teleop_home(item: QuizItem, folder: Path) -> Finding:
         simulation, farthest = session.runner.simulation, start
         for _ in range(6000):
             session.runner.tick()
-            pose = simulation.pose(session.place.robot)
+            pose = simulation.pose(session.scenario.robot)
             if session.metrics.metrics.bumps and math.dist(pose[:2], start[:2]) < 0.05:
                 break
             farthest = pose
@@ -205,18 +205,18 @@ class Driver(Node):
 def endless_loop(item: QuizItem, folder: Path) -> Finding:
     file = folder / "driver.py"
     file.write_text(ENDLESS)
-    with Session(place_on_map(find_map("simple"))) as session:
-        assert session.place.robot is not None
+    with Session(scenario_on_map(find_map("simple"))) as session:
+        assert session.scenario.robot is not None
         session.drive_with(find_controller(str(file)))
         session.wait_until_driven()
         for _ in range(200):
             session.runner.tick()
-            session.look_around()
+            session.poll()
         ticks = session.runner.simulation.tick
-        before = session.runner.simulation.pose(session.place.robot)
+        before = session.runner.simulation.pose(session.scenario.robot)
         for _ in range(100):
             session.runner.tick()
-        after: Pose = session.runner.simulation.pose(session.place.robot)
+        after: Pose = session.runner.simulation.pose(session.scenario.robot)
         goes_on = session.runner.simulation.tick == ticks + 100
         stopped = session.failure is not None
     drives = math.dist(before[:2], after[:2]) > 0.01

@@ -26,7 +26,7 @@ from kit.ros.log import LogRecord
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile, ReliabilityPolicy
 from kit.ros.parameters.parameter import Parameter
-from kit.run.scenario import place_on_map
+from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.quiz.items import QuizItem
 from kit.world.catalogue import find_map
@@ -46,7 +46,7 @@ def _node(graph: Graph, *arguments: str, **options: Any) -> Node:
 
 def drive_listens(item: QuizItem, folder: Path) -> Finding:
     """By what the kit's own drive is told its speed."""
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         directory = session.graph.directory
         found = {
             "topic": any(True for _ in directory.subscriptions("/cmd_vel")),
@@ -178,11 +178,11 @@ def move_answers(item: QuizItem, folder: Path) -> Finding:
     """By what the kit's world is asked to move a robot, and whether it says how that went."""
     from kit.msg.flatland_msgs import MoveModel
 
-    with Session(place_on_map(find_map("simple"))) as session:
+    with Session(scenario_on_map(find_map("simple"))) as session:
         node = create_graph_node(session.graph, "asker")
         client = node.create_client(MoveModel, "/move_model")
         futures = [
-            client.call_async(MoveModel.Request(name=name)) for name in (session.place.robot, "nobody")
+            client.call_async(MoveModel.Request(name=name)) for name in (session.scenario.robot, "nobody")
         ]
         session.runner.tick()
         told = [future.result().success for future in futures]
