@@ -1,4 +1,4 @@
-"""A bag's summary as ``ros2 bag info`` prints it."""
+"""Formats a bag's summary as ``ros2 bag info`` does."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LABEL_WIDTH = 19
 
 
 def bag_info(bag: Bag) -> str:
-    """The lines of ``bag info``, after an empty one."""
+    """The output of ``bag info``, which begins with an empty line."""
     end_ns = bag.start_ns + bag.duration_ns
     topics = [
         f"Topic: {topic.name} | Type: {topic.type} | Count: {topic.count} | "
@@ -50,6 +50,6 @@ def _seconds(time_ns: int) -> str:
 
 
 def _instant(time_ns: int) -> str:
-    """In UTC: a simulation's time begins with 1970, wherever it runs."""
+    """A time in UTC, since simulated time begins with 1970."""
     moment = datetime.fromtimestamp(time_ns // 1_000_000_000, UTC)
     return f"{moment:%b} {moment.day:2d} {moment:%Y %H:%M:%S}.{time_ns % 1_000_000_000:09d} ({_seconds(time_ns)})"

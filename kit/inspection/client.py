@@ -94,17 +94,17 @@ class InspectionClient:
         return node
 
     def call(
-        self, srv_type: type[Service], name: str, request: Message, *, patience_s: float | None = None
+        self, srv_type: type[Service], name: str, request: Message, *, timeout_s: float | None = None
     ) -> Any:
-        """Calls a service and waits for its response. Raises ServiceTimeout after ``patience_s`` of wall clock."""
+        """Calls a service and waits for its response. Raises ServiceTimeout after ``timeout_s`` of wall clock."""
         client = self.node.create_client(srv_type, name)
         future = client.call_async(request)
-        if patience_s is not None:
-            self._connection.deadline = time.monotonic() + patience_s
+        if timeout_s is not None:
+            self._connection.deadline = time.monotonic() + timeout_s
         try:
             self.spin(self.node, future.done, future)
         except TimeoutError:
-            raise ServiceTimeout(f"{name} has not answered within {patience_s:g} s") from None
+            raise ServiceTimeout(f"{name} has not answered within {timeout_s:g} s") from None
         finally:
             self._connection.deadline = None
         self.node.destroy_client(client)

@@ -1,4 +1,4 @@
-"""Nodes, topics and services as ROS 2's commands print them."""
+"""Formats nodes, topics, services and interfaces as ROS 2's commands do."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def node_names(graph: Graph, *, hidden: bool) -> list[str]:
     return sorted(handle.full_name for handle in handles if hidden or not handle.name.startswith("_"))
 
 
-def absolute(name: str) -> str:
-    """A node's or topic's name with its slash in front."""
+def absolute_name(name: str) -> str:
+    """The name of a node or topic with a leading slash."""
     return name if name.startswith("/") else f"/{name}"
 
 
@@ -126,12 +126,12 @@ def service_info(graph: Graph, name: str, types: list[str]) -> Iterator[str]:
 
 
 def definition_text(cls: Interface) -> str:
-    """An interface as ``interface show`` prints it: nested messages unfolded below, each level one tab further."""
+    """An interface as ``interface show`` prints it: nested messages follow their field, each level indented by a tab."""
     parts = [cls] if issubclass(cls, Message) else [cls.Request, cls.Response]
-    return "---\n".join("".join(_unfolded(part, 0)) for part in parts)
+    return "---\n".join("".join(_definition_lines(part, 0)) for part in parts)
 
 
-def _unfolded(cls: type[Message], depth: int) -> Iterator[str]:
+def _definition_lines(cls: type[Message], depth: int) -> Iterator[str]:
     lines = definition(cls).splitlines()
     constants = len(lines) - len(cls.__ros_fields__)
     for line in lines[:constants]:
@@ -140,4 +140,4 @@ def _unfolded(cls: type[Message], depth: int) -> Iterator[str]:
         yield "\t" * depth + line + "\n"
         item = field.kind.item if isinstance(field.kind, Many) else field.kind
         if isinstance(item, Nested):
-            yield from _unfolded(item.cls, depth + 1)
+            yield from _definition_lines(item.cls, depth + 1)

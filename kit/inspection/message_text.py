@@ -1,4 +1,4 @@
-"""Messages as ``topic echo`` shows them: YAML, comma-separated values, or one field."""
+"""Formats messages as ``topic echo`` does: YAML, comma-separated values, or one field."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ import yaml
 from kit.msg.fields import Fixed, Kind, Many
 from kit.msg.message import Message
 
-LONGEST: Final = 128
+DEFAULT_MAX_LENGTH: Final = 128
 """Items and characters of one value that are shown by default."""
 
-WIDEST: Final = 2**31 - 1
+LINE_WIDTH: Final = 2**31 - 1
 """A line of YAML is never broken."""
 
 _Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
 class NoSuchField(LookupError):
-    """The message has no such field; the text says which."""
+    """The message has no such field; the error names it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Style:
+class TextStyle:
     """How much of a message is shown."""
 
-    longest: int | None = LONGEST
-    """Longer arrays and texts are cut; None: nothing is."""
+    longest: int | None = DEFAULT_MAX_LENGTH
+    """Longer arrays and texts are truncated to this length; None: never."""
     arrays: bool = True
-    """Whether arrays are written out, or only their type and length."""
+    """Whether arrays are written in full, or only with type and length."""
     texts: bool = True
     flow: bool = False
     """Arrays and nested messages in one line each."""
 
 
-def to_yaml(message: Message, style: Style = Style()) -> str:
+def to_yaml(message: Message, style: TextStyle = TextStyle()) -> str:
     """The message's fields, one a line; ends with a newline."""
     return str(
         yaml.dump(
@@ -45,19 +45,19 @@ def to_yaml(message: Message, style: Style = Style()) -> str:
             Dumper=_Dumper,
             sort_keys=False,
             allow_unicode=True,
-            width=WIDEST,
+            width=LINE_WIDTH,
             default_flow_style=style.flow,
         )
     )
 
 
-def to_csv(message: Message, style: Style = Style()) -> str:
+def to_csv(message: Message, style: TextStyle = TextStyle()) -> str:
     """All values in the order of the definition, without names."""
     return ",".join(_cells(message, style))
 
 
-def pick(message: Message, path: str) -> Any:
-    """The value at a path of names with dots. Raises NoSuchField."""
+def get_field(message: Message, path: str) -> Any:
+    """The value at a path of field names joined by dots. Raises NoSuchField."""
     found: Any = message
     for name in path.split("."):
         if not isinstance(found, Message) or name not in type(found).get_fields_and_field_types():
@@ -69,14 +69,14 @@ def pick(message: Message, path: str) -> Any:
     return found
 
 
-def _plain(message: Message, style: Style) -> dict[str, Any]:
+def _plain(message: Message, style: TextStyle) -> dict[str, Any]:
     return {
         field.name: _value(getattr(message, field.name), field.kind, style)
         for field in type(message).__ros_fields__
     }
 
 
-def _value(value: Any, kind: Kind, style: Style) -> Any:
+def _value(value: Any, kind: Kind, style: TextStyle) -> Any:
     if isinstance(value, Message):
         return _plain(value, style)
     if isinstance(value, (str, bytes)):
@@ -84,40 +84,40 @@ def _value(value: Any, kind: Kind, style: Style) -> Any:
     if isinstance(kind, Fixed):
         if not style.arrays:
             return f"<array type: {kind.idl}>"
-        return _cut([_value(entry, kind.item, style) for entry in value.tolist()], style)
+        return _truncate([_value(entry, kind.item, style) for entry in value.tolist()], style)
     if isinstance(kind, Many):
         if not style.arrays:
             return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
-        return _cut([_value(entry, kind.item, style) for entry in value], style)
+        return _truncate([_value(entry, kind.item, style) for entry in value], style)
     return value
 
 
-def _text(value: str | bytes, style: Style) -> str:
+def _text(value: str | bytes, style: TextStyle) -> str:
     text = value if isinstance(value, str) else value.decode("latin-1")
     if not style.texts:
         return f"<string length: <{len(text)}>>"
     return text if style.longest is None or len(text) <= style.longest else text[: style.longest] + "..."
 
 
-def _cut(values: list[Any], style: Style) -> list[Any]:
+def _truncate(values: list[Any], style: TextStyle) -> list[Any]:
     return (
         values if style.longest is None or len(values) <= style.longest else [*values[: style.longest], "..."]
     )
 
 
-def _cells(message: Message, style: Style) -> Iterator[str]:
+def _cells(message: Message, style: TextStyle) -> Iterator[str]:
     for field in type(message).__ros_fields__:
         yield from _cell(getattr(message, field.name), field.kind, style)
 
 
-def _cell(value: Any, kind: Kind, style: Style) -> Iterator[str]:
+def _cell(value: Any, kind: Kind, style: TextStyle) -> Iterator[str]:
     if isinstance(value, Message):
         yield from _cells(value, style)
     elif isinstance(kind, (Many, Fixed)):
         if not style.arrays:
             yield str(_value(value, kind, style))
             return
-        for entry in _cut(list(value), style):
+        for entry in _truncate(list(value), style):
             yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, style)), "")
     else:
         yield str(_value(value, kind, style))

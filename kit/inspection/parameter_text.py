@@ -1,4 +1,4 @@
-"""Parameters as ROS 2's commands print them."""
+"""Formats parameters as ROS 2's commands do."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _NAMES: Final = MappingProxyType(
         Parameter.Type.STRING_ARRAY: ("string array", "String values are:"),
     }
 )
-"""What each type is called, and how its value is introduced."""
+"""The name of each type, and the label before its value."""
 
 
-def type_text(number: int) -> str:
+def type_name_of(number: int) -> str:
     """The name of a type."""
     return _NAMES[Parameter.Type(number)][0]
 
 
-def value_text(value: ParameterValue, *, hide_type: bool = False) -> str:
+def format_value(value: ParameterValue, *, hide_type: bool = False) -> str:
     """A parameter's value, as ``param get`` prints it."""
     found = parameter_value_to_python(value)
     if hide_type:
@@ -43,7 +43,7 @@ def value_text(value: ParameterValue, *, hide_type: bool = False) -> str:
 def description(descriptor: ParameterDescriptor) -> Iterator[str]:
     """The lines of ``param describe``."""
     yield f"Parameter name: {descriptor.name}"
-    yield f"  Type: {type_text(descriptor.type)}"
+    yield f"  Type: {type_name_of(descriptor.type)}"
     if descriptor.description:
         yield f"  Description: {descriptor.description}"
     yield "  Constraints:"
@@ -62,8 +62,8 @@ def description(descriptor: ParameterDescriptor) -> Iterator[str]:
         yield f"    Additional constraints: {descriptor.additional_constraints}"
 
 
-def nested(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Values by name, with the parts of each name as keys in each other."""
+def nest_by_name(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Nests values by the parts of their names: ``a.b`` becomes ``{a: {b: ...}}``."""
     tree: dict[str, Any] = {}
     for name, value in values:
         *groups, last = name.split(PARAMETER_SEPARATOR_STRING)

@@ -257,4 +257,4 @@ def test_a_service_that_never_answers_is_not_waited_for_for_ever(
         InspectionClient(find_world(sockets_folder(tmp_path))) as client,
         pytest.raises(ServiceTimeout, match="/silent"),
     ):
-        client.call(Trigger, "/silent", Trigger.Request(), patience_s=0.1)
+        client.call(Trigger, "/silent", Trigger.Request(), timeout_s=0.1)

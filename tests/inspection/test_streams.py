@@ -16,7 +16,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from tests.inspection.conftest import Stage, until
 
-INTERRUPTED = 130
+EXIT_INTERRUPTED = 130
 
 
 @contextmanager
@@ -65,12 +65,12 @@ def test_meters_report_every_second_of_the_world(stage: Stage) -> None:
         assert bandwidth.split()[1] == "B/s"
         assert bandwidth.split()[2] == "from"
         assert sizes == "\tMessage size mean: 14 B min: 14 B max: 14 B\n"
-        late, spread = lines(delay, 2)
+        late, statistics = lines(delay, 2)
         assert late == "average delay: 0.020\n"
-        assert spread.startswith("\tmin: 0.020s max: 0.020s std dev: 0.00000s window: ")
+        assert statistics.startswith("\tmin: 0.020s max: 0.020s std dev: 0.00000s window: ")
         assert lines(echo, 4) == ["data: hello\n", "---\n"] * 2
         for process in (hz, bw, delay, echo):
-            assert interrupted(process) == ("", INTERRUPTED)
+            assert interrupted(process) == ("", EXIT_INTERRUPTED)
 
 
 def test_publishing_again_and_again(stage: Stage) -> None:
@@ -93,7 +93,7 @@ def test_publishing_again_and_again(stage: Stage) -> None:
             "publishing #4: std_msgs.msg.String(data='go')\n",
             "\n",
         ]
-        assert interrupted(process) == ("", INTERRUPTED)
+        assert interrupted(process) == ("", EXIT_INTERRUPTED)
 
 
 def test_a_pipe_that_closes_early_is_no_trouble(stage: Stage) -> None:
@@ -115,7 +115,7 @@ def test_waiting_for_what_is_not_there_yet_ends_by_ctrl_c(words: tuple[str, ...]
         stream = process.stdout if words[0] == "service" else process.stderr
         assert stream is not None
         assert stream.readline().startswith(("waiting for service", "WARNING: topic [/later]"))
-        assert interrupted(process) == ("", INTERRUPTED)
+        assert interrupted(process) == ("", EXIT_INTERRUPTED)
 
 
 def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
@@ -130,7 +130,7 @@ def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
         enough = stage.graph.now_ns + 2_000_000_000
         until(lambda: stage.graph.now_ns > enough)
         err, code = interrupted(process)
-    assert code == INTERRUPTED
+    assert code == EXIT_INTERRUPTED
     assert "messages in drive" in err
     with (tmp_path / "drive" / "drive.mcap").open("rb") as opened:
         found = [

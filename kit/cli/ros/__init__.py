@@ -9,16 +9,16 @@ import click
 from kit.cli import LazyGroup, Verbs
 
 VERBS: Final[Verbs] = {
-    "node": ("kit.cli.ros.node", "Who is there: list, info."),
+    "node": ("kit.cli.ros.node", "The nodes of the world: list, info."),
     "topic": (
         "kit.cli.ros.topic",
-        "What is said: list, info, type, find, echo, hz, bw, delay, pub.",
+        "Topics and their messages: list, info, type, find, echo, hz, bw, delay, pub.",
     ),
-    "service": ("kit.cli.ros.service", "What can be asked: list, info, type, find, call."),
-    "param": ("kit.cli.ros.param", "Settings of nodes: list, get, set, describe, dump, load, delete."),
+    "service": ("kit.cli.ros.service", "Services and their calls: list, info, type, find, call."),
+    "param": ("kit.cli.ros.param", "Parameters of nodes: list, get, set, describe, dump, load, delete."),
     "interface": (
         "kit.cli.ros.interface",
-        "What messages are made of: list, show, proto, package, packages.",
+        "Types of messages and services: list, show, proto, package, packages.",
     ),
     "bag": ("kit.cli.ros.bag", "Recordings that ROS 2's tools open: record, play, info."),
     "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, beside the running world."),
@@ -31,8 +31,8 @@ VERBS: Final[Verbs] = {
     name="ros",
     cls=LazyGroup,
     verbs=VERBS,
-    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` does. With several, the newest is meant, "
-    "or the one named by --world. Times are those of the simulation. Ctrl-C ends what goes on and on.",
+    epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` does. With several, the newest is used, "
+    "or the one named by --world. Times are simulated. Ctrl-C ends a command that keeps running.",
 )
 def command() -> None:
     """Look into a running world from a second terminal, as `ros2` does on a robot.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.group()
 def command() -> None:
-    """Bags: what was said on topics, and when, in the world's time."""
+    """Bags: recorded messages of topics, with the simulated time of each."""
 
 
 @command.command()
@@ -53,7 +53,7 @@ def record(
     folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
     chosen = None if every else [name if name.startswith("/") else f"/{name}" for name in topics]
     node = client.create_node(RECORDER)
-    say = node.get_logger().info
+    log = node.get_logger().info
     known: set[str] = set()
 
     try:
@@ -62,19 +62,19 @@ def record(
         def has_stopped() -> bool:
             recorder.exchange()
             for name in sorted(set(recorder.topics) - known):
-                say(f"Subscribed to topic '{name}'")
+                log(f"Subscribed to topic '{name}'")
                 known.add(name)
             return recorder.failure is not None
 
         with recorder:
             has_stopped()
             for name in recorder.missing:
-                say(f"Nobody publishes '{name}' yet; waiting for it")
-            say("Recording... Ctrl-C ends it")
+                log(f"No node publishes '{name}' yet; waiting for it")
+            log("Recording... Ctrl-C ends it")
             try:
                 client.graph.wait(has_stopped)
             finally:
-                say(f"{recorder.count} messages in {folder}")
+                log(f"{recorder.count} messages in {folder}")
     except BagError as problem:
         exit_with_error(str(problem))
 
@@ -83,7 +83,7 @@ def record(
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option("-v", "--verbose", is_flag=True, hidden=True)
 def info(folder: Path, verbose: bool) -> None:
-    """What a bag holds. Needs no running world."""
+    """Print the summary of a bag. Needs no running world."""
     from kit.inspection.bag_text import bag_info
 
     click.echo(bag_info(_read(folder)))
@@ -110,7 +110,7 @@ def play(
     remap: Sequence[str],
     clock: float | None,
 ) -> None:
-    """Say again in the running world what a bag holds, at the same intervals of the world's time.
+    """Publish the messages of a bag in the running world, at the same intervals of simulated time.
 
     \b
     kit ros bag play my_drive --topics /cmd_vel
@@ -126,16 +126,16 @@ def play(
             "--clock is not heeded: the world has its own clock, and everybody in it goes by that.", err=True
         )
     if loop and bag.duration_ns == 0:
-        exit_with_error(f"{folder}: nothing to repeat: all its messages are of one instant")
+        exit_with_error(f"{folder}: cannot be looped: all its messages have the same time")
     node, graph = client.create_node("rosbag2_player"), client.graph
-    say = node.get_logger().info
+    log = node.get_logger().info
     publishers = _publishers(node, bag, topics, names)
     if start_paused:
         click.pause("Press Enter to begin.")
-    say(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
+    log(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
 
     def skipped(topic: str, type_of: str) -> None:
-        say(f"'{topic}' is left out: the kit does not have its type, {type_of}")
+        log(f"'{topic}' is left out: the kit does not have its type, {type_of}")
 
     try:
         while True:

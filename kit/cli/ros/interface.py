@@ -1,13 +1,13 @@
-"""``kit ros interface``: what messages and services are made of."""
+"""``kit ros interface``: the types of messages and services."""
 
 from __future__ import annotations
 
 import click
 
-from kit.cli.ros.values import interface_named
+from kit.cli.ros.message_values import find_or_exit
 from kit.cli.ros.world_client import exit_with_error
 from kit.inspection.graph_text import definition_text
-from kit.inspection.message_text import Style, to_yaml
+from kit.inspection.message_text import TextStyle, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, interfaces
 from kit.msg.message import Message, is_ours
 
@@ -22,7 +22,7 @@ def command() -> None:
 @click.option("-s", "--only-srvs", is_flag=True, help="Only services.")
 @click.option("-a", "--only-actions", is_flag=True, help="Only actions, of which the kit has none.")
 def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> None:
-    """The names of all types."""
+    """List the names of all types."""
     every = not (only_msgs or only_srvs or only_actions)
     for title, part, wanted in (
         ("Messages", "msg", only_msgs),
@@ -39,12 +39,12 @@ def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> Non
 @command.command()
 @click.argument("name", metavar="TYPE")
 def show(name: str) -> None:
-    """A type's definition, with those of all types in it.
+    """Print a type's definition, with those of all types in it.
 
     \b
     kit ros interface show geometry_msgs/msg/Twist
     """
-    cls = interface_named(find_interface, name)
+    cls = find_or_exit(find_interface, name)
     if is_ours(cls):
         click.echo("# Not a part of ROS 2: the kit's own, or Flatland's.")
     click.echo(definition_text(cls), nl=False)
@@ -54,16 +54,16 @@ def show(name: str) -> None:
 @click.argument("name", metavar="TYPE")
 @click.option("--no-quotes", is_flag=True, help="Without the quotes around it.")
 def proto(name: str, no_quotes: bool) -> None:
-    """A message with its defaults, or a service's request: to copy and fill in."""
-    cls = interface_named(find_interface, name)
-    text = to_yaml(cls() if issubclass(cls, Message) else cls.Request(), Style(longest=None))
+    """Print a message with its defaults, or a service's request, to copy and fill in."""
+    cls = find_or_exit(find_interface, name)
+    text = to_yaml(cls() if issubclass(cls, Message) else cls.Request(), TextStyle(longest=None))
     click.echo(text if no_quotes else f'"{text}"')
 
 
 @command.command()
 @click.argument("name", metavar="PACKAGE")
 def package(name: str) -> None:
-    """The types of one package."""
+    """List the types of one package."""
     if name not in PACKAGES:
         exit_with_error(f"Unknown package '{name}'; there are: {', '.join(PACKAGES)}")
     for cls in interfaces(name):
@@ -74,7 +74,7 @@ def package(name: str) -> None:
 @click.option("-m", "--only-msgs", is_flag=True, help="Only those with messages.")
 @click.option("-s", "--only-srvs", is_flag=True, help="Only those with services.")
 def packages(only_msgs: bool, only_srvs: bool) -> None:
-    """The packages that have types."""
+    """List the packages that have types."""
     for name in PACKAGES:
         parts = {cls.__ros_type__.split("/")[1] for cls in interfaces(name)}
         if (not only_msgs or "msg" in parts) and (not only_srvs or "srv" in parts):

@@ -1,4 +1,4 @@
-"""``kit ros node``: who is there."""
+"""``kit ros node``: the nodes of the running world."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import click
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute, node_info, node_names
+from kit.inspection.graph_text import absolute_name, node_info, node_names
 
 
 @click.group()
 def command() -> None:
-    """The nodes of the running world: programs, or parts of one, that talk with each other."""
+    """The nodes of the running world: programs, or parts of programs, that exchange messages."""
 
 
 @command.command("list")
@@ -19,7 +19,7 @@ def command() -> None:
 @click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many.")
 @with_world_client
 def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
-    """The full names of all nodes."""
+    """List the full names of all nodes."""
     names = node_names(client.graph, hidden=hidden)
     if len(set(names)) < len(names):
         click.echo(
@@ -39,12 +39,12 @@ def list_nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
 @click.option("--include-hidden", "hidden", is_flag=True, help="Hidden topics and services too.")
 @with_world_client
 def info(client: InspectionClient, name: str, hidden: bool) -> None:
-    """What a node subscribes to, publishes, serves and asks.
+    """Print a node's subscribers, publishers, service servers and service clients.
 
     \b
     kit ros node info /flatland_server
     """
-    handles = [handle for handle in client.graph.directory.nodes if handle.full_name == absolute(name)]
+    handles = [handle for handle in client.graph.directory.nodes if handle.full_name == absolute_name(name)]
     if not handles:
         exit_with_error(f"Unable to find node '{name}'")
     if len(handles) > 1:

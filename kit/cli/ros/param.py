@@ -1,4 +1,4 @@
-"""``kit ros param``: the settings of nodes."""
+"""``kit ros param``: the parameters of nodes."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import yaml
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute, node_names
-from kit.inspection.parameter_text import description, nested, type_text, value_text
+from kit.inspection.graph_text import absolute_name, node_names
+from kit.inspection.parameter_text import description, format_value, nest_by_name, type_name_of
 from kit.msg.message import Message, Service
 from kit.msg.rcl_interfaces import (
     DescribeParameters,
@@ -30,8 +30,8 @@ from kit.ros.parameters.parameter import Parameter as TypedParameter
 from kit.ros.parameters.parameter import parameter_value_to_python
 from kit.ros.parameters.parameter_files import get_parameter_value, read_parameter_file
 
-PATIENCE_S: Final = 5.0
-"""How long a node may take to answer."""
+SERVICE_TIMEOUT_S: Final = 5.0
+"""How long a node may take to answer [s]."""
 
 hidden_nodes = click.option("--include-hidden-nodes", "hidden", is_flag=True, help="Hidden nodes too.")
 
@@ -56,8 +56,10 @@ def list_parameters(
     param_prefixes: Sequence[str],
     pattern: str | None,
 ) -> None:
-    """The names of all parameters, or of one node's."""
-    nodes = [_existing(client, name, hidden=hidden)] if name else node_names(client.graph, hidden=hidden)
+    """List the names of all parameters, or of those of one node."""
+    nodes = (
+        [_find_node_or_exit(client, name, hidden=hidden)] if name else node_names(client.graph, hidden=hidden)
+    )
     for node in dict.fromkeys(nodes):
         if f"{node}/list_parameters" not in client.graph.directory.services:
             continue
@@ -68,7 +70,7 @@ def list_parameters(
         ]
         types = {}
         if param_type:
-            types = {each.name: type_text(each.type) for each in _describe(client, node, names)}
+            types = {each.name: type_name_of(each.type) for each in _describe(client, node, names)}
         for each in names:
             click.echo(f"  {each} (type: {types[each]})" if param_type else f"  {each}")
 
@@ -80,17 +82,17 @@ def list_parameters(
 @hidden_nodes
 @with_world_client
 def get(client: InspectionClient, name: str, parameter: str, hide_type: bool, hidden: bool) -> None:
-    """A parameter's value.
+    """Print a parameter's value.
 
     \b
     kit ros param get /random_walk speed
     """
-    node = _existing(client, name, hidden=hidden)
+    node = _find_node_or_exit(client, name, hidden=hidden)
     request = GetParameters.Request(names=[parameter])
-    values = _ask(client, GetParameters, node, "get_parameters", request).values
+    values = _call_service(client, GetParameters, node, "get_parameters", request).values
     if not values:
         exit_with_error("Parameter not set")
-    click.echo(value_text(values[0], hide_type=hide_type))
+    click.echo(format_value(values[0], hide_type=hide_type))
 
 
 @command.command("set")
@@ -109,7 +111,7 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
             "Parameters must be provided as name/value pairs: name value [name value ...]. "
             f"Got {len(pairs)} argument(s)."
         )
-    node = _existing(client, name, hidden=hidden)
+    node = _find_node_or_exit(client, name, hidden=hidden)
     wanted = [
         Parameter(name=each, value=get_parameter_value(value))
         for each, value in zip(pairs[::2], pairs[1::2], strict=True)
@@ -117,7 +119,7 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
     results = _set(client, node, wanted)
     for parameter, result in zip(wanted, results, strict=True):
         prefix = f"{parameter.name}: " if len(wanted) > 1 else ""
-        _say(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
+        _print_result(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
     _end(results)
 
 
@@ -127,8 +129,8 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
 @hidden_nodes
 @with_world_client
 def describe(client: InspectionClient, name: str, parameters: Sequence[str], hidden: bool) -> None:
-    """What a parameter is for, and what it may be."""
-    for descriptor in _describe(client, _existing(client, name, hidden=hidden), parameters):
+    """Print the description and the allowed values of a parameter."""
+    for descriptor in _describe(client, _find_node_or_exit(client, name, hidden=hidden), parameters):
         for line in description(descriptor):
             click.echo(line)
 
@@ -138,11 +140,13 @@ def describe(client: InspectionClient, name: str, parameters: Sequence[str], hid
 @hidden_nodes
 @with_world_client
 def dump(client: InspectionClient, name: str, hidden: bool) -> None:
-    """All parameters of a node, as a file that `load` and `--params-file` take."""
-    node = _existing(client, name, hidden=hidden)
+    """Print all parameters of a node, as a file for `load` and `--params-file`."""
+    node = _find_node_or_exit(client, name, hidden=hidden)
     names = _names(client, node)
-    values = _ask(client, GetParameters, node, "get_parameters", GetParameters.Request(names=names)).values
-    tree = nested(zip(names, map(parameter_value_to_python, values), strict=True))
+    values = _call_service(
+        client, GetParameters, node, "get_parameters", GetParameters.Request(names=names)
+    ).values
+    tree = nest_by_name(zip(names, map(parameter_value_to_python, values), strict=True))
     click.echo(yaml.dump({node: {"ros__parameters": tree}}, default_flow_style=False))
 
 
@@ -153,7 +157,7 @@ def dump(client: InspectionClient, name: str, hidden: bool) -> None:
 @with_world_client
 def load(client: InspectionClient, name: str, file: Path, hidden: bool) -> None:
     """Set a node's parameters from a file."""
-    node = _existing(client, name, hidden=hidden)
+    node = _find_node_or_exit(client, name, hidden=hidden)
     try:
         given = [entry for entry in read_parameter_file(str(file)) if entry.node in (node, "/**")]
     except InvalidRosArguments as problem:
@@ -164,7 +168,7 @@ def load(client: InspectionClient, name: str, file: Path, hidden: bool) -> None:
     results = _set(client, node, wanted)
     for parameter, result in zip(wanted, results, strict=True):
         text = f"Set parameter {parameter.name}"
-        _say(result, f"{text} successful", f"{text} failed")
+        _print_result(result, f"{text} successful", f"{text} failed")
     _end(results)
 
 
@@ -174,16 +178,16 @@ def load(client: InspectionClient, name: str, file: Path, hidden: bool) -> None:
 @hidden_nodes
 @with_world_client
 def delete(client: InspectionClient, name: str, parameter: str, hidden: bool) -> None:
-    """Take a parameter away."""
-    node = _existing(client, name, hidden=hidden)
+    """Delete a parameter."""
+    node = _find_node_or_exit(client, name, hidden=hidden)
     results = _set(client, node, [Parameter(name=parameter, value=ParameterValue())])
-    _say(results[0], "Deleted parameter successfully", "Deleting parameter failed")
+    _print_result(results[0], "Deleted parameter successfully", "Deleting parameter failed")
     _end(results)
 
 
-def _existing(client: InspectionClient, name: str, *, hidden: bool) -> str:
-    """The full name of a node that is there, or the end of the verb."""
-    node = absolute(name)
+def _find_node_or_exit(client: InspectionClient, name: str, *, hidden: bool) -> str:
+    """The full name of an existing node with parameters; exits if there is none."""
+    node = absolute_name(name)
     if node not in node_names(client.graph, hidden=hidden):
         exit_with_error("Node not found")
     if f"{node}/get_parameters" not in client.graph.directory.services:
@@ -192,26 +196,28 @@ def _existing(client: InspectionClient, name: str, *, hidden: bool) -> str:
     return node
 
 
-def _ask(client: InspectionClient, cls: type[Service], node: str, service: str, request: Message) -> Any:
-    return client.call(cls, f"{node}/{service}", request, patience_s=PATIENCE_S)
+def _call_service(
+    client: InspectionClient, cls: type[Service], node: str, service: str, request: Message
+) -> Any:
+    return client.call(cls, f"{node}/{service}", request, timeout_s=SERVICE_TIMEOUT_S)
 
 
 def _names(client: InspectionClient, node: str, prefixes: Sequence[str] = ()) -> list[str]:
     request = ListParameters.Request(prefixes=list(prefixes))
-    return sorted(_ask(client, ListParameters, node, "list_parameters", request).result.names)
+    return sorted(_call_service(client, ListParameters, node, "list_parameters", request).result.names)
 
 
 def _describe(client: InspectionClient, node: str, names: Sequence[str]) -> list[Any]:
     request = DescribeParameters.Request(names=list(names))
-    return list(_ask(client, DescribeParameters, node, "describe_parameters", request).descriptors)
+    return list(_call_service(client, DescribeParameters, node, "describe_parameters", request).descriptors)
 
 
 def _set(client: InspectionClient, node: str, wanted: Sequence[Parameter]) -> list[SetParametersResult]:
     request = SetParameters.Request(parameters=list(wanted))
-    return list(_ask(client, SetParameters, node, "set_parameters", request).results)
+    return list(_call_service(client, SetParameters, node, "set_parameters", request).results)
 
 
-def _say(result: SetParametersResult, done: str, failed: str) -> None:
+def _print_result(result: SetParametersResult, done: str, failed: str) -> None:
     reason = f": {result.reason}" if result.reason else ""
     click.echo(f"{done if result.successful else failed}{reason}", err=not result.successful)
 

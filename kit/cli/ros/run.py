@@ -1,4 +1,4 @@
-"""``kit ros run``: one program, beside the running world."""
+"""``kit ros run``: runs one program beside the running world."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from kit.cli import options
-from kit.cli.ros.world_client import INTERRUPTED, exit_with_error
+from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 
@@ -43,10 +43,12 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     search = (Path.cwd(), Path.cwd() / "src", desk.packages)
     if package.endswith(".py"):
         request = StartRequest(
-            1, Path(package).stem, None, None, ("python3", package, *words), False, _here(), None, ""
+            1, Path(package).stem, None, None, ("python3", package, *words), False, _environment(), None, ""
         )
     elif words:
-        request = StartRequest(1, words[0], package, words[0], tuple(words[1:]), False, _here(), None, "")
+        request = StartRequest(
+            1, words[0], package, words[0], tuple(words[1:]), False, _environment(), None, ""
+        )
     else:
         options.fail(f"Which of its programs? `kit pkg executables {package}` lists them.")
     single = SingleProgram(request, search, seed=seed, workspace=desk.folder)
@@ -72,11 +74,11 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     except WorldDisconnected as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:
-        raise SystemExit(INTERRUPTED) from None
+        raise SystemExit(EXIT_INTERRUPTED) from None
     if ended.reason:
         click.echo(ended.reason, err=True)
     raise SystemExit(ended.code)
 
 
-def _here() -> dict[str, str]:
+def _environment() -> dict[str, str]:
     return dict(os.environ)

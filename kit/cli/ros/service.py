@@ -1,10 +1,10 @@
-"""``kit ros service``: what can be asked."""
+"""``kit ros service``: the services of the running world."""
 
 from __future__ import annotations
 
 import click
 
-from kit.cli.ros.values import filled, interface_named, read_values
+from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import service_info, services
@@ -13,7 +13,7 @@ from kit.msg.interfaces import find_service
 
 @click.group()
 def command() -> None:
-    """The services of the running world: questions that somebody answers, once each."""
+    """The services of the running world: requests that a node answers."""
 
 
 @command.command("list")
@@ -22,7 +22,7 @@ def command() -> None:
 @click.option("-a", "--all", "--include-hidden-services", "hidden", is_flag=True, help="Hidden ones too.")
 @with_world_client
 def list_services(client: InspectionClient, show_types: bool, count: bool, hidden: bool) -> None:
-    """The names of all services."""
+    """List the names of all services."""
     found = services(client.graph, hidden=hidden)
     if count:
         click.echo(len(found))
@@ -35,7 +35,7 @@ def list_services(client: InspectionClient, show_types: bool, count: bool, hidde
 @click.argument("name", metavar="SERVICE")
 @with_world_client
 def info(client: InspectionClient, name: str) -> None:
-    """A service's type, and how many serve and ask it."""
+    """Print a service's type, and its numbers of servers and clients."""
     types = dict(services(client.graph, hidden=True)).get(name)
     if types is None:
         exit_with_error(f"Unknown service '{name}'")
@@ -47,7 +47,7 @@ def info(client: InspectionClient, name: str) -> None:
 @click.argument("name", metavar="SERVICE")
 @with_world_client
 def type_of(client: InspectionClient, name: str) -> None:
-    """A service's type."""
+    """Print a service's type."""
     types = dict(services(client.graph, hidden=True)).get(name)
     if types is None:
         raise SystemExit(1)
@@ -60,7 +60,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 @click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many.")
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool) -> None:
-    """The services of a type."""
+    """List the services of a type."""
     names = [name for name, types in services(client.graph, hidden=True) if type_name in types]
     if count:
         click.echo(len(names))
@@ -78,21 +78,21 @@ def find(client: InspectionClient, type_name: str, count: bool) -> None:
 )
 @with_world_client
 def call(client: InspectionClient, name: str, type_name: str, values: str, rate: float | None) -> None:
-    """Ask a service, and print its response.
+    """Call a service, and print its response.
 
     \b
     kit ros service call /pause std_srvs/srv/Empty
     kit ros service call /move_model flatland_msgs/srv/MoveModel "{name: serp, pose: {x: 0.5}}"
     """
-    cls = interface_named(find_service, type_name)
-    content = read_values(values)
+    cls = find_or_exit(find_service, type_name)
+    content = parse_fields(values)
     graph = client.graph
     service_client = client.node.create_client(cls, name)
     if not service_client.service_is_ready():
         click.echo("waiting for service to become available...")
         service_client.wait_for_service()
     while True:
-        request = filled(cls.Request, content, graph.now_ns)
+        request = make_message(cls.Request, content, graph.now_ns)
         click.echo(f"requester: making request: {request!r}\n")
         asked_ns = graph.now_ns
         response = client.call(cls, name, request)

@@ -1,10 +1,10 @@
-"""``kit ros topic``: what is said, and by whom."""
+"""``kit ros topic``: the topics of the running world."""
 
 from __future__ import annotations
 
 import click
 
-from kit.cli.ros import listening, publishing
+from kit.cli.ros import topic_publisher, topic_subscribers
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import topic_info, topic_summary, topics
@@ -12,17 +12,17 @@ from kit.inspection.graph_text import topic_info, topic_summary, topics
 
 @click.group()
 def command() -> None:
-    """The topics of the running world: what is said there, to whoever listens."""
+    """The topics of the running world: named channels for messages."""
 
 
 @command.command("list")
 @click.option("-t", "--show-types", is_flag=True, help="With their types.")
 @click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many.")
 @click.option("-a", "--all", "--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
-@click.option("-v", "--verbose", is_flag=True, help="With how many publish and subscribe.")
+@click.option("-v", "--verbose", is_flag=True, help="With the numbers of publishers and subscriptions.")
 @with_world_client
 def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden: bool, verbose: bool) -> None:
-    """The names of all topics."""
+    """List the names of all topics."""
     found = topics(client.graph, hidden=hidden)
     if count:
         click.echo(len(found))
@@ -36,10 +36,10 @@ def list_topics(client: InspectionClient, show_types: bool, count: bool, hidden:
 
 @command.command()
 @click.argument("name", metavar="TOPIC")
-@click.option("-v", "--verbose", is_flag=True, help="With every end: its node, its quality of service.")
+@click.option("-v", "--verbose", is_flag=True, help="With each endpoint: its node and quality of service.")
 @with_world_client
 def info(client: InspectionClient, name: str, verbose: bool) -> None:
-    """A topic's type, and how many publish and subscribe.
+    """Print a topic's type, and its numbers of publishers and subscriptions.
 
     \b
     kit ros topic info /static_laser -v
@@ -55,7 +55,7 @@ def info(client: InspectionClient, name: str, verbose: bool) -> None:
 @click.argument("name", metavar="TOPIC")
 @with_world_client
 def type_of(client: InspectionClient, name: str) -> None:
-    """A topic's type."""
+    """Print a topic's type."""
     types = dict(topics(client.graph, hidden=True)).get(name)
     if types is None:
         raise SystemExit(1)
@@ -69,7 +69,7 @@ def type_of(client: InspectionClient, name: str) -> None:
 @click.option("--include-hidden-topics", "hidden", is_flag=True, help="Hidden ones too.")
 @with_world_client
 def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) -> None:
-    """The topics of a type."""
+    """List the topics of a type."""
     names = [name for name, types in topics(client.graph, hidden=hidden) if type_name in types]
     if count:
         click.echo(len(names))
@@ -78,5 +78,11 @@ def find(client: InspectionClient, type_name: str, count: bool, hidden: bool) ->
         click.echo(name)
 
 
-for verb in (listening.echo, listening.hz, listening.bw, listening.delay, publishing.pub):
+for verb in (
+    topic_subscribers.echo,
+    topic_subscribers.hz,
+    topic_subscribers.bw,
+    topic_subscribers.delay,
+    topic_publisher.pub,
+):
     command.add_command(verb)

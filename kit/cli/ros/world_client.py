@@ -15,14 +15,14 @@ from kit.cli import options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.world_sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 
-NOT_DONE = 1
-INTERRUPTED = 128 + signal.SIGINT
+EXIT_FAILURE = 1
+EXIT_INTERRUPTED = 128 + signal.SIGINT
 
 
 def exit_with_error(message: str) -> NoReturn:
-    """Ends the verb as ROS 2's commands do when what was asked for cannot be done."""
+    """Prints the message and exits with the code of ROS 2's commands for a failure."""
     click.echo(message, err=True)
-    raise SystemExit(NOT_DONE)
+    raise SystemExit(EXIT_FAILURE)
 
 
 @contextmanager
@@ -36,7 +36,7 @@ def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[Insp
     except (WorldDisconnected, ServiceTimeout) as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:
-        raise SystemExit(INTERRUPTED) from None
+        raise SystemExit(EXIT_INTERRUPTED) from None
 
 
 def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""``kit ros topic echo``, ``hz``, ``bw`` and ``delay``: what comes on a topic, and how."""
+"""``kit ros topic echo``, ``hz``, ``bw`` and ``delay``: subscribe to a topic, and print or measure its messages."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from typing import Any, Final
 
 import click
 
-from kit.cli.ros.quality import Wishes, quality_options
-from kit.cli.ros.values import interface_named
+from kit.cli.ros.message_values import find_or_exit
+from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute
-from kit.inspection.message_text import LONGEST, NoSuchField, Style, pick, to_csv, to_yaml
-from kit.inspection.meters import NARROW_WINDOW, WIDE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
+from kit.inspection.graph_text import absolute_name
+from kit.inspection.message_text import DEFAULT_MAX_LENGTH, NoSuchField, TextStyle, get_field, to_csv, to_yaml
+from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message
 from kit.msg.message import Message
 from kit.ros.node.time import Time
 
-REPORT_S: Final = 1.0
-"""Seconds between two reports of a meter, in the world's time."""
+REPORT_INTERVAL_S: Final = 1.0
+"""Interval between two reports of a meter [s, simulated]."""
 
 
-def window(usual: int) -> Callable[..., Any]:
-    """The option that says how many messages a meter looks at."""
+def window_option(default: int) -> Callable[..., Any]:
+    """The option for the number of messages that a meter averages over."""
     return click.option(
         "-w",
         "--window",
         type=click.IntRange(1),
-        default=usual,
+        default=default,
         show_default=True,
         help="How many messages count.",
     )
@@ -49,11 +49,11 @@ def window(usual: int) -> Callable[..., Any]:
     "-l",
     "--truncate-length",
     type=click.IntRange(0),
-    default=LONGEST,
+    default=DEFAULT_MAX_LENGTH,
     show_default=True,
     help="Of arrays and texts.",
 )
-@quality_options
+@with_qos_options
 @with_world_client
 def echo(
     client: InspectionClient,
@@ -67,22 +67,22 @@ def echo(
     flow_style: bool,
     full_length: bool,
     truncate_length: int,
-    wishes: Wishes,
+    qos_options: QosOptions,
 ) -> None:
-    """Print what is said on a topic, until Ctrl-C.
+    """Print the messages of a topic, until Ctrl-C.
 
     \b
     kit ros topic echo /static_laser --no-arr
     kit ros topic echo /odom --field pose.pose.position
     """
-    style = Style(None if full_length else truncate_length, not no_arr, not no_str, flow_style)
+    style = TextStyle(None if full_length else truncate_length, not no_arr, not no_str, flow_style)
     cls = _message_class(client, topic, type_name)
     count = 0
 
     def show(message: Message) -> None:
         nonlocal count
         count += 1
-        found = message if field is None else pick(message, field)
+        found = message if field is None else get_field(message, field)
         if csv:
             click.echo(to_csv(found, style) if isinstance(found, Message) else found)
         elif isinstance(found, Message):
@@ -90,7 +90,7 @@ def echo(
         else:
             click.echo(f"{found}\n---")
 
-    _listen(client, cls, topic, show, wishes)
+    _subscribe(client, cls, topic, show, qos_options)
     try:
         client.spin(client.node, lambda: once and count)
     except NoSuchField as problem:
@@ -99,12 +99,12 @@ def echo(
 
 @click.command()
 @click.argument("topic")
-@window(WIDE_WINDOW)
+@window_option(RATE_WINDOW)
 @click.option("--wall-time", is_flag=True, help="By this machine's clock instead of the world's.")
-@quality_options
+@with_qos_options
 @with_world_client
-def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, wishes: Wishes) -> None:
-    """How often something is said on a topic, once a second, until Ctrl-C.
+def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_options: QosOptions) -> None:
+    """Print the rate of a topic's messages once a second, until Ctrl-C.
 
     In the world's time: at ten times the speed a laser of 10 Hz still has 10 Hz.
     """
@@ -114,7 +114,7 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, wishe
     def note(_: Message) -> None:
         nonlocal heard
         heard += 1
-        meter.heard(time.monotonic_ns() if wall_time else client.graph.now_ns)
+        meter.add(time.monotonic_ns() if wall_time else client.graph.now_ns)
 
     def report() -> None:
         nonlocal heard
@@ -123,42 +123,42 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, wishe
             click.echo(text)
         heard = 0
 
-    _listen(client, _message_class(client, topic, wait=True), topic, note, wishes)
-    client.node.create_timer(REPORT_S, report)
+    _subscribe(client, _message_class(client, topic, wait=True), topic, note, qos_options)
+    client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
 
 
 @click.command()
 @click.argument("topic")
-@window(NARROW_WINDOW)
-@quality_options
+@window_option(BANDWIDTH_WINDOW)
+@with_qos_options
 @with_world_client
-def bw(client: InspectionClient, topic: str, window: int, wishes: Wishes) -> None:
+def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
     """How many bytes a second a topic carries, once a second, until Ctrl-C."""
     from kit.ros.serialization import Serializer  # only now: it takes rosbags
 
     meter, serializer = BandwidthMeter(window), Serializer()
 
     def note(message: Message) -> None:
-        meter.heard(client.graph.now_ns, len(serializer.serialize(message)))
+        meter.add(client.graph.now_ns, len(serializer.serialize(message)))
 
     def report() -> None:
         text = meter.text(client.graph.now_ns)
         if text is not None:
             click.echo(text)
 
-    _listen(client, _message_class(client, topic, wait=True), topic, note, wishes)
+    _subscribe(client, _message_class(client, topic, wait=True), topic, note, qos_options)
     click.echo(f"Subscribed to [{topic}]")
-    client.node.create_timer(REPORT_S, report)
+    client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
 
 
 @click.command()
 @click.argument("topic")
-@window(WIDE_WINDOW)
-@quality_options
+@window_option(RATE_WINDOW)
+@with_qos_options
 @with_world_client
-def delay(client: InspectionClient, topic: str, window: int, wishes: Wishes) -> None:
+def delay(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
     """How old a topic's messages are by the time in their header, once a second, until Ctrl-C."""
     cls = _message_class(client, topic, wait=True)
     if "header" not in cls.get_fields_and_field_types():
@@ -166,15 +166,15 @@ def delay(client: InspectionClient, topic: str, window: int, wishes: Wishes) -> 
     meter = DelayMeter(window)
 
     def note(message: Any) -> None:
-        meter.heard(client.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
+        meter.add(client.graph.now_ns, Time.from_msg(message.header.stamp).nanoseconds)
 
     def report() -> None:
         text = meter.text()
         if text is not None:
             click.echo(text)
 
-    _listen(client, cls, topic, note, wishes)
-    client.node.create_timer(REPORT_S, report)
+    _subscribe(client, cls, topic, note, qos_options)
+    client.node.create_timer(REPORT_INTERVAL_S, report)
     client.spin(client.node)
 
 
@@ -183,9 +183,9 @@ def _message_class(
 ) -> type[Message]:
     """The class of a topic's messages, or the end of the verb; ``wait``: as soon as anybody uses the topic."""
     if type_name is not None:
-        return interface_named(find_message, type_name)
+        return find_or_exit(find_message, type_name)
     known = client.graph.directory.topics
-    name = absolute(topic)
+    name = absolute_name(topic)
     if name not in known:
         click.echo(f"WARNING: topic [{topic}] does not appear to be published yet", err=True)
         if not wait:
@@ -199,8 +199,14 @@ def _message_class(
     return find_message(types[0])
 
 
-def _listen(
-    client: InspectionClient, cls: type[Message], topic: str, callback: Callable[[Any], None], wishes: Wishes
+def _subscribe(
+    client: InspectionClient,
+    cls: type[Message],
+    topic: str,
+    callback: Callable[[Any], None],
+    qos_options: QosOptions,
 ) -> None:
-    name = absolute(topic)
-    client.node.create_subscription(cls, name, callback, wishes.on(client.graph.directory.matching_qos(name)))
+    name = absolute_name(topic)
+    client.node.create_subscription(
+        cls, name, callback, qos_options.profile(client.graph.directory.matching_qos(name))
+    )

@@ -1,15 +1,15 @@
-"""``kit ros topic pub``: saying something on a topic."""
+"""``kit ros topic pub``: publishes a message on a topic."""
 
 from __future__ import annotations
 
 import click
 
-from kit.cli.ros.quality import Wishes, quality_options
-from kit.cli.ros.values import filled, interface_named, read_values
+from kit.cli.ros.message_values import find_or_exit, make_message, parse_fields
+from kit.cli.ros.qos_options import QosOptions, with_qos_options
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
-from kit.inspection.graph_text import absolute
+from kit.inspection.graph_text import absolute_name
 from kit.msg.interfaces import find_message
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile
@@ -37,10 +37,10 @@ from kit.ros.node.qos import QoSProfile
     "--wait-matching-subscriptions",
     "wanted",
     type=click.IntRange(0),
-    help="Begin when so many listen; 1 with --once and --times.",
+    help="Begin when there are so many subscribers; 1 with --once and --times.",
 )
-@click.option("-n", "--node-name", help="What this command's node is called.")
-@quality_options
+@click.option("-n", "--node-name", help="Name of this command's node.")
+@with_qos_options
 @with_world_client
 def pub(
     client: InspectionClient,
@@ -53,23 +53,25 @@ def pub(
     every: int,
     wanted: int | None,
     node_name: str | None,
-    wishes: Wishes,
+    qos_options: QosOptions,
 ) -> None:
-    """Say something on a topic: again and again until Ctrl-C, or once.
+    """Publish a message on a topic: repeatedly until Ctrl-C, or once.
 
     \b
     kit ros topic pub --once /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.5}}"
     kit ros topic pub -r 10 /chatter std_msgs/msg/String "data: hello"
     """
     if once and times:
-        exit_with_error("--once and --times say two different things; give one of them")
+        exit_with_error("--once and --times contradict each other; give one of them")
     most = 1 if once else times
-    cls = interface_named(find_message, type_name)
-    content = read_values(values)
-    filled(cls, content, 0)
+    cls = find_or_exit(find_message, type_name)
+    content = parse_fields(values)
+    make_message(cls, content, 0)
     try:
         node = client.create_node(node_name) if node_name else client.node
-        publisher = node.create_publisher(cls, absolute(topic), wishes.on(QoSProfile(depth=10)))
+        publisher = node.create_publisher(
+            cls, absolute_name(topic), qos_options.profile(QoSProfile(depth=10))
+        )
     except NameValidationException as problem:
         exit_with_error(str(problem))
     least = wanted if wanted is not None else bool(most)
@@ -82,7 +84,7 @@ def pub(
     def publish() -> None:
         nonlocal count
         count += 1
-        message = filled(cls, content, client.graph.now_ns)
+        message = make_message(cls, content, client.graph.now_ns)
         if every and count % every == 0:
             click.echo(f"publishing #{count}: {message!r}\n")
         publisher.publish(message)

@@ -1,4 +1,4 @@
-"""What stands on a command line for a message: a type's name, and its values in YAML."""
+"""Parses a message on a command line: the name of its type, and its fields in YAML."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class _Loader(yaml.SafeLoader):
-    """Also reads ``1e-3`` as a number."""
+    """A YAML loader that also reads ``1e-3`` as a number."""
 
 
 _Loader.add_implicit_resolver(
@@ -28,16 +28,16 @@ _Loader.add_implicit_resolver(
 )
 
 
-def interface_named(find: Callable[[str], T], name: str) -> T:
-    """The message or service class of this name, or the end of the verb."""
+def find_or_exit(find: Callable[[str], T], name: str) -> T:
+    """The message or service class that ``find(name)`` returns; exits if there is none."""
     try:
         return find(name)
     except UnknownInterface as problem:
         exit_with_error(f"The passed type is invalid: {problem}")
 
 
-def read_values(text: str) -> Mapping[str, Any]:
-    """The fields in a text, or the end of the verb."""
+def parse_fields(text: str) -> Mapping[str, Any]:
+    """The fields in a YAML text; exits if it cannot be read."""
     try:
         content = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as problem:
@@ -51,15 +51,15 @@ def read_values(text: str) -> Mapping[str, Any]:
     return content
 
 
-def filled(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> Any:
-    """A message with these fields, or the end of the verb. ``auto`` for a header, ``now`` for a time: the present."""
+def make_message(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> Any:
+    """A message with these fields; exits if they do not fit. ``auto`` for a header and ``now`` for a time: ``now_ns``."""
     try:
-        return from_dict(cls, _dated(cls, content, now_ns))
+        return from_dict(cls, _with_timestamps(cls, content, now_ns))
     except ConversionError as problem:
         exit_with_error(f"Failed to populate field: {problem}")
 
 
-def _dated(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> dict[str, Any]:
+def _with_timestamps(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> dict[str, Any]:
     now = {"sec": now_ns // 1_000_000_000, "nanosec": now_ns % 1_000_000_000}
     kinds = {field.name: field.kind for field in cls.__ros_fields__}
     dated = dict(content)
@@ -72,5 +72,5 @@ def _dated(cls: type[Message], content: Mapping[str, Any], now_ns: int) -> dict[
         elif kind.cls is Time and value == "now":
             dated[name] = now
         elif isinstance(value, Mapping):
-            dated[name] = _dated(kind.cls, value, now_ns)
+            dated[name] = _with_timestamps(kind.cls, value, now_ns)
     return dated

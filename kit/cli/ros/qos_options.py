@@ -1,4 +1,4 @@
-"""The options that set a quality of service, for the verbs that listen and publish."""
+"""The options for the quality of service of ``topic echo``, ``hz``, ``bw``, ``delay`` and ``pub``."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from kit.ros.node.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles,
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """What was asked for; None where nothing was."""
+class QosOptions:
+    """The values of the options; None where one was not given."""
 
-    profile: str | None
+    preset: str | None
     history: str | None
     depth: int | None
     reliability: str | None
     durability: str | None
 
-    def on(self, usual: QoSProfile) -> QoSProfile:
-        """``usual``, or the preset asked for, with what else was asked for."""
-        base = usual if self.profile is None else QoSPresetProfiles.get_from_short_key(self.profile)
-        made = QoSProfile(
+    def profile(self, default: QoSProfile) -> QoSProfile:
+        """The profile: the preset, or ``default`` without one, changed by the other options."""
+        base = default if self.preset is None else QoSPresetProfiles.get_from_short_key(self.preset)
+        profile = QoSProfile(
             history=base.history, depth=base.depth, reliability=base.reliability, durability=base.durability
         )
         if self.depth is not None:
-            made.history, made.depth = HistoryPolicy.KEEP_LAST, self.depth
+            profile.history, profile.depth = HistoryPolicy.KEEP_LAST, self.depth
         if self.history is not None:
-            made.history = HistoryPolicy.get_from_short_key(self.history)
+            profile.history = HistoryPolicy.get_from_short_key(self.history)
         if self.reliability is not None:
-            made.reliability = ReliabilityPolicy.get_from_short_key(self.reliability)
+            profile.reliability = ReliabilityPolicy.get_from_short_key(self.reliability)
         if self.durability is not None:
-            made.durability = DurabilityPolicy.get_from_short_key(self.durability)
-        return made
+            profile.durability = DurabilityPolicy.get_from_short_key(self.durability)
+        return profile
 
 
-def quality_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options; the function gets ``wishes``."""
+def with_qos_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: adds the options, and passes their values as ``qos_options``."""
 
     @click.option("--qos-profile", type=click.Choice(QoSPresetProfiles.short_keys()), help="A preset.")
     @click.option("--qos-history", type=click.Choice(HistoryPolicy.short_keys()))
@@ -57,7 +57,7 @@ def quality_options(function: Callable[..., Any]) -> Callable[..., Any]:
         qos_durability: str | None,
         **rest: Any,
     ) -> None:
-        wishes = Wishes(qos_profile, qos_history, qos_depth, qos_reliability, qos_durability)
-        function(*arguments, wishes=wishes, **rest)
+        qos_options = QosOptions(qos_profile, qos_history, qos_depth, qos_reliability, qos_durability)
+        function(*arguments, qos_options=qos_options, **rest)
 
     return verb
