@@ -1,5 +1,5 @@
-"""The autograder, beside the kit: it runs what a student wrote as a guest in another process, and judges what it saw.
+"""The autograder: runs a student's program in another process and grades what it was seen to do.
 
-Nothing of a student's is imported, unpickled or collected here. A student's program says actions or rewards; the
-world, the seeds, the recordings, the checks and the points are ours.
+Nothing of a student's is imported, unpickled or collected in this process. The program only publishes messages or
+returns values; the world, the seeds, the recordings, the checks and the points are the grader's.
 """

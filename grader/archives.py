@@ -1,6 +1,6 @@
-"""Archives from strangers: how many files, how large, how deep, and what they may be called is checked first.
+"""Reads submitted archives safely: limits the number, size, depth and names of their files.
 
-Nothing is ever extracted onto the disk from here: an archive becomes names and bytes.
+Nothing is ever extracted to disk: an archive becomes names and bytes.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from typing import IO, Final
 
 MAX_FILES: Final = 200
 MAX_BYTES: Final = 8 * 1024 * 1024
-"""Of all files together, unpacked."""
+"""Bytes of all files together, unpacked."""
 MAX_DEPTH: Final = 6
-"""Folders in folders."""
+"""Levels of nested folders."""
 MAX_COMPRESSION_RATIO: Final = 200
 """Unpacked to packed bytes: text packs to a tenth, a bomb to a thousandth."""
 
@@ -28,7 +28,7 @@ _IGNORED_PARTS: Final = ("__MACOSX", "__pycache__", ".DS_Store", ".git")
 
 
 class SubmissionRefused(Exception):
-    """What was handed in cannot be taken; the message is for the student."""
+    """The submission cannot be graded; the message tells the student why."""
 
 
 def is_archive(name: str) -> bool:
@@ -36,7 +36,7 @@ def is_archive(name: str) -> bool:
 
 
 def unpack_archive(content: bytes, name: str) -> dict[str, bytes]:
-    """The plain files of an archive. Raises Refused."""
+    """Returns the plain files of an archive: content by relative name. Raises SubmissionRefused."""
     try:
         pairs = _zip_files(content) if name.lower().endswith(".zip") else _tar_files(content)
         files: dict[str, bytes] = {}
@@ -60,7 +60,7 @@ def unpack_archive(content: bytes, name: str) -> dict[str, bytes]:
 
 
 def check_name(path: str) -> None:
-    """Refuses names that lead elsewhere, or that look like something else than they are."""
+    """Raises SubmissionRefused for a name that leads out of the folder or could be mistaken for another."""
     parts = path.split("/")
     if len(parts) > MAX_DEPTH:
         raise SubmissionRefused(f"The folders are more than {MAX_DEPTH} deep.")
@@ -76,7 +76,7 @@ class _UnpackLimit:
         self._files = MAX_FILES
 
     def read(self, stream: IO[bytes]) -> bytes:
-        """One file; what an archive says of its size is not believed."""
+        """Reads one file, and counts its true bytes: the size that the archive declares is not trusted."""
         data = stream.read(self._bytes + 1)
         self._bytes -= len(data)
         if self._bytes < 0:

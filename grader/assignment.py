@@ -1,4 +1,4 @@
-"""What a teacher asks for: one assignment, as records. ``grader.reading`` makes them of a folder."""
+"""Records of one assignment. ``grader.reading`` reads them from its folder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kit.school.result import Visibility
 
 
 class SeedSet(Enum):
-    """Which seeds a criterion is judged on."""
+    """Selects the seeds that a criterion is graded on."""
 
     PUBLIC = "public"
     SECRET = "secret"
@@ -26,7 +26,7 @@ class SeedSet(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Shift:
-    """How far a seed may move the start to either side: m, m, rad."""
+    """The most that a seed moves the start to either side: m, m, rad."""
 
     x: float = 0.0
     y: float = 0.0
@@ -35,55 +35,55 @@ class Shift:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A kind of episode: where, for how long, and with which seeds."""
+    """One set-up of episodes: the scenario, the time limit and the seeds."""
 
     name: str
     place: Scenario
     time_s: float
     """Simulated."""
     seeds: tuple[int, ...]
-    """For practice: everybody may know them."""
+    """Public seeds, for practice."""
     secret_seeds: tuple[int, ...]
-    """For the grade. Empty on a student's machine."""
+    """Seeds for the grade; empty on a student's machine."""
     shift: Shift
     noise: float | None
-    """Standard deviation of every laser's readings [m]; None: as the world file says."""
+    """Standard deviation of every laser's readings [m]; None keeps that of the world file."""
     until_reached: bool
     """Whether the episode ends when the target is reached."""
     services: frozenset[str]
-    """Which of the world's services the program may change it with. ``move_model`` only ever sends the robot home."""
+    """The world services that the program may call. ``move_model`` only ever sends the robot home."""
     parameters: tuple[str, ...] = ()
-    """Each ``name:=value``, as one gives them on a command line."""
+    """Each ``name:=value``, as on a command line."""
     calls: tuple[ServiceCall, ...] = ()
-    """What the program is asked meanwhile, in services of its own."""
+    """Calls that the grader makes to the program's own services during the episode."""
 
     def home(self) -> Pose:
-        """Where the robot starts, before a seed shifts it."""
+        """Returns the robot's start before a seed shifts it."""
         return self.place.start or Pose()
 
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
-    """One thing that is judged, for points."""
+    """One graded property of the work, worth points."""
 
     id: str
     title: str
     check: str
-    """Its name in the table of checks."""
+    """Name of the check that measures it."""
     points: float
     anchors: Anchors
     params: Any
-    """The record that the check declares; whatever the check measures with."""
+    """The check's own params record."""
     trials: tuple[str, ...]
     seeds: SeedSet
     need: float | None
-    """The share of episodes that must earn everything; None: the mean of what each earns counts."""
+    """The share of episodes that must earn full points; None takes the mean over all episodes."""
     after: str | None
-    """Only episodes in which this criterion earned everything count."""
+    """Id of a criterion: only episodes that earned full points there count."""
     visibility: Visibility
     hints: tuple[str, ...]
     feedback: str
-    """The check's own sentence, to be filled with what was measured."""
+    """The check's sentence, with placeholders for the measured values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class TeacherTest:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """The small model of a task that a reward is planned on. See ``grader.evidence.task_model``."""
+    """The grid on which a reward's optimal behaviour is computed; see ``grader.evidence.task_model``."""
 
     rows: tuple[str, ...]
     """``#`` wall, ``.`` floor, ``G`` target."""
@@ -114,27 +114,27 @@ class GridTask:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Everything of one folder."""
+    """One assignment, as its folder describes it."""
 
     folder: Path
     id: str
     title: str
     kind: str
-    """What is handed in: a module of ``grader.kinds``."""
+    """The kind of submission: a module of ``grader.kinds``."""
     submit: str
-    """The name of the file that is handed in."""
+    """Name of the submitted file."""
     level: Level
-    """The least confinement at which secrets are used."""
+    """The lowest confinement level at which secret seeds are used."""
     limits: Limits
     trials: tuple[Trial, ...]
     criteria: tuple[Criterion, ...]
     task: Any
     """The kind's own record: a ``GridTask`` for a reward."""
     version: str
-    """A digest of the folder's files: any change makes another one."""
+    """Digest of the folder's files that decide a grade."""
     has_secrets: bool
     teacher_tests: tuple[TeacherTest, ...] = ()
-    """The teacher's, in the order of their files."""
+    """In the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()
 
     @property
@@ -143,7 +143,7 @@ class Assignment:
 
     @property
     def tests(self) -> tuple[Criterion | TeacherTest, ...]:
-        """Everything that earns points, in the order in which it is judged."""
+        """Everything that earns points, in grading order."""
         return (*self.criteria, *self.teacher_tests)
 
     def trial(self, name: str) -> Trial:
@@ -151,4 +151,4 @@ class Assignment:
 
 
 MAX_HINTS = 3
-"""A criterion has at most so many hints: the first says where to look, the last nearly how."""
+"""The most hints a criterion may have, from the vaguest to the most specific."""

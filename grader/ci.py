@@ -1,10 +1,10 @@
-"""Workflow files for a repository whose pushes are graded.
+"""Generates CI workflow files for a repository whose pushes are graded.
 
-The job that runs students' code has a read-only token and no secrets; what it found is published by a second job. For
-a grade that counts, the workflow and the assignment belong into the teacher's repository, not into the student's.
+The job that runs students' code has a read-only token and no secrets; a second job publishes its result. For a grade
+that counts, keep the workflow and the assignment in the teacher's repository, not in the student's.
 
-The kit is installed from where its source is kept, in the versions it is tested with: never by a name that a package
-index would have to resolve.
+The kit is installed from its source repository with its tested versions, never by a name that a package index would
+have to resolve.
 """
 
 from __future__ import annotations
@@ -99,21 +99,21 @@ grade:
 WORKFLOWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {"github": (".github/workflows/grade.yml", GITHUB), "gitlab": (".gitlab-ci.yml", GITLAB)}
 )
-"""Where each workflow file belongs, and its text."""
+"""By service: the path of the workflow file, and its text."""
 
 
 @dataclass(frozen=True, slots=True)
 class GitSource:
-    """Where the kit's source is kept."""
+    """Address and version of the kit's source repository."""
 
     address: str
     """For ``git clone``."""
     version: str = ""
-    """A branch or a tag; empty: the newest."""
+    """A branch or tag; empty for the default branch."""
 
     @classmethod
     def read(cls, text: str) -> GitSource:
-        """``https://HOST/PATH`` or ``https://HOST/PATH@VERSION``. Raises ValueError: it will stand in a shell."""
+        """``https://HOST/PATH`` or ``https://HOST/PATH@VERSION``. Raises ValueError for anything else, since the text goes into a shell script."""
         found = _ADDRESS.fullmatch(text)
         if found is None:
             raise ValueError(f"{text}: say https://HOST/PATH, perhaps with @ and a branch or tag after it")
@@ -121,7 +121,7 @@ class GitSource:
 
     @property
     def clone(self) -> str:
-        """As ``git clone`` wants it."""
+        """The arguments for ``git clone``."""
         return f"--branch {self.version} {self.address}" if self.version else self.address
 
 
@@ -131,5 +131,5 @@ _ADDRESS: Final = re.compile(
 
 
 def workflow(service: str, *, submit: str, assignment: str, kit: GitSource) -> str:
-    """The workflow file of a service. Names must be plain: they stand in a shell's double quotes."""
+    """Returns the text of a service's workflow file. The names go into a shell's double quotes, so they must be plain."""
     return WORKFLOWS[service][1].format(submit=submit, assignment=assignment, clone=kit.clone)

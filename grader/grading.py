@@ -1,4 +1,4 @@
-"""Grading one submission: evidence is gathered when a criterion first asks for it, then the criterion is judged."""
+"""Grades one submission: collects the evidence that each criterion needs, measures it and gives points."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyTy
         FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
     }
 )
-"""What a failure of the program means for a test; any other kind is the student's error."""
+"""The status that a failure of the program gives a criterion; any other kind is a student error."""
 
 OUTSIDE_SIGNALS: Final = frozenset({FailureKind.KILLED, FailureKind.CRASH})
-"""What a signal does to a program: perhaps one that was meant for everything that runs here."""
+"""Failures caused by a signal, which may have been meant for every process on this machine."""
 SHUTDOWN_WAIT_S: Final = 0.5
-"""How long to wait then before saying so: whoever shuts a machine down ends the grader too, a moment later, and what a
-program lost by that is not its author's fault."""
+"""Seconds to wait before such a failure is reported: a shutdown ends the grader too, a moment later, and then costs the
+student nothing."""
 
 COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
@@ -48,28 +48,28 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
         CriterionStatus.STUDENT_ERROR: "Your program stopped with an error",
     }
 )
-"""All that is said of a failure where seeds are secret: an error's own text could carry away what was seen."""
+"""The whole rationale of a failure on a secret seed: an error's own text could leak what the program saw."""
 
 
 class LevelTooLow(Exception):
-    """Secrets would be used at a lower confinement than the assignment allows; the message says what to do."""
+    """Secret seeds would be used at a lower confinement level than the assignment allows."""
 
 
 @dataclass(frozen=True, slots=True)
 class GradingOptions:
-    """How to grade."""
+    """How to grade a submission."""
 
     level: Level | None = None
-    """How far to lock programs in; None: as the assignment says."""
+    """Confinement level of programs; None takes the assignment's."""
     secret: bool = False
-    """Whether the secret seeds are used: for the grade."""
+    """Whether to use the secret seeds too, for the grade."""
     may_fall: bool = True
-    """Whether practice goes on at a lower level where the machine has none higher."""
+    """Whether practice may go on at a lower level where this machine supports none higher."""
 
 
 @dataclass(frozen=True, slots=True)
 class _ScoredEvidence:
-    """One piece of evidence and what it earned."""
+    """One piece of evidence with its measure and the share of points it earned."""
 
     evidence: Evidence
     measure: float | None
@@ -77,7 +77,7 @@ class _ScoredEvidence:
 
 
 class Grading:
-    """Judges criteria one by one, in any order; the plugin and the command line share this."""
+    """Grades criteria one by one, in any order; used by the pytest plugin and the command line."""
 
     def __init__(
         self, assignment: Assignment, submission: Submission, collector: EvidenceCollector, *, secret: bool
@@ -93,17 +93,17 @@ class Grading:
         self._started = datetime.now(UTC).isoformat(timespec="seconds")
 
     def judge(self, criterion: Criterion) -> CriterionResult:
-        """The criterion's test. Never raises: what breaks here is the grader's, and said to be."""
+        """Grades one criterion. Never raises: an error in here becomes a result with the status GRADER_ERROR."""
         if criterion.id not in self._tests:
             try:
                 test = self._judge(criterion)
-            except Exception:  # noqa: BLE001  # whatever it is, it is ours and must not cost the student a point
+            except Exception:  # noqa: BLE001  # any error in here is the grader's and must not cost the student a point
                 test = self._broken(criterion, traceback.format_exc())
             self._tests[criterion.id] = test
         return self._tests[criterion.id]
 
     def result(self) -> GradingResult:
-        """All criteria judged."""
+        """Grades all criteria and teacher tests, and returns the complete result."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
         tests += run_teacher_tests(
             self, self.assignment.folder, self.assignment.teacher_tests, self.assignment.teacher_test_files
@@ -126,11 +126,11 @@ class Grading:
         )
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
-        """What a criterion is judged on: for a teacher's own tests."""
+        """Returns the evidence of a criterion, by its id; for teacher tests."""
         return self._collector.evidence(self._criterion(criterion_id))
 
     def worst_evidence(self) -> Evidence | None:
-        """The public episode that earned least of all; None if all earned everything."""
+        """Returns the public evidence that lost the most points; None if nothing lost any."""
         shares: dict[int, tuple[float, Evidence]] = {}
         for scored in self._scored.values():
             for each in scored:
@@ -194,7 +194,7 @@ class Grading:
         )
 
     def _score(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
-        """Each piece of evidence for a criterion, measured and marked."""
+        """Measures and scores each piece of evidence for a criterion."""
         if criterion.id in self._scored:
             return self._scored[criterion.id]
         check = self._checks[criterion.check]
@@ -210,7 +210,7 @@ class Grading:
         return self._scored[criterion.id]
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
-        """Whether a piece of evidence earned everything in the criterion that comes first."""
+        """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
         if criterion.after is None:
             return lambda evidence: True
         before = self._score(self._criterion(criterion.after))
@@ -274,7 +274,7 @@ class Grading:
 def open_grading(
     assignment: Assignment, submission: Submission, options: GradingOptions
 ) -> Iterator[Grading]:
-    """A grading, ready to judge. Raises LevelTooLow."""
+    """Opens a grading of one submission. Raises LevelTooLow."""
     level = assignment.level if options.level is None else options.level
     if options.secret and level < assignment.level:
         raise LevelTooLow(
@@ -290,13 +290,13 @@ def open_grading(
 
 
 def grade(assignment: Assignment, submission: Submission, options: GradingOptions) -> GradingResult:
-    """The result of one submission. Raises LevelTooLow."""
+    """Grades one submission completely. Raises LevelTooLow."""
     with open_grading(assignment, submission, options) as grading:
         return grading.result()
 
 
 def _share(criterion: Criterion, shares: Sequence[float]) -> float:
-    """What part of a criterion's points its episodes earn together."""
+    """Returns the share of a criterion's points that its episodes earn together, 0 to 1."""
     if criterion.need is None:
         return math.fsum(shares) / len(shares)
     passed = sum(share == 1.0 for share in shares) / len(shares)
@@ -312,7 +312,7 @@ def _status(failure: Failure | None) -> CriterionStatus:
 
 
 def _finite(measure: float | None) -> float | None:
-    """For JSON, which has no word for infinity."""
+    """Returns None for infinity and NaN, which JSON cannot represent."""
     return round(measure, 6) if measure is not None and math.isfinite(measure) else None
 
 

@@ -1,11 +1,11 @@
 """The pytest plugin: ``pytest FOLDER --submission FILE -p grader.plugin``.
 
-It collects ``assignment.yaml``, one item per criterion, and nothing of the student's: the submission is data that
-another process runs. A criterion that fails is a failure; a grader that breaks is an error, not the student's; what
-is judged only with secret seeds is skipped. Points stand in the items' properties, and so in a JUnit report.
+Collects ``assignment.yaml`` as one item per criterion, and nothing of the student's: the submission is data that another
+process runs. A criterion that is not met is a failure; an error of the grader is a pytest error; what needs secret seeds
+is skipped. Points are in the items' properties, and so in a JUnit report.
 
-A teacher's own tests beside the assignment (``test_*.py``) get the fixture ``grading``: recordings the grader made. What
-they are worth says ``@pytest.mark.points(3)``; see ``grader.teacher_tests``.
+Teacher tests beside the assignment (``test_*.py``) get the fixture ``grading``, with the recordings the grader made;
+``@pytest.mark.points(3)`` sets their worth. See ``grader.teacher_tests``.
 """
 
 from __future__ import annotations
@@ -31,8 +31,10 @@ from kit.world.problems import WorldError
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("grader", "grading a student's work")
-    group.addoption("--submission", metavar="FILE", help="what was handed in: a file, a folder or an archive")
-    group.addoption("--grading-level", type=int, metavar="N", help="how far to lock the program in (0 to 3)")
+    group.addoption("--submission", metavar="FILE", help="the submission: a file, a folder or an archive")
+    group.addoption(
+        "--grading-level", type=int, metavar="N", help="confinement level of the program (0 to 3)"
+    )
     group.addoption("--secret-seeds", action="store_true", help="use the secret seeds too: for the grade")
 
 
@@ -41,7 +43,7 @@ class CriterionFailed(Exception):
 
 
 class GraderError(Exception):
-    """The grader could not judge."""
+    """The grader itself failed."""
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> AssignmentNode | None:
@@ -52,7 +54,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> Assignment
 
 
 class AssignmentNode(pytest.File):
-    """One assignment: an item for each of its criteria."""
+    """Collects an item for each criterion of one assignment."""
 
     def collect(self) -> Iterator[CriterionItem]:
         try:
@@ -66,7 +68,7 @@ class AssignmentNode(pytest.File):
 
 
 class CriterionItem(pytest.Item):
-    """One criterion, judged on the recordings that the session shares."""
+    """One criterion, graded on the recordings that the session shares."""
 
     def __init__(self, *, assignment: Assignment, criterion: Criterion, **keywords: Any) -> None:
         super().__init__(**keywords)
@@ -88,7 +90,7 @@ class CriterionItem(pytest.Item):
             raise CriterionFailed(_feedback(test))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """What was wrong, not where in the grader it was noticed."""
+        """Shows the rationale instead of a traceback through the grader."""
         return str(excinfo.value)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
@@ -106,7 +108,7 @@ def _feedback(test: CriterionResult) -> str:
 
 
 class GradingSession:
-    """The gradings of one session: each assignment's episodes are run once."""
+    """Keeps the open gradings of a pytest session, so that each assignment's episodes run once."""
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
@@ -150,7 +152,7 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """A grader that breaks is an error in the report (as in a fixture), never a failure of the student's."""
+    """Reports an error of the grader as a pytest error (as in a fixture), never as a failure of the student's."""
     report = yield
     mark = item.get_closest_marker(MARK)
     if mark is not None and mark.args and report.when == "call":
@@ -170,8 +172,8 @@ def pytest_runtest_makereport(
 
 @pytest.fixture(scope="session")
 def grading(request: pytest.FixtureRequest) -> Grading:
-    """The grading of the assignment in the folder of the session: for a teacher's own tests."""
+    """The grading of the assignment in the session's root folder, for teacher tests."""
     folder = request.config.rootpath
     if request.config.getoption("--submission") is None:
-        pytest.skip("nothing was handed in: say --submission FILE")
+        pytest.skip("no submission: give --submission FILE")
     return request.config.stash[GRADING_SESSION_KEY].open(read_assignment(folder))

@@ -1,7 +1,7 @@
-"""An assignment's folder becomes records. Every mistake is told with its file, line and column.
+"""Reads an assignment's folder into records; every mistake is reported with its file, line and column.
 
-``assignment.yaml`` is what everybody may see. ``secret.yaml``, beside it on the teacher's machine alone, holds
-further seeds. Whatever else lies there (worlds, ``starter.py``, ``solution.py``, ``wrong/``) is found by its name.
+``assignment.yaml`` is public. ``secret.yaml``, beside it on the teacher's machine alone, holds further seeds. Other files
+(worlds, ``starter.py``, ``solution.py``, ``wrong/``) are found by their names.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SECRET_FILE: Final = "secret.yaml"
 
 
 def read_assignment(folder: Path) -> Assignment:
-    """The assignment in ``folder``. Raises WorldError with all its mistakes."""
+    """Reads the assignment in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
     sheet = folder / ASSIGNMENT_FILE
     documents = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems)
@@ -48,7 +48,7 @@ def read_assignment(folder: Path) -> Assignment:
 
 
 def folder_digest(folder: Path) -> str:
-    """What everything in the folder that grading depends on says, in short."""
+    """Returns a digest of all files in the folder that grading depends on."""
     parsed = hashlib.sha256()
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
@@ -62,13 +62,13 @@ def folder_digest(folder: Path) -> str:
 
 
 IGNORED_STEMS: Final = ("README", "starter", "solution", "wrong")
-"""What may change without making another assignment of it, whatever its ending."""
+"""Files and folders, without their endings, that may change without changing the assignment's version."""
 
 
 def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assignment | None:
     kind = section.text("kind", "controller", choices=kind_names())
     if kind not in kind_names():
-        return None  # what the rest should say depends on the kind
+        return None  # the meaning of the other keys depends on the kind
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
@@ -95,7 +95,7 @@ def _assignment(section: Section, secrets: Section | None, folder: Path) -> Assi
 
 
 def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:
-    """The files with the teacher's own tests."""
+    """Yields the files with teacher tests."""
     for name in section.texts("tests", ()):
         if "/" in name or not name.startswith("test_") or not (folder / name).is_file():
             section.error(f"{quoted(name)} must be a file test_*.py in this folder", "tests")
@@ -197,7 +197,7 @@ def _anchors(section: Section, check: Check) -> Anchors:
 
 
 def _params(section: Section | None, check: Check) -> Any:
-    """The check's own record, from the fields it declares."""
+    """Reads the check's params record, whose fields declare names, types and defaults."""
     if section is None:
         return check.params()
     getters: Mapping[type, Callable[..., Any]] = {

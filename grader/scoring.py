@@ -1,4 +1,4 @@
-"""Partial credit: a straight line between two anchors; and the odds that a good work fails by bad luck."""
+"""Partial credit between two anchors, and the probability that a good work fails by bad luck."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Anchors:
-    """The measure at which nothing is earned, and the one at which everything is. Either may be the larger."""
+    """The measure that earns nothing, and the one that earns everything. Either may be the larger."""
 
     none: float
     full: float
 
     def share(self, measure: float) -> float:
-        """What part of the points a measure earns, 0 to 1. NaN earns nothing.
+        """Returns the share of points that a measure earns, 0 to 1. NaN earns nothing.
 
-        Written so that nothing but a comparison that holds gives credit.
+        Only a comparison that holds gives credit, so that NaN cannot slip through.
         """
         if self.full >= self.none:
             if measure >= self.full:
@@ -28,12 +28,12 @@ class Anchors:
 
 
 def required_passes(count: int, need: float) -> int:
-    """How many of ``count`` episodes must pass for a share ``need`` of them."""
+    """Returns how many of ``count`` episodes must pass for a share ``need`` of them."""
     return min(count, max(0, math.ceil(need * count - 1e-9)))
 
 
 def unfair_fail_probability(success: float, count: int, passes: int) -> float:
-    """The odds that a work which succeeds with probability ``success`` passes fewer than ``passes`` of ``count``.
+    """Returns the probability that a work which succeeds with probability ``success`` passes fewer than ``passes`` of ``count``.
 
     The exact binomial sum.
     """
@@ -44,7 +44,7 @@ def unfair_fail_probability(success: float, count: int, passes: int) -> float:
 
 
 def wilson_interval(passes: int, count: int, z: float = 1.959963984540054) -> tuple[float, float]:
-    """Wilson's interval for a success probability of which ``passes`` of ``count`` were seen (95 %)."""
+    """Returns Wilson's interval (95 %) for a success probability, given ``passes`` in ``count`` episodes."""
     if count == 0:
         return 0.0, 1.0
     p, zz = passes / count, z * z

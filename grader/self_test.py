@@ -1,8 +1,8 @@
-"""Does an assignment do what its teacher means? The starter, the solution and the wrong solutions say so.
+"""Tests an assignment on its own starter, solution and wrong solutions.
 
-The starter must run into no error and not pass. The solution must earn everything, and do the same twice. Every
-``wrong/ID`` (or ``wrong/ID+ID__comment``) must lose the criteria it is named for, those that depend on them,
-and no other. Each is a file with the ending of what is handed in, or a folder that holds it.
+The starter must run without an error and must not pass. The solution must earn full points, twice with the same result.
+Every ``wrong/ID`` (or ``wrong/ID+ID__comment``) must lose the criteria it is named for, those that depend on them, and no
+others. Each is a file with the ending of a submission, or a folder that holds it.
 """
 
 from __future__ import annotations
@@ -24,36 +24,38 @@ SOLUTION: Final = "solution"
 WRONG: Final = "wrong"
 
 SUCCESS_RATES: Final = (0.9, 0.95, 0.99)
-"""How often a good work may truly succeed; for the odds."""
+"""Success probabilities of a good work, for which the odds of a fail are computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorkReport:
-    """One thing that was tried out."""
+    """The result of testing one starter, solution or wrong solution."""
 
     name: str
     problems: tuple[str, ...]
-    """What is not as it should be; empty: all is well."""
+    """What is wrong; empty if nothing is."""
     summary: str
 
 
 @dataclass(frozen=True, slots=True)
 class UnfairFailOdds:
-    """How likely a good work fails a criterion by bad luck."""
+    """The probabilities that a good work fails a criterion by bad luck."""
 
     criterion: str
     episodes: int
     required_passes: int
-    """So many have to succeed."""
+    """The number of episodes that must succeed."""
     probabilities: tuple[float, ...]
-    """For each of ``SUCCESS_RATES``."""
+    """One for each of ``SUCCESS_RATES``."""
 
 
 def try_works(
     assignment: Assignment, options: GradingOptions, solutions: Path | None = None
 ) -> Iterator[WorkReport]:
-    """Tries the folder's works one after the other; ``solutions``: where the right and the wrong ones lie, if not in
-    the assignment's folder. Raises LevelTooLow."""
+    """Tests the starter, the solution and the wrong solutions, one after the other. Raises LevelTooLow.
+
+    ``solutions``: the folder of the solution and the wrong solutions, if it is not the assignment's.
+    """
     solutions = assignment.folder if solutions is None else solutions
     yield _try_starter(assignment, _work_path(assignment.folder, STARTER, assignment), options)
     yield _try_solution(assignment, _work_path(solutions, SOLUTION, assignment), options)
@@ -70,7 +72,7 @@ def try_works(
 
 
 def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:
-    """For every criterion that is a matter of succeeding or not, in several episodes."""
+    """Yields the odds for every criterion that is judged on seeds."""
     for criterion in assignment.criteria:
         count = 0
         for name in criterion.trials:
@@ -88,7 +90,7 @@ def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[Unfair
 
 
 def _work_path(folder: Path, stem: str, assignment: Assignment) -> Path:
-    """A work by its name: a folder that holds what is handed in, or the file itself under this name."""
+    """Returns the path of a work: a folder of this name, or a file of this name with the submission's ending."""
     whole = folder / stem
     return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
 
@@ -130,7 +132,7 @@ def _try_solution(assignment: Assignment, file: Path, options: GradingOptions) -
     again = _grade(assignment, file, options)
     if isinstance(again, GradingResult) and again.tests != result.tests:
         problems.append(
-            "it does not do the same twice: does it use the wall clock, or chance that nobody seeds?"
+            "two runs give different results: does it use the wall clock, or unseeded randomness?"
         )
     return WorkReport(file.name, tuple(problems), _summary(result))
 

@@ -1,6 +1,6 @@
-"""What was handed in, as bytes: one snapshot with a digest, which nobody changes between two tests.
+"""Reads a submission as bytes: one snapshot with a digest, the same for every test.
 
-Nothing is imported, and nothing but plain files is taken: no links, no devices, no pipes.
+Nothing is imported, and only plain files are accepted: no links, no devices, no pipes.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from typing import Final
 from grader.archives import MAX_BYTES, MAX_FILES, SubmissionRefused, check_name, is_archive, unpack_archive
 
 IGNORED_NAMES: Final = ("__pycache__", "__MACOSX", ".DS_Store", ".git", ".venv", ".ipynb_checkpoints")
-"""What people hand in without meaning to."""
+"""Files and folders that are often submitted by accident."""
 
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """Files by name, relative, with ``/``; and which of them is what was asked for."""
+    """The submitted files by relative name (with ``/``), and which of them the assignment asks for."""
 
     name: str
-    """Whose, or which."""
+    """The student's, or the file's."""
     main: str
     files: Mapping[str, bytes]
 
     @property
     def digest(self) -> str:
-        """Equal for equal content."""
+        """Digest of all names and contents."""
         digest = hashlib.sha256(self.main.encode())
         for name, content in sorted(self.files.items()):
             digest.update(repr((name, len(content))).encode())
@@ -41,22 +41,22 @@ class Submission:
 
     @contextmanager
     def in_temporary_folder(self) -> Iterator[Path]:
-        """The files in a folder of their own, not to be written to; where the main one lies."""
+        """Writes the files, read-only, into a temporary folder; the context's value is the main file's path."""
         with tempfile.TemporaryDirectory(prefix="work-") as folder:
             for name, content in self.files.items():
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
                 path.chmod(0o444)
-            # A program that runs as another user has to come this far.
+            # A program that runs as another user must be able to enter the folder.
             Path(folder).chmod(0o755)
             yield Path(folder, self.main)
 
 
 def read_submission(path: Path, main: str) -> Submission:
-    """The submission at ``path``: the file itself, or a folder or an archive that holds the file ``main``.
+    """Reads the submission at ``path``: the file itself, or a folder or archive that holds the file ``main``.
 
-    Raises Refused, whose message a student understands.
+    Raises SubmissionRefused, with a message for the student.
     """
     if path.is_symlink():
         raise SubmissionRefused(f"{path.name} is a link; hand in the file itself.")
@@ -69,7 +69,7 @@ def read_submission(path: Path, main: str) -> Submission:
 
 
 def _find_main_file(name: str, files: Mapping[str, bytes], main: str) -> Submission:
-    """Looks for the wanted file: at the top, or in the only folder in which it is."""
+    """Finds the main file: at the top, or in the only folder that holds one."""
     matches = sorted(
         (each for each in files if each == main or each.endswith(f"/{main}")),
         key=lambda each: each.count("/"),
@@ -88,7 +88,7 @@ def _find_main_file(name: str, files: Mapping[str, bytes], main: str) -> Submiss
 
 
 def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """The plain files below a folder."""
+    """Yields the name and content of each plain file below a folder."""
     total = count = 0
     for path_name, folders, names in os.walk(folder, followlinks=False):
         folders[:] = sorted(each for each in folders if each not in IGNORED_NAMES)
@@ -111,7 +111,7 @@ def _folder_files(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def _read_plain_file(path: Path) -> bytes:
-    """A plain file's content; without following a link, waiting for a pipe, or reading without end."""
+    """Reads a plain file without following a link, blocking on a pipe, or reading without end."""
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:

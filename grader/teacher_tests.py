@@ -1,14 +1,14 @@
-"""A teacher's own tests, for points: functions ``test_*`` in files that ``assignment.yaml`` names under ``tests``.
+"""Runs a teacher's own tests for points: functions ``test_*`` in files that ``assignment.yaml`` names under ``tests``.
 
-They are pytest's, get the fixture ``grading``, and look at recordings that the grader made::
+They run under pytest, get the fixture ``grading``, and examine recordings that the grader made::
 
     @pytest.mark.points(3, hints=["Drive on the right."])
     def test_keeps_to_the_right(grading):
         \"\"\"The robot left its side of the corridor.\"\"\"
         assert all((drive.track[:, 0] > 0.4).all() for drive in grading.evidence("runs"))
 
-The docstring is the feedback, unless the assertion has a message of its own: what a test says of itself may be told, its
-source may not. No file but those named is ever imported: whoever hands in may work in the assignment's folder.
+The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. Only the
+files named are imported, since a student may work in the assignment's folder.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     import pytest
 
 MARK: Final = "points"
-MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's own test is worth"
+MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's test is worth"
 
 
 def read_teacher_tests(file: Path) -> Iterator[TeacherTest]:
-    """The tests of a file, which is read and not run. Raises ValueError, OSError, SyntaxError."""
+    """Yields the tests that a file declares, without running it. Raises ValueError, OSError, SyntaxError."""
     for node in ast.parse(file.read_text(encoding="utf-8"), file.name).body:
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
             marks = [each for each in node.decorator_list if isinstance(each, ast.Call) and _is_mark(each)]
@@ -69,7 +69,7 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
 
 @dataclass(eq=False)
 class _Session:
-    """A pytest plugin that lends the grading out and notes what came of each test."""
+    """State of the pytest run: the grading that tests get, and the outcomes of each test."""
 
     grading: EvidenceSource
     outcomes: dict[str, list[tuple[CriterionStatus, str]]] = field(default_factory=dict)
@@ -82,7 +82,7 @@ class _Session:
 def run_teacher_tests(
     grading: EvidenceSource, folder: Path, tests: Sequence[TeacherTest], files: Sequence[Path]
 ) -> tuple[CriterionResult, ...]:
-    """Runs the tests in this process. What breaks in them is the teacher's and costs no student a point."""
+    """Runs the tests in this process. An error in a test is the teacher's and costs no student a point."""
     if not tests:
         return ()
     session = _Session(grading)
@@ -101,7 +101,7 @@ def run_teacher_tests(
 
 @contextmanager
 def _isolated_environment() -> Iterator[None]:
-    """No plugin but pytest's own, whatever is installed or asked for elsewhere."""
+    """Removes what would make pytest load plugins, whatever is installed or configured; restores it afterwards."""
     before = dict(os.environ)
     for name in ("PYTEST_ADDOPTS", "PYTEST_PLUGINS"):
         os.environ.pop(name, None)
@@ -114,7 +114,7 @@ def _isolated_environment() -> Iterator[None]:
 
 
 def _plugin(session: _Session) -> object:
-    """Made when it is needed: a grader that runs no such test imports no pytest."""
+    """Makes the plugin. A function, so that pytest is only imported where a teacher test runs."""
     import pytest
 
     class GradingPlugin:
@@ -145,12 +145,12 @@ def _plugin(session: _Session) -> object:
 
 
 def _assertion_message(message: str) -> str:
-    """An assertion's own message, without what pytest adds: that is the test's source."""
+    """Returns an assertion's own message without what pytest adds, which is the test's source."""
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
 def _test(test: TeacherTest, outcomes: Sequence[tuple[CriterionStatus, str]]) -> CriterionResult:
-    """Several outcomes are those of several parameters: each is worth its share."""
+    """Makes the result of one test; each outcome of a parametrized test is worth its share."""
     statuses = [status for status, _ in outcomes]
     blank = CriterionResult(test.id, test.title, CriterionStatus.SKIPPED, 0.0, test.points, test.visibility)
     if not outcomes or CriterionStatus.GRADER_ERROR in statuses:

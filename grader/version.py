@@ -1,7 +1,6 @@
-"""Which grader this is: what decides a result besides the submission and the assignment.
+"""The grader's version: a digest of the code and maps that decide a result besides submission and assignment.
 
-The package's version alone would not do: a checkout that is brought up to date keeps it, and results of before would be
-taken for those of now.
+The package's version alone is not enough: an updated checkout keeps it, and older results would pass for current ones.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ USED_FILES: Final = ("school/result.py", "school/result_text.py")
 
 @cache
 def grader_version() -> str:
-    """The version, and a digest of the code and the maps that grading depends on."""
+    """Returns the package version with a digest of the code and maps that grading depends on."""
     digest = hashlib.sha256()
     for name, file in _source_files():
         content = file.read_bytes()

@@ -1,1 +1,1 @@
-"""Checks: each is one function whose docstring is the feedback. A new one is a function here and its name in a table."""
+"""Checks: functions that measure evidence. A function's docstring is the feedback for lost points, its name the check's."""

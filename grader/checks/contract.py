@@ -1,4 +1,4 @@
-"""What a check is: a measure, the anchors it is marked between, and a sentence for those who miss."""
+"""A check: a measure, the anchors between which it earns points, and the feedback for lost points."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ Faults = Callable[[Any, Any], Iterator[str]]
 
 @dataclass(frozen=True, slots=True)
 class NoParams:
-    """A check that needs no more than what was recorded."""
+    """The params of a check that has none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One way to look at a recording."""
+    """One way to measure evidence."""
 
     name: str
     measure: Callable[[Any, Any], float]
     """(evidence, params) -> a number; NaN earns nothing."""
     anchors: Anchors
-    """Unless the assignment gives others."""
+    """The default anchors."""
     unit: str
     """``%`` for a share."""
     params: type[Any]
-    """A frozen dataclass whose defaults say what may be given: numbers, texts, lists of texts."""
+    """A frozen dataclass; the types of its defaults set what may be given: numbers, texts, lists of texts."""
     feedback: str
     """``{actual}``, ``{full}``, ``{where}``, ``{passed}``, ``{count}`` are filled in."""
     words: tuple[str, str] | None
-    """For a yes or no: what 0 and 1 mean."""
+    """For a measure that is 0 or 1: the words for both."""
     faults: Faults | None = None
     """None where the feedback says all."""
 
     def format(self, measure: float) -> str:
-        """A measure in words, or with its unit."""
+        """Formats a measure in words, or as a number with its unit."""
         if self.words is not None:
             return self.words[measure >= 1.0]
         if math.isnan(measure):

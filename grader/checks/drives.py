@@ -1,4 +1,4 @@
-"""Checks of controllers: functions of one recorded drive."""
+"""Checks of controllers, each a function of one recorded drive."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from kit.run.recording import ACCEPT
 class TopicRateParams:
     topic: str = "/cmd_vel"
     rate: float = 10.0
-    """Messages per second that are wanted."""
+    """Messages per second."""
 
 
 @dataclass(frozen=True, slots=True)
 class TopicsParams:
     topics: tuple[str, ...] = ("/cmd_vel geometry_msgs/msg/Twist",)
-    """Each a name, perhaps with the type of its messages after a space, and after another the only node that may
-    publish it."""
+    """Each a name; after a space optionally the message type, and after another the only node that may publish
+    it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class DistanceBandParams:
 @dataclass(frozen=True, slots=True)
 class WaypointParams:
     places: tuple[str, ...] = ("1 0",)
-    """In the order in which the robot should come by: x and y [m], seen from its start."""
+    """Waypoints in order: x and y [m] in the frame of the robot's start."""
     within: float = 0.15
     """m"""
 
@@ -68,15 +68,15 @@ class AnswerParams:
     call: str = ""
     """Its name in the trial."""
     holds: str = ""
-    """What the answer, as JSON, must hold."""
+    """Text that the answer, as JSON, must contain."""
 
 
 @dataclass(frozen=True, slots=True)
 class PrintedTextParams:
     text: str = ""
-    """What a printed line should hold."""
+    """Text that printed lines should contain."""
     seconds: float = 1.0
-    """One such line so often."""
+    """Seconds between two such lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class CircleParams:
     radius: float = 0.5
     """m"""
     after: float = 1.0
-    """s: what the robot does before does not count."""
+    """s: the drive before this time is ignored."""
 
 
 @check(none=0, full=1, words=("stopped early", "runs to the end"))
@@ -162,7 +162,7 @@ def top_speed(drive: DriveRecord, params: NoParams) -> float:
 
 
 def _speeds(drive: DriveRecord) -> Floats:
-    """(ticks - 1,) m/s; NaN where the robot was sent home: it is elsewhere at once, and has not driven there."""
+    """Returns (ticks - 1,) speeds [m/s]; NaN where the robot was reset, since that jump is no driving."""
     if drive.steps < 2:
         return np.empty(0)
     speeds: Floats = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size

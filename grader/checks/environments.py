@@ -1,4 +1,4 @@
-"""Checks of Gymnasium environments: what was returned against what was true."""
+"""Checks of Gymnasium environments: compares what they returned with what was true in the world."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from kit.geometry import Pose
 
 SECTORS: Final = 9
 MAX_START_OFFSET: Final = (0.15, 0.35)
-"""m, rad: so far from home an episode may begin."""
+"""m, rad: the largest distance from home at which an episode may begin."""
 OBSERVATION_TOLERANCE: Final = 1e-3
-"""How far an observation may be off [m], for numbers of single precision."""
+"""Tolerance of an observation [m], for single precision."""
 MOVE_TOLERANCE: Final = 0.2
-"""How far a move may be off, as a share of it."""
+"""Relative tolerance of a move."""
 TARGET_TOLERANCE: Final = 0.06
-"""m: so much nearer to or farther from the target than asked the end may be noticed: more than one step's way."""
+"""m: tolerance of the distance at which an episode ends at the target: more than one step."""
 
 NUMBER_TYPES: Final = ("float", "int", "float64", "float32", "int64", "int32")
 
@@ -73,7 +73,7 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
 
 
 def _space_text(value: Mapping[str, object]) -> str:
-    """A space as one would write it."""
+    """Formats a space as Python code shows it."""
     kind = value.get("kind")
     if kind == "Discrete":
         return f"Discrete({value.get('n')})" + (
@@ -160,7 +160,7 @@ def _is_observation_right(
 def _explain_difference(
     value: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord
 ) -> str:
-    """Where an observation that is not right is wrong first."""
+    """Describes the first wrong value of an observation."""
     numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     if not isinstance(numbers, list) or len(numbers) != len(wanted):
         return f"an observation is {SECTORS} numbers."
@@ -227,7 +227,7 @@ def timeout(record: EnvironmentRecord) -> Iterator[str]:
 
 
 def _ending_complaint(episode: EnvironmentEpisode, due: int | None, why: str, how: str) -> str:
-    """A complaint unless the episode ended at this moment, and in this way."""
+    """Returns a complaint unless the episode ended at the step ``due``, terminated or truncated as ``how`` says."""
     step_records = episode.step_records
     over = next((k for k, step in enumerate(step_records) if step.is_over), None)
     if over is not None and (due is None or over < due):

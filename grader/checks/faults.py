@@ -1,4 +1,4 @@
-"""What the checks of worlds share: what was seen, and how faults are counted and told."""
+"""Shared by the checks of worlds: the records they measure, and checks that count faults."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grader.evidence.world.facts import RunFacts, WorldFacts
 from kit.plain_text import quoted, suggestion
 
 UNSPECIFIED: Final = math.nan
-"""A number that is not asked for: it differs from nothing by more than anything."""
+"""Default of a number that is not checked: NaN never exceeds a tolerance."""
 
 
 @dataclass(frozen=True)
@@ -97,10 +97,10 @@ def _fault_check(
 
 
 def format_metres(value: float) -> str:
-    """A length as one writes it."""
+    """Formats a length in metres."""
     return f"{round(value, 3) + 0.0:g} m"
 
 
 def missing_model(world: WorldFacts, name: str) -> str:
-    """What to say of a model that is missing."""
+    """Returns a message about a missing model, with the nearest name."""
     return f"there is no model {quoted(name)}: {suggestion(name, [model.name for model in world.models])}"

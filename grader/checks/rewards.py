@@ -1,4 +1,4 @@
-"""Checks of reward functions: what they say of single steps, of whole drives, and what they teach a perfect learner."""
+"""Checks of reward functions: their values for single steps and whole drives, and the behaviour optimal under them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grader.evidence.reward_training import RewardTrainingParams
 @dataclass(frozen=True, slots=True)
 class RewardBoundParams:
     limit: float = 1e5
-    """No reward may be larger, either way."""
+    """The largest magnitude of a reward."""
 
 
 @check(none=0, full=1, words=("out of bounds", "fine"), params=RewardBoundParams)

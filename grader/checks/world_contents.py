@@ -1,4 +1,4 @@
-"""Checks of worlds: what is in one, and where."""
+"""Checks of worlds: layers, maps, walls, models and their poses."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def loads(evidence: EvidenceRecord, params: NoParams) -> float:
 @dataclass(frozen=True, slots=True)
 class ContentParams:
     layers: tuple[str, ...] = ()
-    """Names that layers must have."""
+    """Required layer names."""
     maps: tuple[str, ...] = ()
-    """Map files, without their ending, that layers must use."""
+    """Required map files, without their ending."""
     models: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
     """Each a model and a type, such as ``robot Laser``."""

@@ -1,4 +1,4 @@
-"""Checks of worlds: who collides with whom, which laser sees whom, by how many layers."""
+"""Checks of worlds: which things collide, what each laser sees, and how many layers that takes."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class CollisionParams:
     collide: tuple[str, ...] = ()
     """Each two things with `` - `` between: models, or maps by their file's name. All others must not collide."""
     free: tuple[str, ...] = ()
-    """Pairs of which it does not matter."""
+    """Pairs that may or may not collide."""
     split: tuple[str, ...] = ()
-    """Models whose bodies count one by one, as ``model/body``."""
+    """Models whose bodies are checked one by one, as ``model/body``."""
 
 
 def _thing_name(thing: tuple[str, str], split: tuple[str, ...]) -> str:
@@ -61,7 +61,7 @@ def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
 @dataclass(frozen=True, slots=True)
 class SightParams:
     sees: tuple[str, ...] = ()
-    """Each a laser and what it must see: ``robot/lidar: hall, crate``. It must see nothing else."""
+    """Each a laser and all that it must see: ``robot/lidar: hall, crate``."""
     split: tuple[str, ...] = ()
 
 

@@ -1,4 +1,4 @@
-"""Checks of worlds: what happens while one runs."""
+"""Checks of worlds: topics, drives, collisions and joints while a world runs."""
 
 from __future__ import annotations
 

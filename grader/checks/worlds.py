@@ -1,4 +1,4 @@
-"""Every check of a world, by name, and what there is to say of one that is lost."""
+"""Every check of a world, by name, and the explanation of lost points."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from grader.checks.faults import WorldContents, WorldRun
 
 
 def explain(content: WorldContents | WorldRun, name: str, params: Any) -> str:
-    """What is wrong with a world in the light of a check, in words that help to mend it."""
+    """Explains what a check found wrong with a world, in words that help to correct it."""
     problems = content.world.problems
     if name == "loads":
         return "\n".join(problems if len(problems) == 1 else number_problems(problems))
@@ -25,12 +25,12 @@ def explain(content: WorldContents | WorldRun, name: str, params: Any) -> str:
 
 
 def number_problems(problems: Sequence[str]) -> Iterator[str]:
-    """Each with its number, so that they can be told apart in one paragraph too."""
+    """Numbers the problems, so that they stay distinct within one paragraph."""
     return (f"({number}) {problem}" for number, problem in enumerate(problems, 1))
 
 
 def join_faults(faults: Iterable[str]) -> str:
-    """The faults in one sentence, of many only the first."""
+    """Joins faults into one sentence; of many only the first."""
     some = tuple(faults)
     more = f"; and {len(some) - MAX_FAULTS_SHOWN} more" if len(some) > MAX_FAULTS_SHOWN else ""
     said = "; ".join(some[:MAX_FAULTS_SHOWN]) + more

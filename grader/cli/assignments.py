@@ -54,8 +54,8 @@ MARGIN: Final = 18
 @click.command()
 @click.argument("kind", required=False, default="controller")
 def checks(kind: str) -> None:
-    """List the checks that an assignment of this KIND may use: what each measures, what earns nothing and what earns
-    everything unless `share` says otherwise, and what `with` may set.
+    """List the checks that an assignment of this KIND may use: what each measures, which values earn
+    nothing and everything unless `share` sets others, and what `with` may set.
 
     \b
     grader checks reward

@@ -26,7 +26,7 @@ EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BRO
 @click.option(
     "--require-level",
     type=click.IntRange(0, 3),
-    help="Refuse to grade where the machine cannot lock in so far.",
+    help="Refuse to grade where the machine does not support this confinement level.",
 )
 @options.secret
 @click.option(
@@ -113,7 +113,7 @@ def _report(result: GradingResult, format_name: str, hints: int, picture: str) -
 
 
 def _worst_picture(grading: Grading, replay: Path | None) -> str:
-    """The worst episode in characters; and kept in a file, if asked for."""
+    """Draws the worst episode, and saves it in ``replay`` if given."""
     worst = grading.worst_evidence()
     shown = "" if worst is None else worst.picture()
     if worst is None or not shown:
@@ -128,19 +128,19 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
 
 
 def _picture_title(worst: Evidence) -> tuple[str, bool]:
-    """What the picture shows; and whether it can be watched moving."""
+    """Returns the title of the picture, and whether a replay can be saved."""
     from grader.evidence.contract import EvidenceRecord
     from grader.evidence.drive_record import DriveRecord
 
     if isinstance(worst, DriveRecord):
         return f"The worst episode, {worst.label} ({worst.outcome})", True
     if isinstance(worst, EvidenceRecord):
-        return f"A look at {worst.label} ({worst.outcome})", False
+        return f"Picture of {worst.label} ({worst.outcome})", False
     return "What a robot does that has learnt this reward perfectly", True
 
 
 def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
-    """Keeps an episode; how to watch it."""
+    """Saves an episode; returns how to watch it."""
     from grader.evidence.drive_record import DriveRecord
     from grader.evidence.reward import RewardEvidence
     from kit.run.recording import save

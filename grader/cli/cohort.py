@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
     required=True,
-    help="Where jobs, results and the gradebook lie; the same folder again goes on.",
+    help="Folder of jobs, results and the gradebook; give it again to continue.",
 )
 @click.option(
     "--jobs",
@@ -55,8 +55,8 @@ def cohort(
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS. What was graded before is not graded again.
 
-    Stop it at any moment and say the same again: it goes on. Exit code: 0 everything has a grade; 2 something named is
-    wrong; 3 for some the grader broke.
+    It may be stopped at any moment; the same command continues. Exit code: 0 everything has a grade; 2 an argument is
+    wrong; 3 the grader broke for some.
     """
     from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.cohort.queue import Queue, QueueError, prepare_queue
@@ -93,7 +93,7 @@ def cohort(
 
 
 def publish(queue: Queue) -> int:
-    """Writes the gradebook into the queue folder; the exit code."""
+    """Writes the gradebook into the queue folder, and returns the exit code."""
     from grader.cohort.gradebook import as_csv, as_json, gradebook_rows, summary
     from kit.workspace import write_atomically
 
@@ -117,7 +117,7 @@ def publish(queue: Queue) -> int:
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default=True, help="Processes."
 )
 def work(folder: Path, shard: str, jobs: int) -> None:
-    """Work off the jobs in the queue FOLDER that have no result yet."""
+    """Grade the jobs in the queue FOLDER that have no result yet."""
     from grader.cohort.executors import run_locally
     from grader.cohort.queue import Queue, QueueError
 
@@ -140,7 +140,7 @@ def worker(folder: Path) -> None:
     from grader.cohort.queue import Queue
     from grader.cohort.work import serve_jobs
 
-    # What anything below prints must not stand between the answers.
+    # Other output must not mix with the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     serve_jobs(Queue(folder), sys.stdin, answers)
@@ -174,8 +174,8 @@ def worker(folder: Path) -> None:
 def gradebook(
     folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
 ) -> None:
-    """Print the gradebook of the queue FOLDER: late rules, and which of several submissions counts, are applied now
-    and kept nowhere."""
+    """Print the gradebook of the queue FOLDER: late rules, and the choice among several submissions, are applied now
+    and saved nowhere."""
     from grader.cohort.choice import choose_submissions
     from grader.cohort.gradebook import as_csv, as_json, changes, gradebook_rows, read_json
     from grader.cohort.late import read_policy, read_submission_times

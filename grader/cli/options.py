@@ -17,7 +17,7 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
 EXIT_BROKEN: Final = 3
-"""The grader itself: never the student's doing."""
+"""The grader itself failed, not the student's program."""
 
 
 def fail(message: str, code: int = EXIT_BAD_INPUT) -> NoReturn:
@@ -36,7 +36,7 @@ assignment: Decorator = click.option(
 level: Decorator = click.option(
     "--level",
     type=click.IntRange(0, 3),
-    help="How far to lock programs in, exactly; by default as the assignment says.",
+    help="Confinement level of programs, exactly; by default the assignment's.",
 )
 secret: Decorator = click.option(
     "--secret", is_flag=True, help="Use the secret seeds too: for the grade, on the teacher's machine."
@@ -44,7 +44,7 @@ secret: Decorator = click.option(
 
 
 def load_assignment(folder: Path) -> Assignment:
-    """The assignment, or its mistakes and exit code 2."""
+    """Reads the assignment; ends with its mistakes and exit code 2 if it has any."""
     from grader.reading import read_assignment
     from kit.world.problems import WorldError
 
@@ -55,7 +55,7 @@ def load_assignment(folder: Path) -> Assignment:
 
 
 def require_level(number: int) -> Level:
-    """This level; exit code 2 where the machine does not reach it."""
+    """Returns this level; ends with exit code 2 where the machine does not support it."""
     from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import highest
 

@@ -1,6 +1,6 @@
-"""A whole class: a queue folder of jobs and results, whoever works it off.
+"""Grades a whole class by a queue folder of jobs and results, which any number of processes share.
 
-A job is named by what decides its result: submission, assignment, grader, seeds, level. Its result is one file, written
-whole or not at all. So whatever is interrupted goes on where it was, what was graded before is not graded again, and
-shards, array jobs and clusters need to agree on nothing.
+A job's key is a digest of what decides its result: submission, assignment, grader, seeds, level. Its result is one file,
+written atomically. So an interrupted grading continues where it was, nothing is graded twice, and shards, array jobs and
+clusters need no coordination.
 """

@@ -1,4 +1,4 @@
-"""Which of a student's submissions counts, where there are several. Chosen when a gradebook is written, never before."""
+"""Chooses which of a student's submissions counts, when a gradebook is written and never before."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _latest_in_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
 
 
 def _best(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
-    # Without a grade nothing is known: somebody has to look before another one counts.
+    # A missing grade ranks first: the teacher must see it before another submission counts.
     return float("inf") if row.final is None else row.final, submitted.at.timestamp(), row.name
 
 
@@ -33,15 +33,15 @@ RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], So
         "best": ("the best", _best),
     }
 )
-"""Each rule: what is said of the one that counts, and the rank that is highest for it."""
+"""By rule: how the note describes the chosen submission, and the sort key that is largest for it."""
 
 
 def choose_submissions(
     table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
 ) -> tuple[GradebookRow, ...]:
-    """One row for each student, under the student's name. What has no arrival is its own student's.
+    """Returns one row per student, under the student's name. A submission without a time counts as a student of its own.
 
-    KeyError if there is no such rule; ValueError where an arrival belongs to no submission.
+    Raises KeyError for an unknown rule, ValueError for a time that belongs to no submission.
     """
     unknown = sorted(submission_times.keys() - {row.name for row in table})
     if unknown:

@@ -1,4 +1,4 @@
-"""Who works the queue off: processes here, a SLURM job array, or a Dask cluster. All leave results in the folder."""
+"""Executors that work through a queue: local processes, a SLURM job array, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ SLURM_SCRIPT: Final = "slurm.sh"
 
 
 class ExecutorUnavailable(Exception):
-    """This machine has not what an executor needs; the message says what to do."""
+    """This machine lacks what an executor needs; the message says what to do."""
 
 
 def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
-    """In processes on this machine."""
+    """Grades the jobs in processes on this machine."""
     WorkerPool(queue, keys, jobs, on_done).run()
 
 
 def slurm_script(queue: Queue, shards: int) -> str:
-    """An array job of ``shards`` tasks, each of which works off its share of the queue."""
+    """Returns the script of an array job of ``shards`` tasks, each of which grades its share of the queue."""
     command = shlex.join([sys.executable, "-P", "-m", "grader", "work", str(queue.folder.absolute())])
     return f"""#!/bin/sh
 #SBATCH --job-name=grader
@@ -41,7 +41,7 @@ exec {command} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
 
 
 def run_on_slurm(queue: Queue, shards: int) -> None:
-    """Submits the array job and waits until it is over. Raises CannotRun."""
+    """Submits the array job and waits until it is over. Raises ExecutorUnavailable."""
     script = queue.folder / SLURM_SCRIPT
     write_atomically(script, slurm_script(queue, shards).encode())
     sbatch = shutil.which("sbatch")
@@ -53,9 +53,9 @@ def run_on_slurm(queue: Queue, shards: int) -> None:
 
 
 def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
-    """On a Dask cluster whose machines all see the queue folder. Only keys travel. Raises CannotRun.
+    """Grades the jobs on a Dask cluster whose machines all see the queue folder. Raises ExecutorUnavailable.
 
-    A job that takes its worker with it, again and again, is an incident and has no grade; the others go on.
+    Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
     """
     try:
         from distributed import Client, KilledWorker, as_completed
@@ -83,6 +83,6 @@ def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callab
 
 
 def grade_job_by_key(folder: str, key: str) -> str:
-    """One job, by names alone."""
+    """Grades one job, given by strings alone, as Dask sends them."""
     grade_job(Queue(Path(folder)), key)
     return key

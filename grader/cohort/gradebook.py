@@ -1,4 +1,4 @@
-"""The gradebook: a row per submission, from the results alone; the same results, the same bytes."""
+"""The gradebook: one row per submission, made from the results alone; equal results give equal bytes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WAITING: Final = "waiting"
 
 @dataclass(frozen=True, slots=True)
 class GradebookRow:
-    """What one submission earned."""
+    """The grade of one submission."""
 
     name: str
     verdict: str
@@ -29,7 +29,7 @@ class GradebookRow:
     """Before lateness; None where there is no grade."""
     max_points: float
     kept: float
-    """The share that is kept in spite of lateness."""
+    """The share of points kept after lateness."""
     final: float | None
     tests: Mapping[str, float]
     statuses: Mapping[str, str]
@@ -42,7 +42,7 @@ def gradebook_rows(
     policy: LatePolicy | None = None,
     submission_times: Mapping[str, SubmissionTime] | None = None,
 ) -> tuple[GradebookRow, ...]:
-    """One for each submission, in the order of names."""
+    """Returns one row per submission, sorted by name."""
     return tuple(sorted(_rows(queue, policy, submission_times or {}), key=lambda row: row.name))
 
 
@@ -84,7 +84,7 @@ def as_json(table: Sequence[GradebookRow]) -> str:
 
 
 def as_csv(table: Sequence[GradebookRow]) -> str:
-    """For a spreadsheet, in which no cell is a formula."""
+    """Formats the rows for a spreadsheet, without formulas."""
     criteria = sorted({identity for row in table for identity in row.tests})
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
@@ -108,7 +108,7 @@ def _number(points: float | None) -> str:
 
 
 def read_json(text: str) -> tuple[GradebookRow, ...]:
-    """What ``as_json`` made. Raises ValueError."""
+    """Reads what ``as_json`` wrote. Raises ValueError for anything else."""
     try:
         return tuple(GradebookRow(**each) for each in json.loads(text))
     except (TypeError, ValueError):
@@ -116,7 +116,7 @@ def read_json(text: str) -> tuple[GradebookRow, ...]:
 
 
 def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> Iterator[str]:
-    """What another grading changed, a line each: to be read before it is published."""
+    """Yields a line for each difference between two gradebooks, to be read before the new one is published."""
     old, new = {row.name: row for row in before}, {row.name: row for row in after}
     for name in sorted(old.keys() | new.keys()):
         was, now = old.get(name), new.get(name)

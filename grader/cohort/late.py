@@ -1,4 +1,4 @@
-"""Late work: a pure function of when it came and what it earned, applied when a gradebook is written, never before."""
+"""Late rules, applied when a gradebook is written and never before."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ DAY = 86400.0
 
 @dataclass(frozen=True, slots=True)
 class LatePolicy:
-    """What lateness costs."""
+    """How many points lateness costs."""
 
     due: datetime
     grace_s: float = 0.0
     per_day: float = 0.1
     """Share of the points lost for each day begun."""
     least: float = 0.0
-    """Share that is always kept, until it is too late."""
+    """Share that is always kept, until ``latest_days``."""
     latest_days: float | None = None
-    """After so many days nothing counts; None: it always does."""
+    """Days after which nothing counts; None for no such limit."""
 
     def kept(self, submitted: datetime) -> float:
-        """The share of its points that a work keeps."""
+        """Returns the share of its points that a submission keeps."""
         late = (submitted - self.due).total_seconds() - self.grace_s
         if late <= 0:
             return 1.0
@@ -42,7 +42,7 @@ class LatePolicy:
 
 
 def read_policy(file: Path) -> LatePolicy:
-    """``due``, ``grace_minutes``, ``per_day``, ``least``, ``latest_days`` from a YAML file. Raises WorldError."""
+    """Reads ``due``, ``grace_minutes``, ``per_day``, ``least`` and ``latest_days`` from a YAML file. Raises WorldError."""
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
     problems.raise_if_any()
@@ -64,15 +64,15 @@ def read_policy(file: Path) -> LatePolicy:
 
 @dataclass(frozen=True, slots=True)
 class SubmissionTime:
-    """When a submission came, and whose it is."""
+    """When a submission was handed in, and by which student."""
 
     at: datetime
     student: str
-    """By default its own name."""
+    """By default the submission's own name."""
 
 
 def read_submission_times(file: Path) -> Mapping[str, SubmissionTime]:
-    """A CSV file with the columns ``name`` and ``submitted``, and ``student`` where some hand in more than once.
+    """Reads a CSV file with the columns ``name`` and ``submitted``, and ``student`` if some submit more than once.
 
     Raises ValueError, OSError.
     """
@@ -91,7 +91,7 @@ def read_submission_times(file: Path) -> Mapping[str, SubmissionTime]:
 
 
 def parse_time(text: str) -> datetime | None:
-    """A date and time; one without a zone is UTC."""
+    """Parses a date and time; without a zone it is UTC. Returns None for anything else."""
     try:
         at = datetime.fromisoformat(text.strip())
     except ValueError:

@@ -34,7 +34,7 @@ class QueueEntry:
 
     name: str
     key: str | None
-    """Of its job; None where it was refused."""
+    """The key of its job; None if it was refused."""
     refused: str = ""
     """Why it cannot be graded, for the student."""
 
@@ -56,7 +56,7 @@ class Queue:
         return self.folder / "results" / f"{key}.json"
 
     def assignment(self) -> Assignment:
-        """As it was when the queue was made. Raises WorldError."""
+        """Reads the assignment as it was when the queue was made. Raises WorldError."""
         return read_assignment(self.assignment_folder)
 
     def manifest(self) -> dict[str, Any]:
@@ -74,14 +74,14 @@ class Queue:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
 
     def result(self, key: str) -> GradingResult | None:
-        """None if there is none yet, or none that can be read: then it is graded again."""
+        """Returns a job's result; None if there is none that can be read, so that it is graded again."""
         try:
             return GradingResult.from_dict(json.loads(self.result_file(key).read_bytes()))
         except (OSError, KeyError, TypeError, ValueError):
             return None
 
     def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
-        """The keys without a result, of those that belong to shard ``i`` of ``n``."""
+        """Returns the keys without a result that belong to shard ``i`` of ``n``."""
         keys = sorted({entry.key for entry in self.entries() if entry.key is not None})
         number, count = shard
         return tuple(key for key in keys if int(key, 16) % count == number and self.result(key) is None)
@@ -107,7 +107,7 @@ def job_key(submission: Submission, assignment: Assignment, options: GradingOpti
 def prepare_queue(
     queue: Queue, cohort: Path, assignment: Assignment, options: GradingOptions
 ) -> tuple[QueueEntry, ...]:
-    """Makes or renews the queue for all submissions in the folder ``cohort``. Results that fit are kept.
+    """Makes or updates the queue for all submissions in the folder ``cohort``. Results that still apply are kept.
 
     Raises QueueError, OSError.
     """
@@ -157,7 +157,7 @@ def _entries(
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
-    """The assignment as it is now, beside the jobs; a whole copy or none."""
+    """Copies the present assignment beside the jobs, completely or not at all."""
     target = queue.assignment_folder
     if target.exists():
         if read_assignment(target).version == assignment.version:

@@ -1,4 +1,4 @@
-"""Working off jobs: one at a time in this process, or many in processes that may die without harm."""
+"""Grades jobs: one at a time in this process, or many in worker processes that may die without harm."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from kit.school.result import CriterionResult, CriterionStatus, GradingResult, G
 
 DONE: Final = "done"
 MAX_TRIES: Final = 2
-"""How often a job is tried whose grader breaks. What fails for the student's sake is never tried again."""
+"""How often a job is tried when the grader breaks. A failure of the student's program is never retried."""
 
 
 @cache
@@ -30,7 +30,7 @@ def _assignment(folder: Path, version: str) -> Assignment:
 
 
 def grade_job(queue: Queue, key: str) -> GradingResult:
-    """Grades one job and keeps its result."""
+    """Grades one job and saves its result."""
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
     submission, options = queue.submission(key), queue.grading_options()
@@ -44,7 +44,7 @@ def grade_job(queue: Queue, key: str) -> GradingResult:
 
 
 def serve_jobs(queue: Queue, keys: IO[str], output: IO[str]) -> None:
-    """A worker's life: a key on each line in, the same key on a line out when its result is kept."""
+    """Grades the key on each input line, and writes the key to the output when its result is saved."""
     for line in keys:
         key = line.strip()
         grade_job(queue, key)
@@ -53,7 +53,7 @@ def serve_jobs(queue: Queue, keys: IO[str], output: IO[str]) -> None:
 
 
 class WorkerPool:
-    """``jobs`` worker processes. A worker that dies takes its job's try with it, and no more."""
+    """Runs ``jobs`` worker processes. A worker that dies costs its job one try and nothing else."""
 
     def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
         self._queue = queue
@@ -64,7 +64,7 @@ class WorkerPool:
         self._problems: list[Exception] = []
 
     def run(self) -> None:
-        """Until every key has a result. Raises OSError if results cannot be kept."""
+        """Runs until every key has a result. Raises OSError if results cannot be saved."""
         threads = [threading.Thread(target=self._run_worker) for _ in range(self._jobs)]
         for thread in threads:
             thread.start()
@@ -74,7 +74,7 @@ class WorkerPool:
             raise self._problems[0]
 
     def _run_worker(self) -> None:
-        """Keeps one worker busy."""
+        """Feeds keys to one worker process, and replaces it when it dies."""
         worker: subprocess.Popen[str] | None = None
         try:
             while (key := self._next()) is not None:
@@ -88,7 +88,7 @@ class WorkerPool:
                         record_incident(self._queue, key)
                 with self._lock:
                     self._on_done(key)
-        except Exception as error:  # noqa: BLE001  # a thread's errors are raised where it was started
+        except Exception as error:  # noqa: BLE001  # a thread's error is raised where the threads were started
             self._problems.append(error)
         finally:
             if worker is not None:
@@ -119,7 +119,7 @@ class WorkerPool:
 
 
 def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:
-    """Lets a worker go: it ends when nothing more can be asked."""
+    """Closes a worker's input, so that it ends; with ``now``, kills it first."""
     if now:
         worker.kill()
     with worker, suppress(BrokenPipeError):
@@ -128,12 +128,12 @@ def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:
 
 
 def record_incident(queue: Queue, key: str) -> None:
-    """Keeps for a job that there is no grade, because whoever graded it died."""
+    """Saves for a job that it has no grade, because its worker died every time."""
     queue.save_result(key, _incident_result(queue, key))
 
 
 def _incident_result(queue: Queue, key: str) -> GradingResult:
-    """The grader died, more than once: no grade, and somebody has to look."""
+    """Returns the result of a job whose worker died every time: no grade, and a notice to the teacher."""
     assignment, submission, options = queue.assignment(), queue.submission(key), queue.grading_options()
     tests = tuple(
         replace(

@@ -1,4 +1,4 @@
-"""What a reward pays for behaviours that everybody understands: a good drive, a detour, going round in circles."""
+"""Compares the returns that a reward gives to simple behaviours: a good drive, a detour, driving in circles."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Moves = Sequence[int]
 
 DETOUR = (LEFT, RIGHT) * 4
 START_COUNT = 5
-"""From how many places behaviours are compared."""
+"""The number of start states from which behaviours are compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class BehaviourComparison:
-    """Two behaviours from the same start; the first should be paid more."""
+    """The returns of two behaviours from the same start; the first should be larger."""
 
     better: str
     worse: str
@@ -38,7 +38,7 @@ class BehaviourComparison:
 
 @dataclass(frozen=True, slots=True)
 class LoopComparison:
-    """A behaviour that never arrives, against driving to the target."""
+    """The returns of a loop that never arrives and of driving to the target."""
 
     name: str
     loop_return: float
@@ -55,12 +55,12 @@ class LoopComparison:
 
 
 def compare_behaviours(model: GridModel, rewards: Floats) -> tuple[BehaviourComparison, ...]:
-    """The comparisons, from several starts."""
+    """Compares good and bad behaviours from several starts."""
     return tuple(_compare_behaviours(model, rewards))
 
 
 def compare_loops(model: GridModel, rewards: Floats) -> tuple[LoopComparison, ...]:
-    """Every closed way that fits, from several starts."""
+    """Compares every loop that fits into the map with driving to the target, from several starts."""
     drives = []
     for start, good in _sample_drives(model):
         arrival_return = discounted_return(model, rewards, start, good)
@@ -83,7 +83,7 @@ LOOPS: dict[str, tuple[int, ...]] = {
 
 
 def discounted_return(model: GridModel, rewards: Floats, start: int, moves: Moves) -> float:
-    """The discounted return of a sequence of moves, until the episode ends."""
+    """Returns the discounted return of a sequence of moves, until the episode ends."""
     total, weight, state = 0.0, 1.0, start
     for move in moves[: model.task.max_steps]:
         total += weight * float(rewards[state, move])
@@ -120,7 +120,7 @@ def _compare_behaviours(model: GridModel, rewards: Floats) -> Iterator[Behaviour
 
 
 def _sample_drives(model: GridModel) -> list[tuple[int, tuple[int, ...]]]:
-    """Some starts, each with a shortest drive to the target."""
+    """Returns some start states, each with the moves of a shortest drive to the target."""
     policy = value_iteration.value_iteration(
         model, np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01))
     )
@@ -150,7 +150,7 @@ def _ends_in_wall(model: GridModel, start: int) -> bool:
 
 
 def _is_free_loop(model: GridModel, start: int, loop: Moves) -> bool:
-    """Whether the way is closed and free, and does not touch the target."""
+    """True if the loop is closed and free of walls, and does not touch the target."""
     state = start
     for move in loop:
         if model.done[state, move]:

@@ -1,4 +1,4 @@
-"""Evidence about a controller: its episodes, each in a fresh process, run when a criterion first needs them."""
+"""Collects evidence about a controller: episodes, each in a fresh process."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from kit.host.sandbox.confinement import Level
 
 
 class ControllerEpisodes:
-    """The episodes of one submission."""
+    """Runs each episode of one submission when a criterion first needs it."""
 
     def __init__(
         self, assignment: Assignment, file: Path, *, level: Level, secret: bool, may_fall: bool
@@ -37,7 +37,7 @@ class ControllerEpisodes:
         return list(self._drives.values())
 
     def _seeds(self, trial: Trial, which: SeedSet) -> list[tuple[bool, int, int]]:
-        """Whether it is secret, its place among its kind from 1, and the seed."""
+        """Returns for each seed whether it is secret, its number from 1 among its kind, and the seed."""
         public = list(enumerate(trial.seeds, 1)) if which is not SeedSet.SECRET else []
         secret = (
             list(enumerate(trial.secret_seeds, 1)) if which is not SeedSet.PUBLIC and self._secret else []

@@ -1,4 +1,4 @@
-"""What the grader saw of one episode. Checks look at this, and at nothing of the student's."""
+"""The record of one graded episode. Checks measure it, and nothing that comes from the student's process."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ CLEARANCE_INTERVAL = 5
 """Ticks between two looks at how near the walls are: 0.05 s, in which a robot at 1 m/s goes 5 cm."""
 
 COLUMNS, ROWS = 60, 18
-"""Of the picture."""
+"""Size of the picture, in characters."""
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class TopicTraffic:
-    """What the program said on one topic."""
+    """What the program published on one topic."""
 
     kind: str
     """Of message, such as ``geometry_msgs/msg/Twist``."""
     count: int
     nodes: tuple[str, ...] = ()
-    """Who said it, by full name."""
+    """Full names of the nodes that published it."""
 
 
 @dataclass(frozen=True, eq=False)
 class DriveRecord:
-    """One episode, over."""
+    """One finished episode."""
 
     trial: str
     label: str
@@ -54,11 +54,11 @@ class DriveRecord:
     recording: Recording
     score: DriveMetrics
     failure: Failure | None
-    """Why the program stopped, if it did not stop well."""
+    """Why the program stopped; None if it ran to the end."""
     traffic: Mapping[str, TopicTraffic]
     """By topic, what the program's nodes published."""
     refused: tuple[str, ...]
-    """Which of the world's services the program asked for in vain."""
+    """World services that the program called and was refused."""
     printed: tuple[str, ...]
     fingerprint: str
     level: int
@@ -77,7 +77,7 @@ class DriveRecord:
 
     @property
     def outcome(self) -> str:
-        """In a few words."""
+        """Describes how the episode ended."""
         if self.failure is not None:
             return f"stopped ({self.failure.kind.value})"
         if self.score.reached_s is not None:
@@ -112,7 +112,7 @@ class DriveRecord:
 
     @cached_property
     def commands(self) -> Floats:
-        """(k, 3) what the robot was told: time [s], forward [m/s], turn [rad/s]."""
+        """(k, 3) the robot's commands: time [s], forward [m/s], turn [rad/s]."""
         rows = [
             (
                 entry.tick * self.recording.step_size,
@@ -125,7 +125,7 @@ class DriveRecord:
         return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
     def body(self, pose: Pose) -> Body:
-        """The robot as it would lie at a pose."""
+        """Returns the robot's body at a pose."""
         model = next(model for model in self.place.world.models if model.name == self.place.robot)
         footprints = [footprint.shape for footprint in model.bodies[0].footprints]
         polygons = tuple(
@@ -141,11 +141,11 @@ class DriveRecord:
         return Body(model.name, pose, polygons, discs, robot=True)
 
     def explain(self, check: str, params: Any = None) -> str:
-        """What else there is to say; the check's own sentence says all."""
+        """Returns nothing: the check's own sentence is enough."""
         return ""
 
     def picture(self, check: str = "") -> str:
-        """Where the robot went and where it ended, in plain characters; the same for every check."""
+        """Draws the robot's path and its last pose in plain characters; the same for every check."""
         if not len(self.track):
             return ""
         case = self.place.case

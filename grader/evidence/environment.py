@@ -1,7 +1,7 @@
-"""Evidence about a Gymnasium environment of a student's: what it returned, beside what was true in the world.
+"""Collects evidence about a student's Gymnasium environment: what it returned, and what was true in the world.
 
-The environment lives in a process of its own as a guest of the world, which is ours: it drives the robot and reads its
-sensors as any node does. The grader asks for ``reset`` and ``step`` over a topic, and notes what really happened.
+The environment runs in a process of its own, whose node takes part in the grader's world: it drives the robot and reads
+its sensors as any node does. The grader requests ``reset`` and ``step`` over a topic, and records what really happened.
 """
 
 from __future__ import annotations
@@ -37,57 +37,57 @@ EXAMINER_FILE: Final = Path(__file__).with_name("environment_examiner.py")
 REQUEST_TOPIC: Final = "/examination/ask"
 ANSWER_TOPIC: Final = "/examination/answer"
 CALL_TIMEOUT_S: Final = 5.0
-"""Simulated: how long one call may take. A step takes a tenth of a second."""
+"""Simulated seconds that one call may take; a step takes a tenth of a second."""
 CHECKER_TIMEOUT_S: Final = 60.0
-"""Simulated: how long Gymnasium's checker may take, which makes many steps."""
+"""Simulated seconds that Gymnasium's checker may take, which makes many steps."""
 OVERDUE_STEPS: Final = 6
-"""Steps for which an episode is still driven after it should have ended."""
+"""Steps for which an episode goes on after it should have ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnvironmentTask:
-    """The kind's task: which environment is to be written, and where it lives."""
+    """The environment that is to be written, and its scenario."""
 
     class_name: str
     place: Scenario
     moves: tuple[tuple[float, float], ...]
-    """What each action does: m/s, rad/s."""
+    """The velocities of each action: m/s, rad/s."""
     step_s: float
     max_steps: int
     waypoints: tuple[tuple[float, float], ...]
-    """Points by which the target is reached."""
+    """Waypoints of a drive to the target."""
     scan: str
     """The topic of the robot's laser."""
     clip: float
-    """m: ranges are given up to here."""
+    """m: ranges in observations are clipped to this."""
     seed: int
     secret_seed: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class StepRecord:
-    """One step: what was returned, and what was true."""
+    """One step: what the environment returned, and what was true in the world."""
 
     action: int
     returned: Mapping[str, Json]
     is_in_space: bool
-    """Whether the observation lies in the space of observations."""
+    """Whether the observation lies in the observation space."""
     pose_before: Pose
     pose_after: Pose
     collided: bool
     """Whether the robot touched something during the step."""
     target_distance: float
-    """From the hull to the target's middle, after it."""
+    """From the hull to the target's centre after the step [m]."""
     ranges: tuple[float, ...]
     """The newest scan."""
 
     def part(self, index: int) -> Mapping[str, Json]:
-        """One of the values returned; empty if there is none."""
+        """Returns one of the returned values; empty if there is none."""
         parts = self.returned.get("parts", [])
         return parts[index] if len(parts) > index else {}
 
     def is_true(self, index: int) -> bool:
-        """Whether it returned True there."""
+        """True if the value at this index is True."""
         return self.part(index).get("value") is True
 
     @property
@@ -97,7 +97,7 @@ class StepRecord:
 
 @dataclass(slots=True)
 class EnvironmentEpisode:
-    """From a reset on."""
+    """One episode: the reset and the steps after it."""
 
     name: str
     returned: Mapping[str, Json]
@@ -109,14 +109,14 @@ class EnvironmentEpisode:
 
 @dataclass(slots=True)
 class EnvironmentRecord:
-    """Everything that was seen."""
+    """Everything that was recorded about an environment."""
 
     task: EnvironmentTask
     description: Mapping[str, Json] = field(default_factory=dict)
-    """Of the environment: its spaces, and whether it is one."""
+    """The environment's spaces, and whether it is a gymnasium.Env."""
     episodes: dict[str, EnvironmentEpisode] = field(default_factory=dict)
     checker_complaint: str = ""
-    """What Gymnasium's own checker complains of."""
+    """The first complaint of Gymnasium's own checker; empty if there is none."""
     steps: int = 0
     printed: tuple[str, ...] = ()
 
@@ -126,7 +126,7 @@ class EnvironmentRecord:
 
 
 class UnrestrictedRunner(RestrictedRunner):
-    """A world whose robot may be put anywhere: an environment begins its episodes as it likes."""
+    """A runner whose robot may be moved anywhere, since an environment begins its episodes where it likes."""
 
     def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
         return service in self._services
@@ -135,7 +135,7 @@ class UnrestrictedRunner(RestrictedRunner):
 def examine_environment(
     task: EnvironmentTask, assignment: Assignment, file: Path, level: Level, seed: int
 ) -> EnvironmentRecord:
-    """Lives through some episodes with the environment. Raises GuestError where the student's code fails."""
+    """Runs some episodes of the environment. Raises GuestError where the student's code fails."""
     with tempfile.TemporaryDirectory(prefix="examination-") as folder:
         Path(folder).chmod(0o755)
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
@@ -144,7 +144,7 @@ def examine_environment(
         simulation = Simulation(with_laser_noise(task.place.world, 0.0), seed=1, step_size=STEP)
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
         arguments = [file.stem, task.class_name, *controller_arguments(task.place)]
-        # It listens before there is anything to hear.
+        # Subscribe before the program can publish.
         examination = _EnvironmentExaminer(runner, task, seed)
         guest = Guest.start(
             graph, Path(folder, EXAMINER_FILE.name), args=arguments, limits=assignment.limits, level=level
@@ -158,7 +158,7 @@ def examine_environment(
 
 
 class _EnvironmentExaminer:
-    """Asks, and notes what happened."""
+    """Requests calls of the environment, and records what happens."""
 
     def __init__(self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int) -> None:
         self._runner = runner
@@ -178,7 +178,7 @@ class _EnvironmentExaminer:
         runner.graph.add_message_listener(self._on_message)
 
     def run_all(self, guest: Guest) -> None:
-        """Everything that is tried, in order."""
+        """Runs all episodes and Gymnasium's checker, in order."""
         self._guest = guest
         self.record.description = self._await_answer(CALL_TIMEOUT_S, "the file's beginning")
         if "missing" in self.record.description or not self.record.description.get("is_env"):
@@ -195,7 +195,7 @@ class _EnvironmentExaminer:
         self.record.checker_complaint = self._run_checker()
 
     def _run_episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
-        """Drives until it is over, and a little on if it does not end where it should."""
+        """Runs an episode to its end, and a few steps on if it does not end where it should."""
         answer = self._call(f"reset(seed={self._seed + seed})", call="reset", seed=self._seed + seed)
         episode = EnvironmentEpisode(
             name, answer.get("returned", {}), answer.get("inside") is True, self._pose(), self._ranges
@@ -227,7 +227,7 @@ class _EnvironmentExaminer:
         )
 
     def _make_pilot(self) -> Callable[[int], int]:
-        """Chooses moves along the way: turn towards the next point, then go."""
+        """Returns a function that chooses actions along the waypoints: turn towards the next one, then drive."""
         way = list(self._task.waypoints)
 
         def choose(done: int) -> int:
@@ -253,7 +253,7 @@ class _EnvironmentExaminer:
         return self._await_answer(timeout_s, what)
 
     def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
-        """Ticks until the answer comes."""
+        """Ticks until the answer comes. Raises GuestError if it does not come in time, or the program fails."""
         guest = self._guest
         assert guest is not None  # ``run_all`` has set it
         run_until(
@@ -295,11 +295,11 @@ class _EnvironmentExaminer:
 
 
 TERMINATING_EPISODES: Final = ("turning on the spot", "into the wall", "to the target")
-"""Episodes that are driven until they end."""
+"""Names of the episodes that run until they end."""
 
 
 def _is_plain_value(value: Json) -> bool:
-    """Whether a told value has the shape that ``grader.evidence.environment_examiner`` gives it."""
+    """True if a value has the form that ``grader.evidence.environment_examiner`` gives it."""
     if not isinstance(value, dict):
         return False
     parts = value.get("parts", [])
@@ -307,7 +307,7 @@ def _is_plain_value(value: Json) -> bool:
 
 
 def sector_minima(ranges: Sequence[float], count: int, clip: float) -> list[float]:
-    """The nearest range of each of ``count`` parts of a scan, at most ``clip``; what is left over is in the last part."""
+    """Returns the nearest range in each of ``count`` sectors of a scan, at most ``clip``; left-over rays belong to the last."""
     nearest, size = [clip] * count, max(1, len(ranges) // count)
     for k, each in enumerate(ranges):
         if not math.isnan(each):

@@ -1,7 +1,7 @@
-"""Runs in the student's process, beside their file: makes their environment and does with it what the grader asks.
+"""Runs in the student's process, beside their file: makes their environment and calls it as the grader requests.
 
-Never imported by the grader: its text is laid beside the student's file. It judges nothing. What it tells of the
-environment is checked against the world itself, which the grader keeps.
+Never imported by the grader: the file is copied beside the student's. It judges nothing. What it reports is compared with
+the world itself, which the grader keeps.
 """
 
 import json
@@ -22,7 +22,7 @@ PlainData = dict[str, Any]
 
 
 def describe_value(value: object) -> PlainData:
-    """A value as plain data: what it is, and its numbers; None for one that is not finite."""
+    """Describes a value as plain data: its type and its numbers; None for a number that is not finite."""
     kind = type(value).__name__
     if isinstance(value, tuple):
         return {"kind": kind, "parts": [describe_value(each) for each in value[:8]], "count": len(value)}
@@ -42,7 +42,7 @@ def finite_or_none(value: Any) -> float | None:
 
 
 def describe_space(value: object) -> PlainData:
-    """A space as plain data."""
+    """Describes a space as plain data."""
     if isinstance(value, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
     if isinstance(value, gymnasium.spaces.Box):
@@ -53,14 +53,14 @@ def describe_space(value: object) -> PlainData:
 
 
 def is_observation_valid(env: Any, returned: object) -> bool:
-    """Whether the observation, the first of what was returned, lies in the space of observations."""
+    """True if the observation, the first of the returned values, lies in the observation space."""
     is_space = isinstance(getattr(env, "observation_space", None), gymnasium.Space)
     seen = returned[0] if isinstance(returned, tuple) and returned else returned
     return bool(is_space and env.observation_space.contains(seen))
 
 
 def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:
-    """The environment, and what to tell of it."""
+    """Makes the environment, and describes it."""
     cls = getattr(module, name, None)
     classes = [each for each, value in vars(module).items() if isinstance(value, type)][:20]
     if not isinstance(cls, type):
@@ -83,18 +83,18 @@ def step(env: Any, question: PlainData) -> PlainData:
 
 
 def run_checker(env: Any, question: PlainData) -> PlainData:
-    """What Gymnasium's own checker says."""
+    """Runs Gymnasium's own checker and returns its complaints."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             check_env(env, skip_render_check=True)
-        except Exception as problem:  # noqa: BLE001  # whatever it is, it is for the student to read
+        except Exception as problem:  # noqa: BLE001  # any error is a complaint for the student to read
             return {"says": f"{type(problem).__name__}: {problem}"[:500], "warns": []}
     return {"says": "", "warns": [str(each.message)[:300] for each in caught[:5]]}
 
 
 def main() -> None:
-    # Of the kit's, on the path of a student's process alone.
+    # The kit's own packages, only on the path of a student's process.
     import rclpy
     from std_msgs.msg import String
 

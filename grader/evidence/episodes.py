@@ -1,4 +1,4 @@
-"""Running one episode: the world, its clock, its chances and the recording are ours; the program is a guest."""
+"""Runs one episode: the world, its clock, its random numbers and the recording are the grader's, not the program's."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ STEP: Final = 0.01
 """s"""
 
 HOME_TOLERANCE: Final = 1e-6
-"""A robot may be sent this near to its home [m, rad], and nowhere else."""
+"""A robot may be moved to within this distance of its home [m, rad], and nowhere else."""
 
 WORLD_NODE: Final = "/flatland_server"
-"""The world's own."""
+"""The node of the world itself."""
 
 MAX_PRINTED_LINES: Final = 200
 """Lines of a program's output that are kept."""
@@ -54,7 +54,7 @@ class EpisodeSpec:
 
 
 class RestrictedRunner(Runner):
-    """A runner whose world only changes as the assignment allows, and whose clock no program stops."""
+    """A runner whose world services are restricted by the assignment, and whose clock no program can pause."""
 
     def __init__(self, simulation: Simulation, graph: Graph, services: frozenset[str]) -> None:
         self._services = services
@@ -63,7 +63,7 @@ class RestrictedRunner(Runner):
         super().__init__(simulation, graph)
 
     def allow_home(self, robot: str | None, home: Pose) -> None:
-        """Where the robot may be sent."""
+        """Sets the robot and the home it may be moved to."""
         self._home = robot, home
 
     def call_service(self, service: str, *arguments: Any) -> None:
@@ -73,7 +73,7 @@ class RestrictedRunner(Runner):
         super().call_service(service, *arguments)
 
     def call_unrestricted(self, service: str, *arguments: Any) -> None:
-        """The same without asking: for the grader itself."""
+        """Calls a service without the restrictions, for the grader itself."""
         super().call_service(service, *arguments)
 
     @property
@@ -98,7 +98,7 @@ class RestrictedRunner(Runner):
 
 
 class TrafficRecorder:
-    """Counts what each topic is told by others than the world."""
+    """Counts the messages on each topic that nodes other than the world publish."""
 
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[tuple[str, str], int] = {}
@@ -194,7 +194,7 @@ def _drive(
 
 
 def shifted_start(trial: Trial, seed: int) -> Pose:
-    """Where the robot starts with this seed."""
+    """Returns the robot's start, shifted as the seed sets."""
     home, shift = trial.home(), trial.shift
     if shift == Shift():
         return home
@@ -214,7 +214,7 @@ def _place(trial: Trial) -> Scenario:
 
 
 def with_laser_noise(world: World, noise: float) -> World:
-    """The same world with lasers that err by this standard deviation [m]."""
+    """Returns the world with this standard deviation of laser noise [m]."""
     return replace(world, models=tuple(_with_laser_noise(model, noise) for model in world.models))
 
 

@@ -1,7 +1,7 @@
-"""Running a launch file that was handed in: in a copy of the package around it, with the package's own programs.
+"""Runs a submitted launch file in a copy of the package around it, with the package's own programs.
 
-The launch file is the student's, and runs in a process of its own. What it may start are the programs of the
-package, which are ours, in processes of their own; no commands. The world it asks for must be one of the package's.
+The launch file is the student's, and runs in a process of its own. It may start the package's programs, which are the
+assignment's, in processes of their own, and no commands. Its world must be one of the package's.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ MAX_PROGRAMS: Final = 12
 MAX_LINES: Final = 200
 PID: Final = re.compile(r"\[?pid \[?\d+\]?")
 ANSWER_TICKS: Final = 20
-"""So long a node has to say what its parameters are."""
+"""Ticks that a node has to answer a question about its parameters."""
 MAX_STRIDE: Final = 0.1
-"""A model that is farther [m] from where it was one tick ago was put there."""
+"""A model that moves farther [m] in one tick was moved by a service."""
 COLUMNS, ROWS = 60, 18
 
 
 @dataclass(frozen=True, slots=True)
 class LaunchCase:
-    """One way to launch it."""
+    """One run of the launch file with certain arguments."""
 
     name: str
     time_s: float
@@ -66,34 +66,34 @@ class LaunchCase:
 
 @dataclass(frozen=True, slots=True)
 class ParameterQueries:
-    """What is to be looked at: by node, which parameters."""
+    """The parameters to read, by node."""
 
     parameters: Mapping[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
 class LaunchRecord:
-    """One run, over."""
+    """One finished run."""
 
     run: LaunchCase
     failure: Failure | None = None
     arguments: tuple[DeclaredArgument, ...] = ()
-    """That the launch file declares."""
+    """The arguments that the launch file declares."""
     failures: tuple[str, ...] = ()
-    """What went wrong with what it started."""
+    """What failed of what it started."""
     graph: GraphState | None = None
-    """Who was there at the end."""
+    """The ROS graph at the end."""
     traffic: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """By topic, which nodes spoke there."""
+    """By topic, the nodes that published."""
     parameters: Mapping[str, str] = field(default_factory=dict)
     """``/node name`` -> its value, as text."""
     distances: Mapping[str, float] = field(default_factory=dict)
-    """By model, how far it drove [m]."""
+    """By model, the distance it drove [m]."""
     printed: tuple[str, ...] = ()
     steps: int = 0
     drawing: str = ""
     explain_with: Any = None
-    """(check, params) -> what else there is to say."""
+    """(record, check, params) -> the sentence that ``explain`` returns."""
 
     @property
     def label(self) -> str:
@@ -111,7 +111,7 @@ class LaunchRecord:
 
     @property
     def nodes(self) -> tuple[str, ...]:
-        """By full name, but for the world's own and the keyboard's."""
+        """Full names of the nodes, without the kit's own."""
         there = () if self.graph is None else self.graph.nodes
         return tuple(name for name in there if name not in KIT_NODES)
 
@@ -127,7 +127,7 @@ KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_querie
 
 @contextmanager
 def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
-    """The package with the student's launch file in it, in a folder of its own."""
+    """Copies the package into a temporary folder, with the student's launch file in it."""
     with tempfile.TemporaryDirectory(prefix="launch-") as made:
         folder = Path(made) / "package"
         shutil.copytree(package, folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
@@ -141,7 +141,7 @@ def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
 def run_launch(
     run: LaunchCase, target: LaunchTarget, queries: ParameterQueries, *, level: Level, limits: Limits
 ) -> LaunchRecord:
-    """One run. Never raises for what is the student's mistake."""
+    """Makes one run. A mistake of the student's becomes the record's failure."""
     bounds = LaunchBounds(level, limits, limits, commands=False, max_processes=MAX_PROGRAMS)
     printed: list[str] = []
     graph = Graph(log_sink=lambda record: printed.append(f"{record.name}: {record.text}"))
@@ -181,12 +181,12 @@ def run_launch(
 
 
 def _without_folder(failure: Failure, target: LaunchTarget) -> Failure:
-    """Where the copy lies is nothing to tell."""
+    """Removes the path of the temporary copy from a failure's message."""
     return replace(failure, message=printable(failure.message.replace(f"{target.folder}/", "")))
 
 
 def _normalized_line(line: str, target: LaunchTarget) -> str:
-    """A line without what differs from run to run: processes' numbers, and where the copy lies."""
+    """Removes from a line what differs between runs: process ids and the path of the copy."""
     return printable(PID.sub("pid", line).replace(f"{target.folder}/", ""))
 
 
@@ -248,7 +248,7 @@ def _graph_record(graph: Graph, traffic_recorder: TrafficRecorder) -> dict[str, 
 
 
 def _parameters(graph: Graph, ticker: Runner | GraphOnlyRun, queries: ParameterQueries) -> Mapping[str, str]:
-    """Asks the nodes themselves."""
+    """Reads the parameters from the nodes."""
     asking_node = create_graph_node(graph, "grader_queries")
     requests = {}
     for node, names in queries.parameters.items():
@@ -276,6 +276,6 @@ def _parameter_text(value: Any) -> str:
 
 
 def _driven_distance(track: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-    """m, without jumps."""
+    """Returns the driven distance [m], without jumps."""
     strides = np.hypot(*np.diff(track[:, :2], axis=0).T) if len(track) > 1 else np.empty(0)
     return float(math.fsum(strides[strides <= MAX_STRIDE].tolist()))

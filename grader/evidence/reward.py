@@ -1,4 +1,4 @@
-"""Evidence about a reward: every transition of the model evaluated in the student's process, and what follows."""
+"""Evidence about a reward: its value for every transition of the model, evaluated in the student's process."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from kit.learning.training.student_reward import (
 from kit.plain_text import suggestion
 
 SHUFFLE: Final = 1234
-"""The seed of the order in which the same transitions are asked for a second time."""
+"""Seed of the order in which the transitions are evaluated a second time."""
 MAX_SAMPLES: Final = 4000
-"""Transitions that the mirrored and the rotated task are compared on."""
+"""Transitions on which the mirrored and the rotated task are compared."""
 
 
 class RewardEvidence:
-    """One reward function. What is asked of it first is asked of it in its process; it is asked once."""
+    """One reward function, and what is computed from its values."""
 
     label = "the reward"
     secret = False
@@ -74,7 +74,7 @@ class RewardEvidence:
 
     @cached_property
     def is_pure(self) -> bool:
-        """Whether the same transitions give the same rewards to the bit: in another order, and in a fresh process."""
+        """True if the same transitions give bit-equal rewards in another order and in a fresh process."""
         steps = TransitionBatch.all(self.model)
         order = np.random.default_rng(SHUFFLE).permutation(len(steps))
         shuffled = steps.at(order)
@@ -91,7 +91,7 @@ class RewardEvidence:
     def symmetry(self) -> float:
         """The share of transitions whose reward stays the same when the whole task is mirrored and when it is turned."""
         everything = TransitionBatch.all(self.model)
-        # In the target's middle there is no direction to the target.
+        # In the target's centre there is no direction to the target.
         elsewhere = np.flatnonzero(
             ~everything.reached & (self.model.cell_of(everything.states) != self.model.target)
         )
@@ -110,7 +110,7 @@ class RewardEvidence:
 
     @cached_property
     def behaviours(self) -> tuple[BehaviourComparison, ...]:
-        """Behaviours compared by what the reward pays them in all."""
+        """Comparisons of good and bad behaviours by their returns."""
         return compare_behaviours(self.model, self.rewards)
 
     @cached_property
@@ -118,7 +118,7 @@ class RewardEvidence:
         return compare_loops(self.model, self.rewards)
 
     def success_after_training(self, budget: RewardTrainingParams) -> float:
-        """How well a robot drives that was trained with this reward; 0 where the reward fails on the way."""
+        """Returns the success of robots trained with this reward; 0 if the reward fails during training."""
         if budget not in self._successes:
             try:
                 with self._open() as functions:
@@ -130,7 +130,7 @@ class RewardEvidence:
         return self._successes[budget]
 
     def explain(self, check: str, params: Any = None) -> str:
-        """What else there is to say in the light of a check."""
+        """Explains the first comparison that a check counts as wrong."""
         if check == "ordered":
             wrong = next((pair for pair in self.behaviours if not pair.is_ordered), None)
             return "" if wrong is None else str(wrong)
@@ -140,7 +140,7 @@ class RewardEvidence:
         return ""
 
     def picture(self, check: str = "") -> str:
-        """What a robot would do that has learnt this reward perfectly, where it does not do what was meant."""
+        """Draws the optimal behaviour under this reward, if it misses the target."""
         if self.failure is not None or self.plan_outcome.exploit_start is None:
             return ""
         states = value_iteration.rollout(
@@ -149,7 +149,7 @@ class RewardEvidence:
         return value_iteration.draw_path(self.model, states)
 
     def save_exploit(self, file: Path) -> None:
-        """Keeps what ``picture`` shows as a recording. Raises OSError."""
+        """Saves what ``picture`` shows as a recording. Raises OSError."""
         assert self.plan_outcome.exploit_start is not None, "there is no picture"
         exploit.save_exploit(
             self.model,
@@ -172,14 +172,14 @@ class RewardEvidence:
         return self._rewards_of(functions, to_transition(steps))
 
     def _rewards_of(self, functions: StudentFunctions, step: Transition) -> Floats:
-        """(n,) what the student's reward pays for n transitions."""
+        """Returns (n,) rewards of the student's function for n transitions."""
         return np.array(
             functions.call_columns(REWARD_FUNCTION, reward_columns(step, self._names)), dtype=np.float64
         )
 
 
 class RewardCollector:
-    """The one piece of evidence that there is of a reward."""
+    """Collects the single piece of evidence about a reward."""
 
     def __init__(self, assignment: Assignment, file: Path, *, level: Level, may_fall: bool) -> None:
         self.level = level
@@ -201,7 +201,7 @@ class RewardCollector:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Every process has ended already."""
+        """Does nothing: every process has ended already."""
 
     def evidence(self, criterion: Criterion) -> Sequence[RewardEvidence]:
         return [self._evidence]
@@ -211,11 +211,11 @@ class RewardCollector:
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:
-    """What a reward asks for: the names of its parameters. The file is read, never run. Raises GuestError."""
+    """Returns the names of the reward function's parameters. The file is read, never run. Raises GuestError."""
     try:
         names = reward_parameters(file)
     except RewardFileError as error:
-        # Where the snapshot lies is nothing to tell.
+        # The path of the temporary copy means nothing to the student.
         message = str(error).replace(f"{file}", file.name)
         raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
     unknown = [name for name in names if name not in MODEL_FACTS]

@@ -1,7 +1,7 @@
-"""Training with a student's reward, within a budget of steps: what was learned is judged by the true goal.
+"""Trains with a student's reward within a budget of steps, and tests the policies by the true goal.
 
-The trainer, its settings, the seeds and the episodes of the exam are the grader's; the student's process only says
-what each step is worth.
+The trainer, its settings, the seeds and the test episodes are the grader's; the student's process only returns the reward
+of each step.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from kit.learning.training.training import make_learner
 
 @dataclass(frozen=True, slots=True)
 class RewardTrainingParams:
-    """How one trains, and how often."""
+    """How to train, and how often."""
 
     task: str = "turn"
     algorithm: str = "q-learning"
     """``q-learning`` and ``sarsa`` need no extra package; the others want the extra ``learn``."""
     steps: int = 50_000
     seeds: int = 3
-    """Trainings, each from nothing; one alone may be lucky."""
+    """Number of trainings, each from the start; a single one may be lucky."""
     episodes: int = 100
-    """Of each exam, for each case of the task."""
+    """Test episodes after each training, for each case of the task."""
 
 
 class SilentCallbacks:
@@ -44,7 +44,7 @@ class SilentCallbacks:
 
 
 def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
-    """The share of episodes in which the target is reached after training with ``reward``, the mean of all seeds.
+    """Returns the share of episodes that reach the target after training with ``reward``, the mean over all seeds.
 
     Raises GuestError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
     something that is not here.

@@ -1,4 +1,4 @@
-"""Services of the program's own that are called while it drives, and what it answers."""
+"""Calls the program's own services while it drives, and records its answers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MAX_ANSWER: Final = 2000
 
 @dataclass(frozen=True, slots=True)
 class ServiceCall:
-    """One call, at some time of the episode."""
+    """One call of a service at a set time of the episode."""
 
     name: str
     at_s: float
@@ -38,7 +38,7 @@ class ServiceCall:
 
 
 def read_service_call(section: Section) -> ServiceCall:
-    """Notes mistakes, and finishes the section."""
+    """Reads one call; notes mistakes and finishes the section."""
     given = section.section("request", None)
     request: Mapping[str, Any] = {} if given is None else given.remaining_values()
     call = ServiceCall(
@@ -57,7 +57,7 @@ def read_service_call(section: Section) -> ServiceCall:
 
 
 class ServiceCaller:
-    """Makes the calls when their time has come. Never waits for an answer."""
+    """Makes the calls when they are due, without waiting for the answers."""
 
     def __init__(self, graph: Graph, calls: tuple[ServiceCall, ...]) -> None:
         self._calls = sorted(calls, key=lambda call: call.at_s)
@@ -66,7 +66,7 @@ class ServiceCaller:
         self._futures: dict[str, Future[Any] | None] = {}
 
     def call_due(self, time_s: float) -> None:
-        """Once a tick."""
+        """Makes the calls due by ``time_s``; to be called once per tick."""
         while self._calls and self._calls[0].at_s <= time_s:
             call = self._calls.pop(0)
             assert self._node is not None
@@ -78,7 +78,7 @@ class ServiceCaller:
             self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
 
     def answers(self) -> Mapping[str, str]:
-        """By call, what was answered, as JSON in one line; or ``NO_SERVICE`` or ``NO_ANSWER``."""
+        """Returns the answers by call, each as JSON in one line; or ``NO_SERVICE`` or ``NO_ANSWER``."""
         return {name: _answer_text(future) for name, future in self._futures.items()}
 
 

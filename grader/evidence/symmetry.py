@@ -1,4 +1,4 @@
-"""The same transitions in the mirrored and in the turned task: a reward for driving to a target should not care."""
+"""Transforms transitions into the mirrored and the rotated task; a reward for driving to a target should stay the same."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT
 
 
 def mirrored(steps: TransitionBatch) -> TransitionBatch:
-    """Left and right exchanged: x runs the other way."""
+    """Mirrors the task: left and right exchanged, x reversed."""
     task = steps.model.task
     width = len(task.rows[0])
     return _transformed(
@@ -29,7 +29,7 @@ def mirrored(steps: TransitionBatch) -> TransitionBatch:
 
 
 def rotated(steps: TransitionBatch) -> TransitionBatch:
-    """A quarter turn counter-clockwise."""
+    """Rotates the task a quarter turn counter-clockwise."""
     task = steps.model.task
     height = len(task.rows)
     rows = tuple("".join(row[k] for row in task.rows) for k in reversed(range(len(task.rows[0]))))

@@ -1,8 +1,8 @@
 """A small model of a driving task, on which the best behaviour under any reward can be computed exactly.
 
 Square cells, eight headings, four moves: forward, back, a turn to the left, a turn to the right. Driving into a wall
-is a collision and ends the episode, entering the target's cell ends it well. The last move is part of the state, for
-rewards may depend on it. Every transition there is, is evaluated once, in one batch.
+is a collision and ends the episode; entering the target's cell ends it with success. The last move is part of the state,
+since rewards may depend on it. All transitions are evaluated once, in one batch.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ HEADINGS: Final = 8
 MOVES: Final = ("forward", "back", "left", "right")
 FORWARD, BACK, LEFT, RIGHT = range(4)
 NO_MOVE: Final = 4
-"""The last move of a state in which an episode begins."""
+"""Stands for the last move in a state in which an episode begins."""
 LAST_MOVES: Final = len(MOVES) + 1
 HEADING_STEPS: Final = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """By heading, counter-clockwise from x: the next cell (columns, rows up)."""
 MAX_RANGE: Final = 10.0
-"""m, to which the model looks ahead."""
+"""m: the most free distance ahead that the model knows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class GridModel:
 
     @cached_property
     def ahead(self) -> Floats:
-        """(cells, HEADINGS) room ahead [m]: from a cell's middle to the nearest wall's edge."""
+        """(cells, HEADINGS) free distance ahead [m]: from a cell's centre to the nearest wall's edge."""
         floor = {tuple(cell): number for number, cell in enumerate(self.cells.tolist())}
         room = np.zeros((len(self.cells), HEADINGS))
         for number, (column, row) in enumerate(self.cells.tolist()):
@@ -93,7 +93,7 @@ class GridModel:
 
     @cached_property
     def to_go(self) -> Floats:
-        """(cells) the shortest way to the target [m] that passes no wall; infinite where there is none."""
+        """(cells,) length of the shortest path to the target [m]; infinite where there is none."""
         length = np.full(len(self.cells), np.inf)
         length[self.target] = 0.0
         number = {tuple(cell): index for index, cell in enumerate(self.cells.tolist())}
@@ -110,7 +110,7 @@ class GridModel:
         return length
 
     def state_at(self, column: int, row: int, heading: int) -> int:
-        """Where an episode begins. LookupError if there is no floor."""
+        """Returns the start state in a cell. Raises LookupError if it is no floor."""
         found = np.flatnonzero((self.cells == (column, row)).all(axis=1))
         if not len(found):
             raise LookupError(f"no floor at {column}, {row}")
@@ -118,7 +118,7 @@ class GridModel:
 
 
 def build_model(task: GridTask) -> GridModel:
-    """The model of a map drawn in characters."""
+    """Builds the model of a map drawn in characters."""
     rows = task.rows[::-1]
     cells = [(x, y) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign != "#"]
     number = {cell: index for index, cell in enumerate(cells)}
@@ -141,7 +141,7 @@ def build_model(task: GridTask) -> GridModel:
 def _move_results(
     number: Mapping[tuple[int, int], int], x: int, y: int, heading: int
 ) -> Sequence[tuple[int, int, bool]]:
-    """For each move: the cell and heading after it, and whether it is a collision."""
+    """Returns for each move the cell and heading after it, and whether it collides."""
     here = number[x, y]
     dx, dy = HEADING_STEPS[heading]
     driven = []

@@ -1,6 +1,6 @@
-"""Evidence about a training's settings: trained as they say, over several seeds; then the policy it kept is examined.
+"""Trains with a student's settings and several seeds, and tests the policy that each training keeps.
 
-No program of a student's runs. The task, its reward, the budget and the exam are the assignment's.
+No program of the student's runs. The task, its reward, the budget and the final test are the assignment's.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from kit.learning.training.stopping_rules import (
 from kit.learning.training.training import make_learner
 
 UNREACHABLE_GOAL: Final = 2.0
-"""A goal for trainings that no test is to stop."""
+"""The goal of trainings that no test is to stop."""
 CONFIRMING_EPISODES: Final = 200
-"""Episodes of each case in the longer test of those that want to be sure."""
+"""Episodes of each case in the longer test of ``StopRule.SURE``."""
 PICTURE_ROWS: Final = 16
 
 
@@ -56,23 +56,23 @@ class CaseOrder(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TrainingBudget:
-    """The kind's task: what is to be learned, and how much may be spent."""
+    """What is to be learned, and how much training may cost."""
 
     choice: TaskSpec
     cases: tuple[str, ...]
     algorithms: tuple[str, ...]
     steps: int
-    """At most, of each training."""
+    """The most steps of each training."""
     seeds: tuple[int, ...]
     secret_seeds: tuple[int, ...]
-    """Instead of the others, where the grade is given."""
+    """Used instead of ``seeds`` for the grade."""
     episodes: int
-    """Of each case in the exam of each training."""
+    """Episodes of each case in the final test of each training."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrainingSettings:
-    """What a student hands in."""
+    """The settings that a student submits."""
 
     algorithm: str
     learning_rate: LinearSchedule
@@ -85,7 +85,7 @@ class TrainingSettings:
     batch: int
     """Steps between two tests."""
     test_episodes: int
-    """In all, of each test."""
+    """Episodes of each test, all cases together."""
     stop: StopRule
     goal: float
     keeps_best: bool
@@ -95,25 +95,25 @@ class TrainingSettings:
 
 @dataclass(frozen=True, slots=True)
 class TrainingTest:
-    """One test on the way."""
+    """One test during a training."""
 
     steps: int
     counts: CaseCounts
     kept: bool
-    """Whether the policy of this moment was the best so far."""
+    """Whether its policy was the best so far."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrainingResult:
-    """What came of one training."""
+    """The result of one training."""
 
     number: int
     steps: int
     tests: tuple[TrainingTest, ...]
     claimed: float
-    """The accuracy that its own last word gives the policy kept; 0 if it was never tested."""
+    """The success of the kept policy in its last test during the training; 0 if it was never tested."""
     exam: CaseCounts
-    """Of the policy kept, on episodes that nothing else has seen."""
+    """Final test of the kept policy, on episodes that no other test uses."""
 
     @property
     def accuracy(self) -> float:
@@ -122,19 +122,19 @@ class TrainingResult:
 
 @dataclass(frozen=True, slots=True)
 class TrainingResults:
-    """What was found."""
+    """The results of all trainings."""
 
     budget: TrainingBudget
     settings: TrainingSettings
     trainings: tuple[TrainingResult, ...]
 
     def pooled_count(self, case: str) -> CaseCount:
-        """Of all exams."""
+        """Adds up a case's counts of all final tests."""
         counts = [training.exam[case] for training in self.trainings]
         return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
     def success_lower_bound(self, *cases: str) -> float:
-        """What the success in these cases together is not below, with 95 % confidence (Wilson)."""
+        """Returns the lower bound of the success in these cases together, with 95 % confidence (Wilson)."""
         counts = [self.pooled_count(case) for case in cases or self.budget.cases]
         return lower_bound(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
@@ -143,7 +143,7 @@ class TrainingResults:
         return min(self.budget.cases, key=lambda case: self.pooled_count(case).share)
 
     def picture(self) -> str:
-        """The tests of the worst training, a row each."""
+        """Draws the tests of the worst training, one per row."""
         worst = min(self.trainings, key=lambda training: training.accuracy)
         cases = self.budget.cases
         rows = [f"training {worst.number}:  steps  " + "  ".join(f"{case:>12}" for case in cases)]
@@ -164,7 +164,7 @@ def _bar(share: float) -> str:
 def run_trainings(
     settings: TrainingSettings, budget: TrainingBudget, seeds: tuple[int, ...]
 ) -> TrainingResults:
-    """Trains as planned, once for each seed. Raises LearnerMissing."""
+    """Trains once for each seed. Raises LearnerMissing."""
     if find_algorithm(settings.algorithm).neural:
         require_learn_extra()
     return TrainingResults(
@@ -200,7 +200,7 @@ def _run_training(
 def _learner(
     settings: TrainingSettings, budget: TrainingBudget, on: tuple[str, ...], seed: int, before: Learner | None
 ) -> Learner:
-    """One who learns these cases, and knows what the one before knew."""
+    """Makes a learner of these cases that continues from the one before."""
     algorithm = find_algorithm(settings.algorithm)
     choice = replace(budget.choice, on=on)
     preset = find_preset("kit", algorithm, budget.choice.task)
@@ -258,7 +258,7 @@ class _TrainingMonitor:
         """What training does is not what counts."""
 
     def test_last_steps(self) -> None:
-        """At the end, if the last steps have not been looked at."""
+        """Tests the policy at the end, if the last steps have not been tested."""
         if not self.tests or self.tests[-1].steps < self.learner.steps:
             try:
                 self._run_test()
@@ -266,13 +266,13 @@ class _TrainingMonitor:
                 return
 
     def __call__(self, episodes: int) -> CaseCounts:
-        """A test of the present policy."""
+        """Tests the present policy."""
         self._test_count += 1
         seed = derive_seed(self._seed, "test", self._test_count)
         return self.examine(self.learner.policy(), -(-episodes // self.cases), seed)
 
     def examine(self, policy: Policy, episodes: int, seed: int) -> CaseCounts:
-        """(policy, episodes of each case, seed) -> what came of them."""
+        """Tests a policy; ``episodes`` is the number for each case."""
         result = self._evaluator.test(policy, episodes, seed)
         return {case.case: CaseCount(case.reached, case.episodes) for case in result.cases}
 

@@ -1,5 +1,4 @@
-"""Transitions of the model as the kit's own record: what every reward gets, the kit's and a student's, here as in
-training."""
+"""Converts transitions of the model into the kit's own record, which every reward function gets."""
 
 from __future__ import annotations
 
@@ -39,19 +38,19 @@ MODEL_FACTS: Final = (
     ),
     "max_steps",
 )
-"""The facts of a step that the model has. The others (the step's number, turns made so far, the lidar's rays) depend
+"""Parameters of a reward function that the model can provide. The others (the step's number, turns made so far, the lidar's rays) depend
 on what the model leaves out."""
 
 KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
-"""The kit's number of each of the model's moves; the last: none."""
+"""The kit's number for each of the model's moves; the last stands for no move."""
 
 AGENT_SIGHT: Final = 2.0
-"""m: no farther does the agent of the kit's tasks see (dissertation, section 3.1.2)."""
+"""m: how far the agent of the kit's tasks sees (dissertation, section 3.1.2)."""
 
 
 @dataclass(frozen=True, eq=False)
 class TransitionBatch:
-    """Some transitions of a model: which state, which move."""
+    """Some transitions of a model, as states and moves."""
 
     model: GridModel
     states: Integers
@@ -62,12 +61,12 @@ class TransitionBatch:
 
     @classmethod
     def all(cls, model: GridModel) -> TransitionBatch:
-        """Every one there is, state by state."""
+        """Returns all transitions, ordered by state."""
         states = np.repeat(np.arange(model.states), len(MOVES))
         return cls(model, states, np.tile(np.arange(len(MOVES)), model.states))
 
     def at(self, index: Integers) -> TransitionBatch:
-        """Some of them, in another order."""
+        """Selects transitions by index."""
         return TransitionBatch(self.model, self.states[index], self.moves[index])
 
     @cached_property
@@ -84,7 +83,7 @@ class TransitionBatch:
 
 
 def rewards_of(reward: RewardFunction, model: GridModel) -> Floats:
-    """(states, moves) what one of the kit's rewards pays for every transition.
+    """Returns (states, moves) rewards of one of the kit's functions.
 
     What it knows of an episode's past beyond the last move is not part of the model's states: every transition stands
     for one at an episode's beginning.
@@ -95,7 +94,7 @@ def rewards_of(reward: RewardFunction, model: GridModel) -> Floats:
 
 
 def to_transition(steps: TransitionBatch) -> Transition:
-    """The kit's record of these transitions, for one robot."""
+    """Returns the kit's record of these transitions, for one robot."""
     model, count = steps.model, len(steps)
     before, after = model.cell_of(steps.states), model.cell_of(steps.next_states)
     front = np.minimum(model.ahead[after, model.heading_of(steps.next_states)], AGENT_SIGHT)

@@ -1,7 +1,7 @@
-"""Planning: the best behaviour under a reward, by value iteration, and what it does in truth.
+"""Value iteration: the optimal behaviour under a reward, and how well it reaches the target.
 
-A reward is judged by the behaviour it asks for. On a small model that behaviour can be computed instead of trained:
-exactly, without chance, in milliseconds; and if it is not the one that was meant, it is the exploit.
+A reward is judged by the behaviour that is optimal under it. On a small model that behaviour is computed instead of
+trained: exactly, deterministically, in milliseconds. If it misses the target, it is the reward's exploit.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ TIE_SHARE: Final = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class OptimalPolicy:
-    """What a reward asks for."""
+    """The optimal behaviour under a reward."""
 
     model: GridModel
     rewards: Floats
     """(states, moves)"""
     values: Floats
-    """(states, moves) of each move, with the best behaviour after it: Q of the reinforcement learning books."""
+    """(states, moves) Q-values: the return of each move with optimal behaviour after it."""
     best: Flags
-    """(states, moves) whether no move is better."""
+    """(states, moves) True where no other move is better."""
 
 
 def value_iteration(model: GridModel, rewards: Floats) -> OptimalPolicy:
-    """Bellman's optimality equation, iterated until it holds.
+    """Iterates Bellman's optimality equation until it holds.
 
     ``rewards``: (states, moves). Q(s, a) = r(s, a) + discount * max Q(s', .), without the last term where the episode
     ends.
@@ -55,18 +55,18 @@ def value_iteration(model: GridModel, rewards: Floats) -> OptimalPolicy:
 
 @dataclass(frozen=True, eq=False)
 class PolicyOutcome:
-    """What the planned behaviour does from every start, by the true goal."""
+    """How the optimal behaviour does from every start, by the true goal."""
 
     success: float
-    """How often it reaches the target, the mean of all starts; of equally good moves each is as likely."""
+    """Probability of reaching the target, the mean over all starts; equally good moves are equally likely."""
     steps: float
-    """How long episodes last, the mean of all starts."""
+    """Steps per episode, the mean over all starts."""
     exploit_start: int | None
     """A start from which the target may be missed; None if there is none."""
 
 
 def evaluate_policy(policy: OptimalPolicy) -> PolicyOutcome:
-    """Lets the plan drive from every start from which the target can be reached at all, for ``max_steps``."""
+    """Evaluates the policy from every start from which the target can be reached, for ``max_steps``."""
     model = policy.model
     starts = model.starts[np.isfinite(model.to_go[model.cell_of(model.starts)])]
     probabilities = policy.best / policy.best.sum(axis=1, keepdims=True)
@@ -86,7 +86,7 @@ def evaluate_policy(policy: OptimalPolicy) -> PolicyOutcome:
 
 
 def rollout(policy: OptimalPolicy, start: int, steps: int) -> Integers:
-    """The states that the plan leads through, the first included; of equally good moves the first."""
+    """Returns the states along the policy's path, the start included; takes the first of equally good moves."""
     model, state, visited = policy.model, start, [start]
     for _ in range(steps):
         move = int(np.argmax(policy.best[state]))
@@ -98,7 +98,7 @@ def rollout(policy: OptimalPolicy, start: int, steps: int) -> Integers:
 
 
 def draw_path(model: GridModel, states: Integers) -> str:
-    """A way through the map in characters: where it began, where it went how often, and how it ended."""
+    """Draws a path on the map in characters: its start, how often each cell is visited, and its moves."""
     rows = [list(row) for row in model.task.rows]
     visits: dict[tuple[int, int], int] = {}
     for cell in model.cells[model.cell_of(states)].tolist():

@@ -1,1 +1,1 @@
-"""What can be handed in: one module a kind, found by its name, with one record ``KIND`` that says how it is graded."""
+"""Kinds of submissions: one module each, found by its name, whose record ``KIND`` tells how it is graded."""

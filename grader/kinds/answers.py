@@ -1,7 +1,7 @@
 """Answers to questions, in a YAML file: numbers, words, lists of words. No program runs.
 
-The sheet's ``questions`` names each key and what kind of answer it wants; its ``answers``, which may stand in
-``secret.yaml`` instead, hold what is right::
+``questions`` in the assignment names each question and the kind of its answer; ``answers``, which may be in
+``secret.yaml`` instead, holds the right answers::
 
     questions:
       topic: {ask: Which topic carries the commands?, choices: [cmd_vel, odom, scan]}
@@ -34,41 +34,41 @@ MAX_ANSWER: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class AnswerKey:
-    """What is right for one question."""
+    """The right answer to one question."""
 
     right: tuple[str, ...]
     """Any of these; for a list, all of these in any order."""
     within: float
-    """How far a number may be off."""
+    """Absolute tolerance for a number."""
     is_list: bool
     feedback: Mapping[str, str]
-    """What to say to a certain wrong answer."""
+    """Feedback by wrong answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerQuestion:
-    """One question of the sheet."""
+    """One question of the assignment."""
 
     name: str
     ask: str
     choices: tuple[str, ...]
-    """What may be answered; empty: anything."""
+    """The allowed answers; empty for any."""
     is_list: bool
 
 
 @dataclass(frozen=True, slots=True)
 class AnswersTask:
-    """The kind's task."""
+    """The questions and their right answers."""
 
     questions: tuple[AnswerQuestion, ...]
     keys: Mapping[str, AnswerKey]
     is_secret: bool
-    """Whether the keys stand in ``secret.yaml``."""
+    """Whether the right answers are in ``secret.yaml``."""
 
 
 @dataclass(frozen=True, slots=True)
 class SubmittedAnswers:
-    """What was found: each answer as it was written, each with whether it is right."""
+    """The submitted answers, as they were written."""
 
     given: Mapping[str, tuple[str, ...]]
     task: AnswersTask
@@ -80,7 +80,7 @@ class SubmittedAnswers:
         return len(given) == 1 and any(_is_same(given[0], right, key.within) for right in key.right)
 
     def first_wrong(self, names: Sequence[str]) -> str:
-        """What to say of the first question that is not answered rightly."""
+        """Returns feedback on the first question without a right answer; empty if there is none."""
         for question in self.task.questions:
             if question.name not in names or self.is_right(question.name):
                 continue
@@ -94,7 +94,7 @@ class SubmittedAnswers:
 
 @dataclass(frozen=True, slots=True)
 class AnswerKeysParams:
-    """Which questions a criterion is about: by default all."""
+    """The questions that a criterion is about; none given means all."""
 
     keys: tuple[str, ...] = ()
 
@@ -110,7 +110,7 @@ def answers(evidence: EvidenceRecord, params: AnswerKeysParams) -> float:
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The questions, and what is right."""
+    """Reads the questions and the right answers."""
     questions = tuple(_questions(files.public.section("questions")))
     in_secret = not files.public.has("answers") and files.secret is not None
     holder = files.secret if in_secret and files.secret is not None else files.public
@@ -145,7 +145,7 @@ def _key(section: Section, question: AnswerQuestion) -> AnswerKey:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Reads the file once; not at all where what is right is for the teacher's machine alone."""
+    """Reads the submitted file; collects nothing where the right answers are secret and not available."""
     task: AnswersTask = assignment.task
     withheld = task.is_secret and not options.secret
     return nullcontext(FixedEvidence([] if withheld else [_read_answers(task, file)], options.level))
@@ -161,7 +161,7 @@ def _read_answers(task: AnswersTask, file: Path) -> EvidenceRecord:
 
 
 def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str, tuple[str, ...]]:
-    """What was answered to each question; nothing where its key is missing or left empty."""
+    """Returns the answers to each question; questions without an answer are left out or empty."""
     known = {each.name: each for each in questions}
     given = {}
     for name, value in section.remaining_values().items():
@@ -183,12 +183,12 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
 
 
 def _as_written(value: object) -> str:
-    """A plain value as one writes it in YAML."""
+    """Returns a scalar as it is written in YAML."""
     return str(value).lower() if isinstance(value, bool) else "" if value is None else str(value).strip()
 
 
 def _is_same(given: str, right: str, within: float) -> bool:
-    """Numbers compare as numbers, words without case and with single blanks."""
+    """True if two answers are equal: numbers within the tolerance, words without case and repeated blanks."""
     try:
         return math.isclose(float(given), float(right), rel_tol=1e-9, abs_tol=within)
     except ValueError:

@@ -63,7 +63,7 @@ class Kind:
 
 
 def kind_names() -> tuple[str, ...]:
-    """Every kind there is, by name."""
+    """Returns the names of all kinds."""
     package = import_module(KINDS_PACKAGE)
     return tuple(
         sorted(
@@ -73,13 +73,13 @@ def kind_names() -> tuple[str, ...]:
 
 
 def find_kind(kind: str) -> Kind:
-    """The kind's record; its module is imported when it is first asked for."""
+    """Returns a kind's record; imports its module on first use."""
     kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
     return kind_record
 
 
 def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:
-    """What a handed-in YAML file says; or all its mistakes, each with its place, as one failure."""
+    """Reads a submitted YAML file with ``make``; returns all its mistakes as one failure if there are any."""
     problems = ProblemCollector()
     try:
         section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(
@@ -90,7 +90,7 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
         parsed = make(section)
         problems.raise_if_any()
     except (WorldError, OSError) as error:
-        # Where the snapshot lies is nothing to tell.
+        # The path of the temporary copy means nothing to the student.
         return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
     return parsed
 
@@ -98,7 +98,7 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
-    """``Kind.collect`` for a kind that looks once."""
+    """Makes a ``Kind.collect`` for a kind with one piece of evidence."""
 
     def collect(
         assignment: Assignment, file: Path, options: EvidenceOptions

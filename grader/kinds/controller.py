@@ -1,4 +1,4 @@
-"""A ROS 2 node that drives: judged on episodes that the grader runs and records."""
+"""A ROS 2 node that drives a robot, graded on episodes that the grader runs and records."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ MAX_EPISODE_S: Final = 3600.0
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The trials."""
+    """Reads the trials."""
     return KindSettings(trials=tuple(trials(files)))
 
 
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Its episodes, each run when a criterion first needs it."""
+    """Runs each episode when a criterion first needs it."""
     from grader.evidence.controller import ControllerEpisodes
 
     return nullcontext(
@@ -48,7 +48,7 @@ def collect(
 
 
 def trials(files: AssignmentFiles) -> Iterator[Trial]:
-    """Kinds of episodes: where, how long, with which seeds."""
+    """Yields the trials of the assignment."""
     section, secrets, folder = files.public, files.secret, files.folder
     seen: set[str] = set()
     hidden = None if secrets is None else secrets.section("seeds")
@@ -97,7 +97,7 @@ def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, .
 
 
 def read_scenario(section: Section, folder: Path) -> Scenario | None:
-    """A map of the kit or a world of the folder, with its case or target; None if there is a mistake, which is noted."""
+    """Reads a map of the kit or a world of the folder, with its case or target; notes a mistake and returns None."""
     name = section.name("place")
     case = section.name("case") if section.has("case") else None
     target = section.point("target") if section.has("target") else None

@@ -1,7 +1,7 @@
-"""A drive by hand, as ``kit play --record`` keeps it: run again from its inputs, then judged like any other drive.
+"""A manual drive recorded by ``kit play --record``: replayed from its inputs, then graded like any other drive.
 
-The poses in the file prove nothing. What counts is where the same inputs lead in a world of ours; ``genuine`` says
-how far that is from what the file claims. After a reset the drive begins anew: the best attempt is judged. ::
+The poses in the file prove nothing. What counts is where the same inputs lead in the grader's own world; ``genuine``
+measures how far that is from what the file claims. A reset begins a new attempt, and the best attempt is graded. ::
 
     drive: {place: simple, case: simple, time: 180}
 """
@@ -47,35 +47,35 @@ from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
 
 STEP: Final = 0.01
-"""s: as the kit's own faces tick."""
+"""s: the tick of the kit's own programs."""
 MAX_TIME_S: Final = 600.0
-"""s that may be asked for."""
+"""s: the longest time an assignment may allow."""
 MAX_BYTES: Final = 64 << 20
-"""Of the file, unpacked."""
+"""Bytes of the file, unpacked."""
 MAX_INPUTS_PER_S: Final = 100
-"""A second, on average; more were never driven by hand."""
+"""Inputs per second on average; no manual drive has more."""
 HOME_TOLERANCE: Final = 1e-6
-"""A robot that has bumped is sent this near to its home [m, rad], and nowhere else."""
+"""A robot may be reset to within this distance of its home [m, rad], and nowhere else."""
 ARRAYS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy": 1})
-"""What a recording's file holds: arrays of so many dimensions."""
+"""The arrays in a recording's file, with their numbers of dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
 class HandDriveTask:
-    """The kind's task."""
+    """The scenario of the drive and its time limit."""
 
     place: Scenario | None
-    """None only where the sheet is wrong."""
+    """None only if the assignment has a mistake."""
     time_s: float
-    """No recording may be longer."""
+    """The longest recording that is accepted [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReplayedDrive(DriveRecord):
-    """One attempt of a recording, as it came out when it was run again."""
+    """One attempt of a recording, as its replay came out."""
 
     max_deviation: float = field(default=math.inf)
-    """How far, at worst, the file's poses are from ours."""
+    """The largest difference [m] between the file's poses and the replay's."""
 
 
 @check(none=0.01, full=1e-6, unit="m")
@@ -86,7 +86,7 @@ def genuine(drive: ReplayedDrive, params: NoParams) -> float:
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """Where the drive must have taken place."""
+    """Reads the scenario and the time limit."""
     section = files.public.section("drive")
     made = HandDriveTask(
         read_scenario(section, files.folder), section.number("time", 180.0, above=0, maximum=MAX_TIME_S)
@@ -98,25 +98,25 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Runs the recording again, once. No program of the student's is involved."""
+    """Replays the recording once. No program of the student's is involved."""
     try:
         seen: Evidence = _rerun(assignment.task, _load_checked(assignment.task, file))
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:
-        # Where the snapshot lies is nothing to tell.
+        # The path of the temporary copy means nothing to the student.
         message = printable(str(error).replace(f"{file}", file.name))
         seen = EvidenceRecord(failure=Failure(FailureKind.IMPORT, message or "It cannot be read."))
     return nullcontext(FixedEvidence([seen], options.level))
 
 
 def _load_checked(task: HandDriveTask, file: Path) -> Recording:
-    """The recording, if it is one of a drive at the right place. Raises RecordingError."""
+    """Loads the recording of a drive in the right scenario. Raises RecordingError for anything else."""
     data = file.read_bytes()
     if not data:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
     _check_size(data, file.name)
     recording = load(file)
     place = task.place
-    assert place is not None  # the sheet is right
+    assert place is not None  # the assignment has no mistake
     case = None if place.case is None else place.case.name
     if recording.place != place.name or recording.case != case:
         was = " ".join(filter(None, (recording.place, recording.case)))
@@ -140,7 +140,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
 
 
 def _check_size(data: bytes, name: str) -> None:
-    """That reading the arrays takes no more memory than their bytes. Raises RecordingError."""
+    """Checks that reading the arrays takes no more memory than their bytes. Raises RecordingError."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
@@ -171,7 +171,7 @@ class _Attempt:
 
     @property
     def rank(self) -> tuple[bool, float, float]:
-        """The higher the better: arrived with few bumps, and soon; else near to the target, or far driven."""
+        """Orders attempts: first those that arrive, by fewest bumps, then time; else by distance to the target."""
         score = self.score
         if score.reached_s is not None:
             return True, -score.bumps, -score.reached_s
@@ -179,7 +179,7 @@ class _Attempt:
 
 
 class _Rerun:
-    """The recording in a world of ours; only what a hand at the keys can do is done."""
+    """Replays the recording in the grader's world; only inputs that the keyboard can give are allowed."""
 
     def __init__(self, task: HandDriveTask, recording: Recording) -> None:
         assert task.place is not None
@@ -198,7 +198,7 @@ class _Rerun:
         """(ticks, models, 3): where everything was, once it has been run."""
 
     def attempts(self) -> list[_Attempt]:
-        """Runs it. Raises RecordingError."""
+        """Replays the recording and returns its attempts. Raises RecordingError."""
         playback = Playback(self._recording, self._accept, self._tell)
         self._runner.participants.append(playback)
         self._runner.observers += [playback, self._metrics, self.fingerprint, self._recorder]
@@ -238,7 +238,7 @@ class _Rerun:
 
 
 def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
-    """The best attempt, as it comes out here. Raises RecordingError."""
+    """Replays the recording and returns its best attempt. Raises RecordingError."""
     assert task.place is not None
     run = _Rerun(task, recording)
     best = max(run.attempts(), key=lambda attempt: attempt.rank)
@@ -265,7 +265,7 @@ def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
 
 
 def _cut(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], first: int) -> Recording:
-    """One attempt as a recording of its own, with the poses that came out."""
+    """Returns one attempt as a recording of its own, with the replay's poses."""
     ticks, models, _ = poses.shape
     inputs = tuple(
         entry for entry in recording.inputs if entry.kind == ACCEPT and first <= entry.tick < first + ticks

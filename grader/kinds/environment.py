@@ -1,6 +1,6 @@
-"""A Gymnasium environment that wraps a robot in a world: lived with for some episodes, and checked against that world.
+"""A Gymnasium environment around a robot in a world: run for some episodes and compared with that world.
 
-The sheet says where it lives and what its actions do::
+The assignment gives the scenario and what each action does::
 
     environment:
       class: HallwayEnv
@@ -35,11 +35,11 @@ from kit.host.wire import printable
 from kit.plain_text import quoted
 
 MOST_STEPS: Final = 400
-"""Of an episode: one is driven to its very end."""
+"""Of one episode: the grader drives one to its time limit."""
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """Where the environment lives, and what its actions do."""
+    """Reads the scenario of the environment, and what its actions do."""
     section = files.public.section("environment")
     place = read_scenario(section, files.folder)
     moves = section.points("moves", at_least=2, at_most=20)
@@ -64,7 +64,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Lives with it once; with the secret seed where secrets are used."""
+    """Examines the environment once; with the secret seed where secrets are used."""
     level = options.level
     while True:
         evidence = _examine(assignment, file, level, options)
@@ -86,7 +86,7 @@ def _examine(assignment: Assignment, file: Path, level: Level, options: Evidence
         record = examine_environment(task, assignment, file, level, seed)
     except GuestError as error:
         failure = error.failure
-        if failure.file == "examiner.py":  # where it was asked from is nothing to tell
+        if failure.file == "examiner.py":  # the grader's own examiner means nothing to the student
             failure = replace(failure, file=file.name, line=None)
         return EvidenceRecord(
             failure=failure, label="the environment", outcome=f"stopped ({failure.kind.value})"
@@ -105,7 +105,7 @@ def _examine(assignment: Assignment, file: Path, level: Level, options: Evidence
 
 
 def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file: str) -> str:
-    """Why there is nothing to live with."""
+    """Returns why there is no environment in the file; empty if there is one."""
     if "missing" in record.description:
         missing = record.description["missing"]
         names: Sequence[str] = [str(each) for each in missing] if isinstance(missing, list) else []

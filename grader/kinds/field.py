@@ -1,6 +1,6 @@
-"""A charge file: judged by the field it makes, and by driving in it as the kit's controller ``fields`` does.
+"""A charge file, graded by its potential field and by driving in it as the kit's controller ``fields`` does.
 
-The sheet has trials, as for a controller. The file is data: it is read strictly, no program runs. ::
+The assignment has trials, as for a controller. The file is data, read strictly; no program runs. ::
 
     trials:
       - {name: there, place: turn, case: turn_a_to_b, time: 60, seeds: [1], shift: [0.02, 0.02, 0.05]}
@@ -50,11 +50,11 @@ from kit.world.problems import WorldError
 STEP: Final = 0.01
 """s"""
 DECISION_INTERVAL: Final = 10
-"""Ticks between two decisions: as often as odometry comes."""
+"""Ticks between two decisions: the rate of the odometry."""
 MAX_BYTES: Final = 64 * 1024
 MAX_CHARGES: Final = 200
 MAX_INTENSITY: Final = 1e6
-"""No intensity may be larger, either way."""
+"""The largest magnitude of an intensity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class FieldDrive(DriveRecord):
 
     course: ControllerSetup | None = None
     all_reached_s: float | None = None
-    """When every robot was within the target's radius."""
+    """The first time at which every robot was within the target's radius; None if never."""
 
     @property
     def outcome(self) -> str:
@@ -81,7 +81,7 @@ class FieldDrive(DriveRecord):
         return [self.recording.track(name) for name in self.place.partners]
 
     def explain(self, check: str, params: Any = None) -> str:
-        """Where the field leads, if not to the target."""
+        """Names the largest trap of the field, if that explains the lost points."""
         if check not in ("arrive", "free_of_traps") or self.secret:
             return ""
         trap = next(iter(self.flow.traps()), None)
@@ -194,7 +194,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 
 
 class FieldDriveCollector:
-    """The drives in one charge file, each when a criterion first needs it."""
+    """Drives in a charge file's field when a criterion first needs that drive."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         self.level = options.level
@@ -235,7 +235,7 @@ class FieldDriveCollector:
 
 
 def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: bool) -> FieldDrive:
-    """One drive, to its end. Raises WorldError for a wrong file."""
+    """Makes one drive to its end. Raises WorldError, LookupError or ValueError for a file that cannot be used."""
     if file.stat().st_size > MAX_BYTES:
         raise ValueError(f"{file.name} is larger than {MAX_BYTES // 1024} KiB.")
     place = _shifted_scenario(trial, seed)
@@ -271,7 +271,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
 
 
 def _check_limits(layout: ChargeLayout) -> ChargeLayout:
-    """ValueError for what would only take time or make no sense."""
+    """Raises ValueError for a layout with too many charges or too large intensities."""
     numbers = [getattr(layout.intensities, name) for name in ("walls", "target", "robot", "tension")]
     if len(layout.field.stretches) > MAX_CHARGES:
         raise ValueError(f"more than {MAX_CHARGES} charges; a map has as many as it has walls and corners")
@@ -282,7 +282,7 @@ def _check_limits(layout: ChargeLayout) -> ChargeLayout:
 
 
 def _shifted_scenario(trial: Trial, seed: int) -> Scenario:
-    """The place with its robots moved together, as the seed says."""
+    """Returns the scenario with all its robots shifted together, as the seed sets."""
     place, home, start = trial.place, trial.home(), shifted_start(trial, seed)
     moved = {
         model.name: start.compose(home.relative(model.pose))
@@ -318,7 +318,7 @@ class _FieldRun:
         return self._recorder.recording()
 
     def score(self) -> DriveMetrics:
-        """The first robot's, with everybody's bumps."""
+        """Returns the first robot's score, with the bumps of all robots."""
         return replace(self.metrics.metrics, bumps=self.metrics.total_bumps)
 
     def _decide(self) -> None:

@@ -1,16 +1,16 @@
-"""A Python file with functions: called in a process of its own, and compared with ours.
+"""A Python file with functions, called in a process of its own and compared with the teacher's.
 
-``reference.py`` in the assignment's folder, which is the teacher's and runs in the grader, has each function as it
-should be, and beside it the cases it is tried on::
+``reference.py`` in the assignment's folder, which is the teacher's and runs in the grader, has each function as it should
+be, and beside it the cases it is called with::
 
     def nearest(ranges): ...
 
-    def nearest_cases(chance):              # a random.Random: the seeds stand in the sheet
+    def nearest_cases(chance):              # a random.Random, seeded by the assignment
         yield {"ranges": [0.5, 0.3]}        # each a dictionary of arguments, plain data
         for _ in range(20):
             yield {"ranges": [chance.uniform(0.1, 2.0) for _ in range(91)]}
 
-The sheet names the functions; other seeds may stand in ``secret.yaml``::
+The assignment names the functions; ``secret.yaml`` may set another seed::
 
     functions:
       - {name: nearest, within: 0.001}
@@ -42,24 +42,24 @@ from kit.world.yaml_section import Section
 
 REFERENCE: Final = "reference.py"
 CASES_SUFFIX: Final = "_cases"
-"""What follows a function's name in the name of what makes its cases."""
+"""Suffix of the function that makes a function's cases."""
 MAX_CASES: Final = 500
 MAX_SHOWN: Final = 9
-"""Entries of a list that are written out."""
+"""The most entries of a list that feedback shows."""
 
 
 @dataclass(frozen=True, slots=True)
 class FunctionSpec:
-    """One function that is to be written."""
+    """One function that the student is to write."""
 
     name: str
     within: float
-    """How far a number may be off, absolutely and as a share of what is right."""
+    """Tolerance for numbers, absolute and relative."""
 
 
 @dataclass(frozen=True, slots=True)
 class FunctionsTask:
-    """The kind's task."""
+    """The functions to write and the reference they are compared with."""
 
     functions: tuple[FunctionSpec, ...]
     reference: Path
@@ -69,7 +69,7 @@ class FunctionsTask:
 
 @dataclass(frozen=True, slots=True)
 class CaseDifference:
-    """A case in which the student's function returns something else than ours."""
+    """A case in which the student's function returns something else than the reference."""
 
     arguments: Mapping[str, Json]
     expected: Json
@@ -81,14 +81,14 @@ class CaseDifference:
 
 @dataclass(frozen=True, slots=True)
 class FunctionComparison:
-    """What was found: a function tried on its cases."""
+    """How a student's function did on its cases."""
 
     name: str
     cases: int
     differences: tuple[CaseDifference, ...]
 
     def explain_first(self) -> str:
-        """What to say of the first case that differs."""
+        """Returns feedback on the first case that differs; empty if none does."""
         if not self.differences:
             return ""
         difference = self.differences[0]
@@ -100,10 +100,10 @@ class FunctionComparison:
 
 @dataclass(frozen=True, slots=True)
 class FunctionParams:
-    """Which function a criterion is about."""
+    """The function that a criterion is about."""
 
     function: str = ""
-    """May be left out where there is one only."""
+    """May be left out if there is only one."""
 
 
 @check(none=0.5, full=1, unit="%", params=FunctionParams)
@@ -114,7 +114,7 @@ def agrees(evidence: EvidenceRecord, params: FunctionParams) -> float:
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The functions, and whether the reference has them."""
+    """Reads the functions, and checks that the reference has them."""
     file = files.folder / REFERENCE
     spec = tuple(_function_specs(files.public))
     seed = files.public.integer("seed", 1, minimum=0)
@@ -146,7 +146,7 @@ def _function_specs(section: Section) -> Iterator[FunctionSpec]:
 
 
 def load_reference(file: Path) -> ModuleType:
-    """The teacher's reference, as a module of its own every time. Raises what it raises."""
+    """Imports the teacher's reference as a new module each time. Raises what it raises."""
     spec = importlib.util.spec_from_file_location(f"reference_of_{file.parent.name}", file)
     assert spec is not None  # the name ends in .py
     assert spec.loader is not None
@@ -156,13 +156,13 @@ def load_reference(file: Path) -> ModuleType:
 
 
 def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, Json]]:
-    """What a function is tried on with this seed."""
+    """Returns the cases of a function for this seed, each a dictionary of arguments."""
     make: Callable[[random.Random], Iterator[Mapping[str, Json]]] = getattr(module, name + CASES_SUFFIX)
     return list(make(random.Random(f"{name} {seed}")))[:MAX_CASES]
 
 
 class FunctionCollector:
-    """Gathers a look at each function when a criterion first asks for it: a mistake in one costs no other."""
+    """Calls each function when a criterion first needs it, so that an error in one costs no other."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         self.level = options.level
@@ -200,7 +200,7 @@ class FunctionCollector:
 
     def _compare(self, spec: FunctionSpec, secret: bool) -> EvidenceRecord:
         seed = self._task.secret_seed if secret else self._task.seed
-        assert seed is not None  # where there is none, no secret look is asked for
+        assert seed is not None  # without one, no secret evidence is collected
         cases = cases_of(self._reference, spec.name, seed)
         blank = EvidenceRecord(label=f"{spec.name}()" + (" on secret cases" if secret else ""), secret=secret)
         while True:
@@ -246,7 +246,7 @@ class FunctionCollector:
 def failed_record(
     blank: EvidenceRecord, failure: Failure, name: str, case: Mapping[str, Json] | None
 ) -> EvidenceRecord:
-    """The look at a function that failed: in which call, where that may be told."""
+    """Returns the evidence of a function that failed; names the call unless the case is secret."""
     if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
         arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items())
         failure = replace(failure, message=f"{failure.message} It was called as {name}({arguments}).")
@@ -256,7 +256,7 @@ def failed_record(
 
 
 def _as_json(value: Any) -> Json:
-    """What the reference returns, as what comes from the student's process looks like."""
+    """Converts a value of the reference as the student's process converts its values."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
@@ -265,7 +265,7 @@ def _as_json(value: Any) -> Json:
 
 
 def is_close(expected: Json, actual: Json, within: float) -> bool:
-    """Whether two returned values are the same: numbers nearly, texts and truth values to the letter."""
+    """True if two returned values are equal: numbers within the tolerance, everything else exactly."""
     if isinstance(expected, list):
         return (
             isinstance(actual, list)
@@ -278,7 +278,7 @@ def is_close(expected: Json, actual: Json, within: float) -> bool:
 
 
 def format_value(value: Json) -> str:
-    """A value as one would write it, long lists shortened."""
+    """Formats a value for feedback; shortens long lists."""
     if isinstance(value, list):
         join_faults = ", ".join(map(format_value, value[:MAX_SHOWN]))
         more = f", ... {len(value)} in all" if len(value) > MAX_SHOWN else ""
@@ -289,7 +289,7 @@ def format_value(value: Json) -> str:
 
 
 def _first_difference(expected: Json, actual: Json) -> str:
-    """Where in a list the first difference is; nothing for what is short enough to see."""
+    """Describes where two lists first differ; empty for other values."""
     if not isinstance(expected, list) or not isinstance(actual, list):
         return ""
     if len(expected) != len(actual):
@@ -303,7 +303,7 @@ def _first_difference(expected: Json, actual: Json) -> str:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Each function is called when a criterion first asks for it."""
+    """Calls each function when a criterion first needs it."""
     return nullcontext(FunctionCollector(assignment, file, options))
 
 

@@ -1,12 +1,12 @@
-"""A ROS 2 launch file: what it declares, who is there when it has been carried out, and what they do.
+"""A ROS 2 launch file, graded by its arguments, the nodes it starts, and what they do.
 
     launch:
-      package: starter            # the package around the launch file, beside this sheet
+      package: starter            # the package around the launch file, beside this file
       runs:
         - {name: usual, time: 4}
         - {name: quick, time: 4, arguments: {speed: "0.5"}}
 
-``runs`` may stand in ``secret.yaml`` too: those are for the grade. A check looks at every run, or at those that its
+``runs`` may be in ``secret.yaml`` too, for the grade. A check measures every run, or those that its
 ``with: {runs: [...]}`` names.
 """
 
@@ -36,7 +36,7 @@ MAX_RUN_S: Final = 60.0
 
 @dataclass(frozen=True, slots=True)
 class LaunchTask:
-    """The kind's task."""
+    """The package, and the runs of the launch file."""
 
     package: Path
     runs: tuple[LaunchCase, ...]
@@ -45,7 +45,7 @@ class LaunchTask:
 @dataclass(frozen=True, slots=True)
 class RunParams:
     runs: tuple[str, ...] = ()
-    """Which; none: all."""
+    """Names of runs; none given means all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ def _share(wanted: Sequence[str], holds: Callable[[str], bool]) -> float:
 
 
 def _declared(record: LaunchRecord) -> list[str]:
-    # A default is told as ROS 2 shows it: in quotes.
+    # ROS 2 shows a default in quotes.
     return [
         each.name if each.default is None else f"{each.name} {each.default.strip(QUOTES)}"
         for each in record.arguments
@@ -156,7 +156,7 @@ def _is_distance_right(record: LaunchRecord, model: str, least: str, most: str) 
 
 
 def _explain(record: LaunchRecord, name: str, params: Any) -> str:
-    """The first thing that is not as asked, and what is there instead."""
+    """Explains the first thing that is not as asked, and what is there instead."""
     return EXPLANATIONS[name](record, params)
 
 
@@ -216,13 +216,13 @@ EXPLANATIONS: Final[Mapping[str, Callable[[LaunchRecord, Any], str]]] = MappingP
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The package, and how the launch file is launched."""
+    """Reads the package and the runs."""
     section = files.public.section("launch")
     name = section.name("package", "starter")
     folder = (files.folder / name).resolve()
     if not folder.is_relative_to(files.folder.resolve()) or not (folder / "package.xml").is_file():
         section.error(
-            f"no package {quoted(name)}: there is no {name}/package.xml beside the sheet", "package"
+            f"no package {quoted(name)}: there is no {name}/package.xml beside assignment.yaml", "package"
         )
     runs = list(_runs(section.sections("runs", at_least=1), secret=False))
     section.finish()
@@ -248,7 +248,7 @@ def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
 
 
 class LaunchCollector:
-    """The runs of one launch file, each when a criterion first needs it."""
+    """Runs a launch file each time a criterion first needs that run."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         self.level = options.level
@@ -287,7 +287,7 @@ class LaunchCollector:
 
 
 def _requested_parameters(criteria: Sequence[Criterion]) -> Mapping[str, tuple[str, ...]]:
-    """By node, the parameters that any criterion looks at."""
+    """Returns, by node, the parameters that any criterion checks."""
     found: dict[str, list[str]] = {}
     for criterion in criteria:
         if isinstance(criterion.params, ParameterParams):

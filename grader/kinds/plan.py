@@ -8,7 +8,7 @@ What is handed in::
     lasers: {lidar: [A]}
     proof: [robot - hall, drone - hall, lidar sees hall]
 
-The sheet's ``case`` names a requirements file beside it (see ``kit.layers.reading``), or one of the kit's examples; it may stand in
+``case`` in the assignment names a requirements file beside it (see ``kit.layers.reading``), or one of the kit's examples; it may be in
 ``secret.yaml`` instead.
 """
 
@@ -42,7 +42,7 @@ CONTACT_SEPARATOR: Final = " - "
 
 @dataclass(frozen=True, slots=True)
 class SubmittedPlan:
-    """What was handed in, beside what was asked."""
+    """The submitted plan together with the requirements it must meet."""
 
     case: Case
     plan: Plan
@@ -53,7 +53,7 @@ class SubmittedPlan:
         return breaches(self.case, self.plan)
 
     def combinable_pairs(self) -> Iterator[str]:
-        """Pairs of the proof that one layer could serve, which prove nothing."""
+        """Yields the pairs of the proof that one layer could serve; they prove nothing."""
         for one, other in combinations(self.proof, 2):
             if fit_together(self.case, one, other) is None:
                 yield f"one layer could serve both “{one}” and “{other}”"
@@ -89,7 +89,7 @@ CHECKS: Final = (complete, nothing_more, few_layers, proof)
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The case."""
+    """Reads the requirements."""
     in_secret = not files.public.has("case") and files.secret is not None
     holder = files.secret if in_secret and files.secret is not None else files.public
     name = holder.name("case")
@@ -104,7 +104,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
-    """Reads the plan."""
+    """Reads the submitted plan."""
     case: Case = assignment.task
     plan = read_submitted_yaml(file, lambda section: _read_plan(section, case))
     if isinstance(plan, Failure):
@@ -146,7 +146,7 @@ def _read_plan(section: Section, case: Case) -> SubmittedPlan:
 
 
 def _subsection(section: Section, key: str) -> Section | None:
-    """A mapping; None where nothing is written yet."""
+    """Returns the section of a key; None where it is empty."""
     return None if section.is_blank(key) else section.section(key, None)
 
 
@@ -161,7 +161,7 @@ def _known_names(
 
 
 def _requirement(section: Section, line: str, case: Case) -> Requirement | None:
-    """What a line of the proof says must happen."""
+    """Reads a line of the proof as a requirement of the case; notes an error for any other line."""
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
     plan: Requirement = Sight(one, other) if split == SIGHT_SEPARATOR else Contact(one, other)

@@ -1,4 +1,4 @@
-"""A reward function: judged by the behaviour it asks for."""
+"""A reward function, graded by the behaviour that is optimal under it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ MAX_GRID_SIZE: Final = 40
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The small model of the task."""
+    """Reads the grid on which the reward is evaluated."""
     return KindSettings(task=_grid(files.public.section("grid")))
 
 
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """The function, examined once."""
+    """Evaluates the function once, for all criteria."""
     from grader.evidence.reward import RewardCollector
 
     return RewardCollector(assignment, file, level=options.level, may_fall=options.may_fall)

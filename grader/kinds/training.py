@@ -1,6 +1,6 @@
-"""The settings of a training, in a YAML file: trained over several seeds, and judged by what the kept policy can do.
+"""The settings of a training, in a YAML file: trained with several seeds and graded by the policies they keep.
 
-The sheet says what is to be learned and what it may cost::
+The assignment sets what is to be learned and what it may cost::
 
     training:
       task: turn
@@ -54,7 +54,7 @@ TABLES: Final = ("q-learning", "sarsa")
 
 @dataclass(frozen=True, slots=True)
 class ReliableParams:
-    """What a single training must reach to count."""
+    """The success that a single training needs to count."""
 
     goal: float = 0.9
 
@@ -100,7 +100,7 @@ def steps_used(evidence: EvidenceRecord, params: object) -> float:
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """What is to be learned, and what it may cost."""
+    """Reads the task and the budget."""
     section = files.public.section("training")
     choice = TaskSpec(
         section.name("task"),
@@ -131,7 +131,7 @@ def _seeds(section: Section) -> tuple[int, ...]:
 
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
-    """Trains as the file says, once for each seed."""
+    """Trains with the submitted settings, once for each seed."""
     budget: TrainingBudget = assignment.task
     settings = read_submitted_yaml(file, lambda section: _settings(section, budget))
     if isinstance(settings, Failure):
@@ -157,7 +157,7 @@ def _failed(message: str) -> EvidenceRecord:
 
 
 def _explain(results: TrainingResults, check: str) -> str:
-    """Which training or case it is about."""
+    """Explains which training or case lost the points."""
     if check == "every_case":
         count = results.pooled_count(results.worst_case)
         return f"That is {results.worst_case}, reached {count.reached} times in {count.episodes}."
@@ -209,7 +209,7 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
 
 
 def _schedule(section: Section, key: str, default: tuple[float, float]) -> LinearSchedule:
-    """Two numbers between 0 and 1: at the beginning, at the end."""
+    """Reads a schedule: two numbers between 0 and 1, for the beginning and the end."""
     first, last = section.numbers(key, default, length=2)
     if not (0 <= first <= 1 and 0 <= last <= 1):
         section.error(f"{quoted(key)} must be two numbers between 0 and 1: at the beginning, at the end", key)

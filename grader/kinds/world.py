@@ -1,12 +1,12 @@
-"""A Flatland world, in a folder with its main file: read strictly, looked at, and run with a driver of ours.
+"""A Flatland world, in a folder with its main file: read strictly, inspected, and run with a driver of the assignment's.
 
-Nothing of it is a program; it is read in a process of its own all the same, which ends when the world is too large or
-too slow. The sheet's ``trials`` are runs of it, for the checks that need one::
+A world holds no program, but it is read and run in a process of its own, which is ended when the world is too large or too
+slow. ``trials`` in the assignment are runs of it, for the checks that need one::
 
     trials:
       - {name: hall, driver: driver.py, target: [3, 1], time: 20, seeds: [1]}
 
-``driver`` is a node file beside the sheet or a controller of the kit's; without one the world just stands.
+``driver`` is a node file beside the assignment or a controller of the kit; without one nothing drives.
 """
 
 from __future__ import annotations
@@ -41,18 +41,18 @@ if TYPE_CHECKING:
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""
 UNKNOWN_SCENARIO: Final = Scenario("what was handed in", "", World(Path("world.yaml")), None)
-"""Where a run takes place is known only when something was handed in."""
+"""Stands for the scenario of a trial, which is known only once a world is submitted."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorldRunSpecs:
-    """The kind's task: an order for each trial, which lacks only its seed."""
+    """By trial: the run to make, all but its seed."""
 
     specs: dict[str, WorldRunSpec] = field(default_factory=dict)
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
-    """The runs."""
+    """Reads the runs."""
     hidden = None if files.secret is None else files.secret.section("seeds", None)
     trials, plans = [], WorldRunSpecs()
     for each in files.public.sections("trials", ()):
@@ -112,7 +112,7 @@ def _seeds(section: Section, key: str, default: tuple[int, ...]) -> tuple[int, .
 
 
 class WorldCollector:
-    """One world: looked at when it is first asked for, run when a criterion first needs that run."""
+    """Reads a world when a criterion first needs it, and makes each run when a criterion first needs that run."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         self.level = Level(options.level)
@@ -147,7 +147,7 @@ class WorldCollector:
         return [*([] if self._read is None else [self._read]), *self._records.values()]
 
     def _seeds(self, trial: Trial, which: SeedSet) -> Iterator[tuple[int, bool, int]]:
-        """The seed, whether it is secret, and its place among its kind from 1."""
+        """Yields each seed, whether it is secret, and its number from 1 among its kind."""
         if which is not SeedSet.SECRET:
             yield from ((seed, False, number) for number, seed in enumerate(trial.seeds, 1))
         if which is not SeedSet.PUBLIC and self._secret:
@@ -182,7 +182,7 @@ class WorldCollector:
         return self._records[key]
 
     def _running_process(self) -> WorldProcess:
-        """The process; a new one where the last was ended, with its world read."""
+        """Returns the running process; starts another, and reads the world, where the last one was ended."""
         if self._process is None:
             self._process = WorldProcess(self._file)
             if self._read is not None:
@@ -204,7 +204,7 @@ def _record(found: WorldContents | WorldRun, label: str) -> EvidenceRecord:
 def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
-    """Looks at the world, once for all criteria."""
+    """Reads and runs the world."""
     return WorldCollector(assignment, file, options)
 
 

@@ -1,6 +1,6 @@
-"""What a student's text must lose before it stands in a report. Text is data here: it gives no orders.
+"""Cleans a student's text for reports, so that no reader of a report takes it for a command or markup.
 
-Every report starts from ``plain``; what a format reads as an order on top of that is its own function.
+Every report uses ``plain``; each further function removes what one format would interpret.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 
 
 def plain(text: str, limit: int = MAX_TEXT) -> str:
-    """Lines of printable characters: no control characters, so no terminal escapes; no marks that turn the
-    direction of writing; nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
+    """Returns lines of printable characters: no terminal escapes or other control characters, no marks that change
+    the writing direction, and nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
     cut = text if len(text) <= limit else text[:limit] + CUT_MARK
     kept = "".join(
         c if c == "\n" or c.isprintable() or unicodedata.category(c) == "Zs" else "\N{REPLACEMENT CHARACTER}"
@@ -33,17 +33,17 @@ def plain(text: str, limit: int = MAX_TEXT) -> str:
 
 
 def clean_line(text: str, limit: int = 300) -> str:
-    """``plain``, on one line."""
+    """Returns ``plain`` on one line."""
     return " ".join(plain(text, limit).split())
 
 
 def indented_text(text: str, margin: str) -> str:
-    """``plain`` with something before every line, so that no line starts with what the student wrote."""
+    """Returns ``plain`` with a margin, so that no line starts with the student's text."""
     return "\n".join(margin + line for line in plain(text).split("\n"))
 
 
 def escape_markdown(text: str, limit: int = 300) -> str:
-    """One line in which nothing is markup, a link, a mention or HTML."""
+    """Returns one line without Markdown, links, mentions or HTML."""
     return (
         _MARKUP.sub(r"\\\1", clean_line(text, limit))
         .replace("\\<", "&lt;")
@@ -54,7 +54,7 @@ def escape_markdown(text: str, limit: int = 300) -> str:
 
 
 def fenced_block(text: str) -> str:
-    """A block of code that its content cannot leave."""
+    """Returns a fenced code block that its content cannot close."""
     content = plain(text)
     longest = max((len(run) for run in re.findall(r"`+", content)), default=0)
     fence = "`" * max(3, longest + 1)
@@ -62,13 +62,13 @@ def fenced_block(text: str) -> str:
 
 
 def spreadsheet_cell(text: str) -> str:
-    """One cell of a table that a spreadsheet will not compute."""
+    """Returns one cell of a table that no spreadsheet takes for a formula."""
     shown = clean_line(text)
     return f"'{shown}" if shown.startswith(_FORMULA) else shown
 
 
 def xml_text(text: str) -> str:
-    """Only characters that XML 1.0 allows; the XML library escapes the rest."""
+    """Returns only characters that XML 1.0 allows; the XML library escapes the rest."""
     return "".join(
         c
         if c == "\n" or 0x20 <= ord(c) <= 0xD7FF or 0xE000 <= ord(c) <= 0xFFFD

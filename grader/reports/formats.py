@@ -11,7 +11,7 @@ from kit.school.result import CriterionResult, CriterionStatus, GradingResult, G
 
 
 def write_json(result: GradingResult) -> str:
-    """The whole result as JSON, for programs: nothing is left out, texts are cleaned."""
+    """Writes the whole result as JSON, with cleaned texts."""
     return json.dumps(_clean_json(result.as_dict()), indent=2, sort_keys=True, allow_nan=False) + "\n"
 
 
@@ -26,7 +26,7 @@ def _clean_json(content: Any) -> Any:
 
 
 def write_check50(result: GradingResult) -> str:
-    """JSON in the manner of check50: passed is true, false, or null where nothing is known."""
+    """Writes JSON as check50 does: ``passed`` is true, false, or null where nothing is known."""
     result = result.for_student()
     content = {
         "slug": clean_line(result.assignment),
@@ -58,9 +58,9 @@ MAX_CLASSROOM_OUTPUT: Final = 500
 
 
 def write_classroom(result: GradingResult) -> str:
-    """GitHub Classroom's runner result (version 3): the JSON whose base64 is a step's output ``result``.
+    """Writes Writes GitHub Classroom's runner result (version 3): the JSON whose base64 is a step's output ``result``.
 
-    ``tests`` and ``max_score`` are always there, for its reporter reads them even when the run failed.
+    ``tests`` and ``max_score`` are always present, since its reporter reads them even if the run failed.
     """
     result = result.for_student()  # the log of the job is the student's to read
     content: dict[str, Any] = {
@@ -95,7 +95,7 @@ NOT_RUN: Final = (CriterionStatus.STUDENT_ERROR, CriterionStatus.SKIPPED)
 
 
 def write_prairielearn(result: GradingResult) -> str:
-    """PrairieLearn's ``results.json``. Work that could not be run at all is not gradable, which costs no attempt."""
+    """Writes PrairieLearn's ``results.json``. Work that could not run at all is not gradable, which costs no attempt."""
     result = result.for_student()
     content: dict[str, Any] = {"gradable": True, "output": plain("\n".join(result.notices))}
     stopped = all(test.status in NOT_RUN for test in result.tests) and any(
@@ -125,7 +125,7 @@ def _prairielearn_test(test: CriterionResult) -> dict[str, Any]:
 
 
 def write_markdown(result: GradingResult) -> str:
-    """A job summary in Markdown: a table, what was wrong, and the worst episode. At most a few kilobytes."""
+    """Writes a job summary in Markdown: a table, the rationales and the worst episode."""
     return "\n".join(_markdown_lines(result.for_student())) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Gradescope's ``results.json``. Everything is plain text there: no HTML and no markup is ever switched on."""
+"""Writes Gradescope's ``results.json``, all of it as plain text, never HTML or markup."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _test(number: int, test: CriterionResult) -> dict[str, Any]:
     parts += [f"hint: {hint}" for hint in test.hints[:1]]
     if test.log and test.is_judged:
         parts.append(f"what it printed:\n{test.log}")
-    # The picture is ours and needs no cleaning: cleaned, it would lose its shape.
+    # The picture is the grader's own; cleaning would destroy its layout.
     output = "\n".join(plain(part) for part in parts if part) + (f"\n\n{test.replay}" if test.replay else "")
     return {
         "name": clean_line(test.title),

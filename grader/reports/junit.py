@@ -1,4 +1,4 @@
-"""JUnit XML. ``failure`` is the student's, ``error`` the grader's; points stand in properties and in the message."""
+"""Writes JUnit XML: ``failure`` is the student's, ``error`` the grader's; points are in properties and in the message."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A world that was handed in: read and run in a process that can be ended, told to the grader as plain records."""
+"""Reads and runs submitted worlds in a process of their own, which reports plain records."""

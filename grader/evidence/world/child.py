@@ -1,6 +1,6 @@
-"""The process that reads and runs worlds: one question a line on standard input, one answer a line on standard output.
+"""The process that reads and runs a world: one request per line on standard input, one answer per line on standard output.
 
-Nothing of a student's runs in it; but a world may be huge, or slow, and then it is ended and nothing is lost.
+No program of a student's runs in it, but a world may be too large or too slow: then the process is ended.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def main() -> None:
     file, memory = Path(sys.argv[1]), int(sys.argv[2])
     _limit_resources(memory)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # whatever else prints, it does not print into the answers
+    os.dup2(2, 1)  # other output must not mix with the answers
     facts, world = read_world_facts(file)
     _send(answers, asdict(facts))
     for line in sys.stdin:
@@ -44,7 +44,7 @@ def _send(answers: Any, answer: dict[str, Any]) -> None:
 
 
 def _limit_resources(memory: int) -> None:
-    """Ends with the parent, and takes no more address space than this."""
+    """Makes the process end with its parent, and limits its address space to ``memory`` bytes."""
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(1, ctypes.c_ulong(9))  # PR_SET_PDEATHSIG, SIGKILL

@@ -1,4 +1,4 @@
-"""What there is to know of a world, as plain records that travel as JSON. Lengths in metres, angles in radians."""
+"""Plain records about a world and its runs, sent as JSON. Lengths in metres, angles in radians."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ PoseTriple = tuple[float, float, float]
 
 
 class JsonRecord:
-    """A record whose fields are plain values and tuples of them; those that hold records say so in ``RECORD_FIELDS``."""
+    """A record of plain values and tuples of them; ``RECORD_FIELDS`` gives the type of fields that hold records."""
 
     RECORD_FIELDS: Mapping[str, type[JsonRecord]] = {}
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> Self:
-        """The record that ``dataclasses.asdict`` and JSON made of one."""
+        """Makes the record from the output of ``dataclasses.asdict``, sent as JSON."""
         names = [field.name for field in fields(cls)]  # type: ignore[arg-type]  # every heir is a dataclass
         return cls(**{name: cls._field_value(name, content[name]) for name in names})
 
@@ -39,7 +39,7 @@ class WallFacts(JsonRecord):
     """One entry of ``layers`` that has a map."""
 
     map: str
-    """The map file's name without its ending: what checks call these walls."""
+    """The map file's name without its ending; checks use it as the walls' name."""
     source: str
     """The name of the picture or .dat file."""
     names: tuple[str, ...]
@@ -98,9 +98,9 @@ class PluginFacts(JsonRecord):
     name: str
     type: str
     body: str
-    """That carries it; empty where it says none."""
+    """The body that carries it; empty if it names none."""
     rays: int
-    """Of a laser; otherwise these four are 0."""
+    """Number of rays of a laser; for other plugins this and the next three are 0."""
     first: float
     last: float
     range: float
@@ -119,7 +119,7 @@ class ModelFacts(JsonRecord):
 
 @dataclass(frozen=True)
 class CollisionFacts(JsonRecord):
-    """What two things do where they meet. A thing is (model, body), or ("", map) for walls."""
+    """Whether two things collide. A thing is (model, body), or ("", map) for walls."""
 
     a: tuple[str, str]
     b: tuple[str, str]
@@ -139,7 +139,7 @@ class SightFacts(JsonRecord):
 
 @dataclass(frozen=True)
 class EndpointFacts(JsonRecord):
-    """One topic of a device."""
+    """One topic of a plugin."""
 
     model: str
     topic: str
@@ -174,7 +174,7 @@ class WorldFacts(JsonRecord):
 
 @dataclass(frozen=True)
 class TopicStatistics(JsonRecord):
-    """What was said on one topic while the world ran."""
+    """The messages on one topic while the world ran."""
 
     topic: str
     count: int
@@ -189,7 +189,7 @@ class RunFacts(JsonRecord):
 
     RECORD_FIELDS = {"topics": TopicStatistics}  # noqa: RUF012  # read only
     problem: str = ""
-    """Why it did not run to its end: our driver failed, or there is nobody to drive."""
+    """Why it did not run to its end: the driver failed, or no model can be driven."""
     seconds: float = 0.0
     topics: tuple[TopicStatistics, ...] = ()
     reached_s: float | None = None
@@ -212,13 +212,13 @@ class RunFacts(JsonRecord):
 
 @dataclass(frozen=True, slots=True)
 class WorldRunSpec:
-    """A run to make."""
+    """A run to make of a world."""
 
     name: str
     seed: int
     time_s: float
     driver: str
-    """A Python file of ours; empty: nobody drives."""
+    """The driver's Python file; empty for none."""
     robot: str
     """The model; empty: the first with a drive."""
     target: tuple[float, float] | None

@@ -1,4 +1,4 @@
-"""Whether there is a way between walls: a flood over a grid of cells."""
+"""Searches for a path between walls: a flood fill on a grid of cells."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 CELL: Final = 0.02
-"""m; larger where the world is."""
+"""m; larger in a large world."""
 MAX_CELLS: Final = 1_000
-"""Along one side of the grid."""
+"""Cells along one side of the grid."""
 MARGIN_CELLS: Final = 4
-"""Cells around everything."""
+"""Cells around the walls."""
 
 
 def search_path(
     walls: NDArray[np.float64], start: tuple[float, float], target: tuple[float, float] | None, radius: float
 ) -> tuple[bool, bool]:
-    """(whether a disc of this radius [m] comes from the start to the target, whether the walls hold it in).
+    """Returns (whether a disc of this radius [m] can move from start to target, whether walls enclose it).
 
-    ``walls``: (n, 4) ``x1 y1 x2 y2`` [m]. Without a target there is no way to it.
+    ``walls``: (n, 4) ``x1 y1 x2 y2`` [m]. Without a target the first is False.
     """
     points = np.concatenate([walls.reshape(-1, 2), [start], [] if target is None else [target]], axis=None)
     points = points.reshape(-1, 2)
@@ -49,7 +49,7 @@ def _mark_blocked(
     cell: float,
     radius: float,
 ) -> None:
-    """Takes the cells whose middles are nearer to a wall than the radius."""
+    """Marks the cells whose centres are nearer to a wall than the radius."""
     a, b = segment[:2] - low, segment[2:] - low
     first = np.maximum(np.floor((np.minimum(a, b) - radius) / cell).astype(int) - 1, 0)
     last = np.minimum(np.ceil((np.maximum(a, b) + radius) / cell).astype(int) + 1, free.shape)
@@ -63,7 +63,7 @@ def _mark_blocked(
 
 
 def _connected_cells(free: NDArray[np.bool_], start: tuple[int, int]) -> NDArray[np.bool_]:
-    """The free cells that hang together with the start."""
+    """Returns the free cells that are connected with the start."""
     reached = np.zeros_like(free)
     reached[start] = free[start]
     frontier = reached.copy()

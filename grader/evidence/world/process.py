@@ -1,4 +1,4 @@
-"""Asking the process that reads and runs worlds, and ending it when it takes too long."""
+"""Starts the process that reads and runs a world, and ends it when it takes too long."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from kit.host.failure import Failure, FailureKind, GuestError
 from kit.host.sandbox.limits import GIB
 
 READ_TIMEOUT_S: Final = 30.0
-"""Until a world is read; a start on a busy machine included."""
+"""Seconds to read a world, including the start on a busy machine."""
 MEMORY_LIMIT: Final = 4 * GIB
 """Bytes of address space, most of which the simulator only reserves."""
 MAX_ANSWER_BYTES: Final = 64_000_000
@@ -29,7 +29,7 @@ MAX_ANSWER_BYTES: Final = 64_000_000
 
 
 class WorldProcess:
-    """One world in a process of its own. Everything raises GuestError when it takes too long or too much."""
+    """One world in a process of its own. Every method raises GuestError when it takes too much time or memory."""
 
     def __init__(self, file: Path, memory: int = MEMORY_LIMIT) -> None:
         self._child = subprocess.Popen(
@@ -50,11 +50,11 @@ class WorldProcess:
         self.close()
 
     def read_world(self, seconds: float = READ_TIMEOUT_S) -> WorldFacts:
-        """What was read; to be asked first, once."""
+        """Returns what was read; to be called first, and once."""
         return WorldFacts.from_json(self._await_answer(seconds, "The world takes too long to read"))
 
     def run(self, spec: WorldRunSpec, seconds: float) -> RunFacts:
-        """One run, which may take so many seconds of the wall clock."""
+        """Makes one run within this many seconds of wall clock."""
         assert self._child.stdin is not None
         try:
             self._child.stdin.write(json.dumps(asdict(spec)).encode() + b"\n")
@@ -65,7 +65,7 @@ class WorldProcess:
         return RunFacts.from_json(self._await_answer(seconds, slow))
 
     def close(self) -> None:
-        """Ends the process and all that it started. May be called twice."""
+        """Ends the process and its children. May be called twice."""
         if self._child.poll() is None:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self._child.pid, signal.SIGKILL)
@@ -95,7 +95,7 @@ class WorldProcess:
         return answer
 
     def _exit_error(self) -> BaseException:
-        """Why the process is no more: for want of memory, or because we have a mistake."""
+        """Returns the error for an ended process: out of memory, or a fault of the grader."""
         assert self._child.stderr is not None
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(5)

@@ -1,4 +1,4 @@
-"""Reading a world that was handed in. Runs in the process that can be ended."""
+"""Reads a submitted world. Runs in the world process."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from kit.world.problems import WorldError
 from kit.world.records import Circle, Layer, World
 
 COLUMNS, ROWS = 60, 16
-"""Of the picture."""
+"""Size of the picture, in characters."""
 
 
 def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
-    """The world's facts, and the world itself if it can be read."""
+    """Reads a world; returns its facts, and the world itself if it can be read."""
     try:
         world = load_world(file)
         simulation = Simulation(world)
@@ -49,7 +49,7 @@ def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
 
 
 def _without_folder(problem: str, folder: Path) -> str:
-    """A problem without where the snapshot lies, which is nothing to tell, nor what only a command could allow."""
+    """Removes from a problem the path of the temporary copy, and advice that only applies to a command line."""
     said = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
     return said.removesuffix(": allow a wider one as root")
 
@@ -150,7 +150,7 @@ def _plugin_facts(plugin: records.PluginSpec) -> PluginFacts:
 
 
 def all_wall_segments(world: World) -> FloatArray:
-    """(n, 4) every wall of the world, each once."""
+    """Returns (n, 4) every wall segment of the world, each once."""
     unique = {layer.walls.file: layer.walls for layer in world.layers if layer.walls is not None}
     return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
 
@@ -162,7 +162,7 @@ def draw_world(
     target: Disc | None = None,
     trail: FloatArray | None = None,
 ) -> str:
-    """The world as it stands, in plain characters."""
+    """Draws the present state of the world in plain characters."""
     scene = Scene(
         walls=all_wall_segments(world),
         bodies=tuple(_scene_bodies(simulation)),
@@ -173,7 +173,7 @@ def draw_world(
 
 
 def _scene_bodies(simulation: Simulation) -> Iterator[Body]:
-    """One a model: its footprints, and the pose of its first body."""
+    """Yields one body per model: its footprints at the pose of its first body."""
     outlines = simulation.outlines()
     for name in simulation.model_names:
         own = [each for each in outlines if each.model == name]

@@ -1,4 +1,4 @@
-"""Running a world that was handed in, with a driver of ours. Runs in the process that can be ended."""
+"""Runs a submitted world with a driver of the assignment's. Runs in the world process."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from kit.world.records import Circle, Model, World
 STEP: Final = 0.01
 """s"""
 SETTLE_S: Final = 0.5
-"""Time that joints get to pull their bodies together."""
+"""Seconds that joints get to pull their bodies together."""
 RECORD_INTERVAL: Final = 5
-"""Ticks between two points of the trail, and two looks at the joints."""
+"""Ticks between two points of the trail, and two measurements of the joints."""
 WORLD_NODE: Final = "/flatland_server"
 
 
 class TopicRecorder:
-    """Counts what the world says on each topic, and how much the readings of a laser or an odometry spread."""
+    """Counts the world's messages on each topic, and measures how much laser and odometry readings spread."""
 
     def __init__(self, graph: Graph) -> None:
         self._counts: dict[str, int] = {}
@@ -71,7 +71,7 @@ class TopicRecorder:
 
 
 def _readings(message: Message) -> FloatArray | None:
-    """The numbers of a message that noise falls on: a scan's ranges, an odometry's place."""
+    """Returns the numbers of a message that noise affects: a scan's ranges, an odometry's position."""
     if isinstance(message, LaserScan):
         return np.array(message.ranges, dtype=np.float64)
     if isinstance(message, Odometry):
@@ -81,7 +81,7 @@ def _readings(message: Message) -> FloatArray | None:
 
 
 class PathRecorder(Observer):
-    """Remembers where the robot went, and how far joints were pulled apart."""
+    """Records the robot's path, and the largest gap of any joint."""
 
     def __init__(self, model: Model | None, world: World) -> None:
         self._model = model
@@ -108,7 +108,7 @@ class PathRecorder(Observer):
 
 
 def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
-    """The world for as long as the order says, or until the target is reached."""
+    """Runs the world for the time of ``spec``, or until the target is reached."""
     graph = Graph(log_sink=lambda record: None)
     simulation = Simulation(world, seed=spec.seed, step_size=STEP)
     runner = Runner(simulation, graph)
@@ -182,7 +182,7 @@ def _drive(
 
 
 def model_width(model: Model) -> float:
-    """The narrowest [m] that all solid footprints of the model's bodies are together, seen from any side."""
+    """Returns the smallest width [m] over all directions of the hull of the model's solid footprints."""
     points: list[tuple[float, float]] = []
     for body in model.bodies:
         for footprint in body.footprints:
