@@ -21,9 +21,8 @@ from kit.msg.message import Message, type_name
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import controller_arguments, run_until, when_failed, when_reached
-from kit.run.headless import Fingerprint
 from kit.run.metrics import MetricsRecorder
-from kit.run.recording import Recorder
+from kit.run.recording import Fingerprint, Recorder
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.plugins.laser import LaserParams
@@ -131,7 +130,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
     )
     runner = RestrictedRunner(simulation, graph, trial.services)
-    recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
+    recorder = Recorder.for_scenario(place, simulation)
     metrics, fingerprint = MetricsRecorder.for_scenario(place), Fingerprint()
     runner.observers += [recorder, metrics, fingerprint]
     home = shifted_start(trial, spec.seed)

@@ -39,9 +39,8 @@ from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
-from kit.run.headless import Fingerprint
 from kit.run.metrics import DriveMetrics, MetricsRecorder
-from kit.run.recording import ACCEPT, Playback, Recorder, Recording, RecordingError, load
+from kit.run.recording import ACCEPT, Fingerprint, Playback, Recorder, Recording, RecordingError, load
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation

@@ -39,9 +39,8 @@ from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until, when_reached
-from kit.run.headless import Fingerprint
 from kit.run.metrics import DriveMetrics, MetricsRecorder
-from kit.run.recording import Recorder, Recording
+from kit.run.recording import Fingerprint, Recorder, Recording
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
@@ -300,7 +299,7 @@ class _FieldRun:
         self._place = place
         self._course = course
         self._simulation = simulation
-        self._recorder = Recorder(place.name, place.case.name if place.case else None, simulation)
+        self._recorder = Recorder.for_scenario(place, simulation)
         self.metrics = MetricsRecorder.for_scenario(place)
         self.fingerprint = Fingerprint()
         self._runner = Runner(simulation, Graph(log_sink=lambda record: None))

@@ -1,15 +1,19 @@
-"""``kit run``: a world without a screen, and what came of it."""
+"""``kit run``: runs a world without a screen and prints a summary."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
 from kit.cli.options import Storage
+
+if TYPE_CHECKING:
+    from kit.run.headless import RunSummary
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
@@ -89,17 +93,19 @@ def command(
         desk = open_workspace(workspace, make=False)
     except WorkspaceError as error:
         options.fail(str(error))
-    company: list[Callable[[Graph], ClosableParticipant]] = []
+    participants: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
         from kit.inspection.server import InspectionServer
         from kit.inspection.world_sockets import sockets_folder
 
-        company.append(lambda graph: InspectionServer(graph, sockets_folder(desk.folder), Path(place).stem))
+        participants.append(
+            lambda graph: InspectionServer(graph, sockets_folder(desk.folder), Path(place).stem)
+        )
     if bag is not None:
         from kit.ros.bags import BagRecorder
 
         options.explain_storage(storage)
-        company.append(lambda graph: BagRecorder(graph, bag, storage=storage))
+        participants.append(lambda graph: BagRecorder(graph, bag, storage=storage))
     try:
         summary = run_headless(
             find_scenario(place, case, root),
@@ -109,15 +115,49 @@ def command(
             factor=speed or (REAL_TIME if serve else MAXIMUM),
             until_reached=until_reached,
             record=record,
-            company=company,
+            participants=participants,
             on_message=lambda record: click.echo(format_log(record), err=True),
         )
     except (LookupError, WorldError) as error:
         options.fail(str(error))
     except OSError as error:
         options.fail(options.reason(error))
-    click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else summary.text())
+    click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
     if summary.interrupted:
         raise SystemExit(INTERRUPTED)
     if summary.failure is not None:
         raise SystemExit(1)
+
+
+def format_summary(summary: RunSummary) -> str:
+    """The summary as aligned lines for the terminal."""
+    metrics = summary.metrics
+    if metrics.target_m is None:
+        target = "this world has none"
+    elif metrics.reached_s is None:
+        target = f"not reached; {metrics.target_m:.2f} m away at the end"
+    else:
+        target = f"reached after {metrics.reached_s:.1f} s"
+    end = (
+        "no robot"
+        if summary.pose is None
+        else "x {:.3f} m, y {:.3f} m, heading {:.3f} rad".format(*summary.pose)
+    )
+    factor = metrics.time_s / summary.wall_s if summary.wall_s > 0 else 0.0
+    rows = [
+        ("place", summary.scenario),
+        ("controller", f"{summary.controller}, seed {summary.seed}"),
+        (
+            "run",
+            f"{summary.ticks} steps, {metrics.time_s:.2f} s of simulated time, {factor:.0f} times real time",
+        ),
+        ("target", target),
+        ("way", f"{metrics.distance_m:.2f} m, {metrics.bumps} bumps"),
+        ("end", end),
+        ("fingerprint", summary.fingerprint),
+    ]
+    if summary.failure is not None:
+        rows.append(("stopped", str(summary.failure).replace("\n", "\n" + " " * 13)))
+    if summary.interrupted:
+        rows.append(("stopped", "by Ctrl-C"))
+    return "\n".join(f"{name:<12} {text}" for name, text in rows)

@@ -1,4 +1,4 @@
-"""How fast a run goes: asked for, due, and reached."""
+"""Pacing: the speed that a run is asked to have, when its ticks are due, and the speed it really has."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import Final
 
 REAL_TIME: Final = 1.0
 MAXIMUM: Final = float("inf")
-"""As fast as it goes."""
+"""Simulated seconds per second of a run that goes as fast as it can."""
 
 CATCH_UP: Final = 0.25
-"""How far [s] a run may fall behind the wall clock before it gives up catching up, rather than jump."""
+"""A run that is farther [s] behind the wall clock gives up catching up rather than jump."""
 
 
 @dataclass(frozen=True, slots=True)
 class PacingStatus:
-    """How a run goes at the moment."""
+    """A run's speed at one instant."""
 
     factor: float
-    """Asked for: simulated seconds per second; ``inf`` is as fast as it goes."""
+    """Asked for: simulated seconds per second; ``inf``: as fast as it can."""
     actual_factor: float
-    """Really reached, over the last second or so."""
+    """Measured over the last second or so."""
     paused: bool
 
 
@@ -70,7 +70,7 @@ class Schedule:
 
 
 class SpeedMeter:
-    """The speed really reached: simulated over wall seconds, over the last one to two seconds."""
+    """Measures a run's speed: simulated over wall seconds, over the last one to two seconds."""
 
     def __init__(self) -> None:
         self.restart()

@@ -1,20 +1,22 @@
-"""Recordings: what a world was told, enough to run it again to the bit, and where everything was, to look at.
+"""Recordings: a run's inputs, enough to run it again to the bit, and all poses, to look at.
 
 One ``.npz`` file: ``header`` (JSON as bytes) and the arrays of ``Recording``. No pickle.
 """
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import math
+import struct
 import zipfile
 import zlib
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +32,9 @@ from kit.sim.simulation import SERVICES, Simulation, SimulationError
 from kit.workspace import write_atomically
 from kit.world.records import World
 
+if TYPE_CHECKING:
+    from kit.run.scenario import Scenario
+
 FORMAT: Final = 1
 
 ACCEPT: Final = "accept"
@@ -42,7 +47,7 @@ class RecordingError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """Something the world was told just before tick number ``tick`` began."""
+    """A message or a service call that reached the world just before tick number ``tick``."""
 
     tick: int
     kind: str
@@ -56,11 +61,11 @@ class Recording:
     place: str
     """A map's name, or a world file."""
     case: str | None
-    """Which of the map's."""
+    """The map's case."""
     seed: int
     step_size: float
     models: tuple[tuple[int, tuple[str, ...]], ...]
-    """From which tick on, which models there were."""
+    """Which models there were, each time with the first tick of which this is true."""
     inputs: tuple[Input, ...]
     poses: NDArray[np.float64]
     """(sum of counts, 3) ``x y theta``: of every model's first body, tick after tick."""
@@ -72,7 +77,7 @@ class Recording:
         return len(self.counts)
 
     def track(self, model: str) -> NDArray[np.float64]:
-        """(k, 3): the poses of a model at every tick at which it was there."""
+        """(k, 3): the poses of a model at all ticks at which it existed."""
         starts = np.concatenate([[0], np.cumsum(self.counts)])
         rows = []
         ends = (*(tick for tick, _ in self.models), self.ticks)[1:]  # none at all before the first tick
@@ -83,7 +88,7 @@ class Recording:
 
 
 class Recorder(Observer):
-    """Watches a runner (as one of its ``observers``) from its first tick on."""
+    """Records a run as one of its observers, from its first tick on."""
 
     def __init__(self, place: str, case: str | None, simulation: Simulation) -> None:
         self._place = place
@@ -96,11 +101,16 @@ class Recorder(Observer):
         self._counts = array("q")
         self._models: list[tuple[int, tuple[str, ...]]] = []
 
+    @classmethod
+    def for_scenario(cls, scenario: Scenario, simulation: Simulation) -> Self:
+        """Records a run of ``scenario``."""
+        return cls(scenario.name, None if scenario.case is None else scenario.case.name, simulation)
+
     def on_message(self, topic: str, message: Message) -> None:
-        self._note(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
+        self._add_input(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
 
     def on_service(self, service: str, *arguments: Any) -> None:
-        self._note(service, *arguments)
+        self._add_input(service, *arguments)
 
     def on_step(self, simulation: Simulation) -> None:
         names = simulation.model_names
@@ -111,7 +121,7 @@ class Recorder(Observer):
         self._counts.append(len(names))
 
     def recording(self) -> Recording:
-        """So far."""
+        """The run so far."""
         return Recording(
             self._place,
             self._case,
@@ -123,7 +133,7 @@ class Recorder(Observer):
             np.array(self._counts, dtype=np.int64),
         )
 
-    def _note(self, kind: str, *content: Any) -> None:
+    def _add_input(self, kind: str, *content: Any) -> None:
         self._inputs.append(Input(len(self._counts), kind, content))
 
 
@@ -189,18 +199,20 @@ def _check(recording: Recording) -> None:
     if not 0 < recording.step_size < math.inf:
         raise ValueError(f"a step of {recording.step_size} s")
     if counts.ndim != 1 or (counts < 0).any() or counts.sum() != len(recording.poses):
-        raise ValueError("as many poses as models and ticks are wanted")
-    strange = {told.kind for told in recording.inputs} - {ACCEPT, *SERVICES}
-    if strange:
-        raise ValueError(f"nobody can be told to {min(strange)}")
+        raise ValueError("the number of poses does not fit the models and ticks")
+    unknown = {entry.kind for entry in recording.inputs} - {ACCEPT, *SERVICES}
+    if unknown:
+        raise ValueError(f"an input of unknown kind {min(unknown)}")
 
 
 def rerun(recording: Recording, world: World) -> Recording:
-    """Tells a new simulation of ``world`` the same things at the same ticks, and records that.
+    """Runs ``world`` anew with the same inputs at the same ticks, and records that.
 
-    Raises RecordingError where the world cannot be told that.
+    Raises RecordingError where an input does not fit the world.
     """
-    simulation = Simulation(world, seed=recording.seed, step_size=recording.step_size)
+    simulation = Simulation(
+        world, seed=recording.seed, step_size=recording.step_size, has_subscribers=lambda topic: False
+    )
     recorder = Recorder(recording.place, recording.case, simulation)
     runner = Runner(simulation, Graph(log_sink=lambda record: None))
     playback = Playback(recording, runner.accept, runner.call_service)
@@ -210,35 +222,58 @@ def rerun(recording: Recording, world: World) -> Recording:
     return recorder.recording()
 
 
+class Fingerprint(Observer):
+    """Digest of the poses of all bodies at all steps: equal for equal runs, different for different ones."""
+
+    def __init__(self) -> None:
+        self._digest = hashlib.sha256()
+        self.steps = 0
+        """Steps made so far; resets do not restart this."""
+
+    def on_step(self, simulation: Simulation) -> None:
+        self.steps += 1
+        for pose in simulation.poses():
+            self._digest.update(struct.pack("<3d", *pose))
+
+    @property
+    def text(self) -> str:
+        """16 hexadecimal digits."""
+        return self._digest.hexdigest()[:16]
+
+
 class Playback(Observer):
-    """Tells a world again what it was told: a guest of a runner, in place of a controller, and its observer."""
+    """Replays a recording's inputs, in place of a controller: both a participant and an observer of the runner.
+
+    ``accept(topic, message)`` and ``call_service(service, *arguments)`` deliver them; ``on_end`` is called after the
+    recording's last tick.
+    """
 
     def __init__(
         self,
         recording: Recording,
         accept: Callable[[str, Message], object],
-        tell: Callable[..., object],
+        call_service: Callable[..., object],
         on_end: Callable[[], object] = lambda: None,
     ) -> None:
-        self._waiting = list(reversed(recording.inputs))
+        self._inputs = list(reversed(recording.inputs))
         self._ticks = recording.ticks
         self._accept = accept
-        self._tell = tell
+        self._call_service = call_service
         self._on_end = on_end
         self._tick = 0
 
     def exchange(self) -> bool:
-        """Before a tick: what was said then. Raises RecordingError for what makes no sense in this world."""
-        while self._waiting and self._waiting[-1].tick <= self._tick:
-            told = self._waiting.pop()
+        """Delivers the inputs of the coming tick. Raises RecordingError for one that does not fit the world."""
+        while self._inputs and self._inputs[-1].tick <= self._tick:
+            entry = self._inputs.pop()
             try:
-                if told.kind == ACCEPT:
-                    self._accept(told.content[0], _message(*told.content[1:]))
+                if entry.kind == ACCEPT:
+                    self._accept(entry.content[0], _decode_message(*entry.content[1:]))
                 else:
-                    self._tell(told.kind, *told.content)
+                    self._call_service(entry.kind, *entry.content)
             except (SimulationError, LookupError, ValueError, TypeError, AttributeError) as error:
                 raise RecordingError(
-                    f"What the world was told before tick {told.tick} makes no sense in it ({told.kind}: {error})."
+                    f"The input before tick {entry.tick} makes no sense in this world ({entry.kind}: {error})."
                 ) from None
         return False
 
@@ -248,8 +283,8 @@ class Playback(Observer):
             self._on_end()
 
 
-def _message(kind: str, content: Mapping[str, Any]) -> Message:
+def _decode_message(kind: str, content: Mapping[str, Any]) -> Message:
     interface = find_interface(kind)
     if not issubclass(interface, Message):
-        raise TypeError(f"{kind} is no message")
+        raise TypeError(f"{kind} is not a message type")
     return from_dict(interface, content)

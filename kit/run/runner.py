@@ -1,4 +1,4 @@
-"""The tick: how nodes, devices and physics take turns. Everything that runs a world calls this.
+"""The tick: runs nodes, devices and physics in turn. Everything that runs a world calls this.
 
 The conversation (``kit.ros``) and the world (``kit.sim``) do not know each other; they meet here. Wall-clock
 pacing is the caller's business: same world + same seed + same inputs = the same run, to the bit.
@@ -14,7 +14,7 @@ from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
-from kit.run.world_services import offer_world_services
+from kit.run.world_services import WorldServices
 from kit.sim.plugin import OutgoingMessage, TopicEndpoint
 from kit.sim.simulation import Simulation, call_service
 
@@ -39,7 +39,7 @@ class Runner:
         self._node = create_graph_node(graph, "flatland_server")
         self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
-        offer_world_services(self._node, self)
+        WorldServices(self._node, self)
         self._connect_devices()
 
     @property

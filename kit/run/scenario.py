@@ -1,4 +1,4 @@
-"""Where a drive takes place: a map of the catalogue or a world file, who drives in it, from where to where."""
+"""Scenarios: a map of the catalogue or a world file, the robots that drive in it, their start and target."""
 
 from __future__ import annotations
 
@@ -17,50 +17,50 @@ BEACON = "beacon"
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """Where a session takes place: a world, who drives in it, and from where to where."""
+    """A world, the robots that drive in it, their start and target."""
 
     name: str
-    """What it is found by: a map's name, or a world file."""
+    """A map's name, or the path of a world file; ``find_scenario`` takes it."""
     title: str
     world: World
     robot: str | None
     """The model that drives; None in a world without models."""
     case: MapCase | None = None
     charges: Path | None = None
-    """A charge file to use in place of the world's own; see ``kit.fields.layout``."""
+    """A charge file that replaces the world's own; see ``kit.fields.layout``."""
 
     @property
     def drivers(self) -> tuple[str, ...]:
         """All models that can drive, the robot first."""
         first = () if self.robot is None else (self.robot,)
-        return tuple(dict.fromkeys((*first, *_drivers(self.world))))
+        return tuple(dict.fromkeys((*first, *_models_with_drive(self.world))))
 
     @property
     def partners(self) -> tuple[str, ...]:
-        """Who drives from start to target: the robot, and where the case is one for two, or there is none, the
-        second driver too."""
-        alone = self.case is not None and self.case.partner_start is None
-        return self.drivers[: 1 if alone else 2]
+        """The models that drive from start to target: the robot, and where the case is one for two, or there is
+        none, the second driver too."""
+        is_alone = self.case is not None and self.case.partner_start is None
+        return self.drivers[: 1 if is_alone else 2]
 
     @property
     def starts(self) -> tuple[Pose, ...]:
-        """Where the partners stand at first."""
+        """The partners' poses at the start."""
         poses = {model.name: model.pose for model in self.world.models}
         return tuple(poses[name] for name in self.partners)
 
     @property
     def driven(self) -> Model | None:
-        """The robot as the world describes it."""
+        """The robot's model; None without one."""
         return next((model for model in self.world.models if model.name == self.robot), None)
 
     @property
     def start(self) -> Pose | None:
-        """Where the robot stands at first."""
+        """The robot's pose at the start; None without one."""
         return None if self.driven is None else self.driven.pose
 
 
 def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
-    """A map of the catalogue, by default its first case. Raises WorldError."""
+    """The scenario of a case of a map, by default its first. Raises WorldError."""
     case = case or card.cases[0]
     poses = {card.robot: case.start, BEACON: Pose(*case.target)}
     if card.partner is not None and case.partner_start is not None:
@@ -71,22 +71,22 @@ def scenario_on_map(card: MapCard, case: MapCase | None = None) -> Scenario:
 
 
 def scenario_in_file(file: Path, root: Path | None = None) -> Scenario:
-    """A world file of the user's; its first model with a drive is the robot. Raises WorldError."""
+    """The scenario of a world file; its first model with a drive is the robot. Raises WorldError."""
     world = load_world(file, root=root)
-    driven = _drivers(world)
+    driven = _models_with_drive(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)
     title = file.stem if file.stem != "world" else file.parent.name
     return Scenario(str(file), title, world, robot)
 
 
-def _drivers(world: World) -> tuple[str, ...]:
+def _models_with_drive(world: World) -> tuple[str, ...]:
     return tuple(
         model.name for model in world.models if any(plugin.type.endswith("Drive") for plugin in model.plugins)
     )
 
 
 def find_scenario(name: str, case: str | None = None, root: Path | None = None) -> Scenario:
-    """By the name of a shipped map, or a world file or its folder; a map goes before a folder of that name.
+    """Finds a scenario by a map's name, a world file or its folder; a map goes before a folder of that name.
 
     Raises WorldError, UnknownMap, or LookupError for the case.
     """

@@ -1,4 +1,4 @@
-"""The world's services in the graph: Flatland's own, and what it lacks (reset, step, state)."""
+"""Offers the world's services in the graph: Flatland's own, and reset, step and state, which it lacks."""
 
 from __future__ import annotations
 
@@ -11,31 +11,28 @@ from kit.ros.node.node import Node
 from kit.sim.simulation import Simulation, SimulationError
 
 
-class Run(Protocol):
-    """What the services may do to the run they belong to."""
+class ControllableRun(Protocol):
+    """The part of a runner that the services use."""
 
     simulation: Simulation
     paused: bool
 
     def call_service(self, service: str, *arguments: Any) -> None:
-        """One of ``kit.sim.simulation.SERVICES``. Raises SimulationError."""
+        """Calls one of ``kit.sim.simulation.SERVICES``. Raises SimulationError."""
 
     def step_paused(self, ticks: int) -> Awaitable[None]:
-        """So many ticks in spite of the pause."""
+        """Makes ``ticks`` ticks although the run is paused."""
 
     def set_rate(self, rate: float) -> bool:
-        """Ticks per second of wall clock; false where nobody paces this run."""
-
-
-def offer_world_services(node: Node, run: Run) -> None:
-    """Creates the services on ``node``, the world's own."""
-    WorldServices(node, run)
+        """Asks for ``rate`` ticks per second of wall clock; false where nobody paces this run."""
 
 
 class WorldServices:
-    def __init__(self, node: Node, run: Run) -> None:
+    """Creates the services on ``node``, the world's own, and answers them."""
+
+    def __init__(self, node: Node, run: ControllableRun) -> None:
         self._run = run
-        for name, kind, answer in (
+        for name, service_type, callback in (
             ("/spawn_model", flatland_msgs.SpawnModel, self._spawn),
             ("/delete_model", flatland_msgs.DeleteModel, self._delete),
             ("/move_model", flatland_msgs.MoveModel, self._move),
@@ -47,9 +44,9 @@ class WorldServices:
             ("/step", robot_kit_msgs.Step, self._step),
             ("/get_state", robot_kit_msgs.GetState, self._state),
         ):
-            node.create_service(kind, name, answer)
+            node.create_service(service_type, name, callback)
 
-    def _try(self, response: Outcome, service: str, *arguments: Any) -> None:
+    def _call(self, response: ServiceOutcome, service: str, *arguments: Any) -> None:
         try:
             self._run.call_service(service, *arguments)
         except SimulationError as error:
@@ -61,19 +58,19 @@ class WorldServices:
         self, request: flatland_msgs.SpawnModel.Request, response: flatland_msgs.SpawnModel.Response
     ) -> flatland_msgs.SpawnModel.Response:
         file = self._run.simulation.world.file.parent / request.yaml_path
-        self._try(response, "spawn_model", str(file), request.name, request.ns, _pose(request.pose))
+        self._call(response, "spawn_model", str(file), request.name, request.ns, _pose(request.pose))
         return response
 
     def _delete(
         self, request: flatland_msgs.DeleteModel.Request, response: flatland_msgs.DeleteModel.Response
     ) -> flatland_msgs.DeleteModel.Response:
-        self._try(response, "delete_model", request.name)
+        self._call(response, "delete_model", request.name)
         return response
 
     def _move(
         self, request: flatland_msgs.MoveModel.Request, response: flatland_msgs.MoveModel.Response
     ) -> flatland_msgs.MoveModel.Response:
-        self._try(response, "move_model", request.name, _pose(request.pose))
+        self._call(response, "move_model", request.name, _pose(request.pose))
         return response
 
     def _pause(
@@ -109,7 +106,7 @@ class WorldServices:
         self, request: robot_kit_msgs.Reset.Request, response: robot_kit_msgs.Reset.Response
     ) -> robot_kit_msgs.Reset.Response:
         seed = request.seed if request.new_seed else None
-        self._try(response, "reset", seed)
+        self._call(response, "reset", seed)
         return response
 
     async def _step(
@@ -145,8 +142,8 @@ class WorldServices:
         return response
 
 
-class Outcome(Protocol):
-    """A response that says whether it worked."""
+class ServiceOutcome(Protocol):
+    """A response with fields for success and an error message."""
 
     success: bool
     message: str

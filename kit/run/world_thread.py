@@ -1,6 +1,6 @@
-"""A run in a thread of its own, at a pace: real time, ten times, or as fast as it goes; paused, stepped.
+"""Runs a world in a thread of its own: in real time, faster or slower, or as fast as it can; paused, stepped.
 
-The face looks at snapshots (newest wins) and posts what it wants done; the physics never waits for it.
+The face reads views (newest wins) and posts jobs; the physics never waits for it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Final
 from kit.run.pacing import REAL_TIME, PacingStatus, Schedule, SpeedMeter
 from kit.run.runner import Runner
 
-SLICE: Final = 0.02
-"""Longest stretch of ticks [s] between two looks at what was posted: keys never wait longer than this."""
+MAX_BURST_S: Final = 0.02
+"""Longest time [s] of ticks in a row before posted jobs are done: keys never wait longer than this."""
 
 
 class WorldThread:
@@ -37,7 +37,7 @@ class WorldThread:
         self._stopping = False
         self._meter = SpeedMeter()
         self.failure: BaseException | None = None
-        self._thread = threading.Thread(target=self._guarded, name="world", daemon=True)
+        self._thread = threading.Thread(target=self._run_guarded, name="world", daemon=True)
 
     def __enter__(self) -> WorldThread:
         self._thread.start()
@@ -48,10 +48,11 @@ class WorldThread:
 
     @property
     def pacing(self) -> PacingStatus:
+        """The speed as it is now."""
         return PacingStatus(self._factor, self._meter.factor, self._runner.paused)
 
     def post(self, job: Callable[[Runner], object]) -> None:
-        """Has ``job`` done in the world's thread, between two ticks, as soon as possible."""
+        """Queues ``job`` for the world's thread, which does it between two ticks, as soon as possible."""
         with self._wake:
             self._jobs.append(job)
             self._wake.notify()
@@ -63,10 +64,11 @@ class WorldThread:
             self._wake.notify()
 
     def set_paused(self, paused: bool) -> None:
+        """Pauses the run, or lets it go on."""
         self.post(lambda runner: setattr(runner, "paused", paused))
 
     def step(self, ticks: int = 1) -> None:
-        """Runs this many ticks while paused."""
+        """Makes ``ticks`` ticks while paused."""
         with self._wake:
             self._steps += ticks
             self._wake.notify()
@@ -79,33 +81,33 @@ class WorldThread:
         if self._thread.is_alive() and threading.current_thread() is not self._thread:
             self._thread.join(timeout=10)
 
-    def _guarded(self) -> None:
+    def _run_guarded(self) -> None:
         try:
-            self._loop()
+            self._run_loop()
         except BaseException as error:  # noqa: BLE001 - a thread has nobody above it; the face shows this
             self.failure = error
             self._on_change(self._runner)
 
-    def _loop(self) -> None:
+    def _run_loop(self) -> None:
         runner = self._runner
-        clock = Schedule(runner.simulation.step_size, time.monotonic())
+        schedule = Schedule(runner.simulation.step_size, time.monotonic())
         while True:
             with self._wake:
                 if not self._jobs and not self._steps and not self._stopping:
-                    self._wake.wait(None if runner.paused else clock.seconds_until_next(time.monotonic()))
+                    self._wake.wait(None if runner.paused else schedule.seconds_until_next(time.monotonic()))
                 jobs, self._jobs = self._jobs, []
                 steps, self._steps = self._steps, 0
                 if self._stopping:
                     return
-                clock.set_factor(self._factor)
+                schedule.set_factor(self._factor)
             for job in jobs:
                 job(runner)
             if runner.paused:
                 self._step_paused(steps)
-                clock.restart(time.monotonic())
+                schedule.restart(time.monotonic())
                 self._meter.restart()
             else:
-                self._advance(clock)
+                self._tick_while_due(schedule)
             self._on_change(runner)
 
     def _step_paused(self, steps: int) -> None:
@@ -116,13 +118,13 @@ class WorldThread:
         while runner.paused_steps_left and not self._stopping:
             runner.tick()
 
-    def _advance(self, clock: Schedule) -> None:
+    def _tick_while_due(self, schedule: Schedule) -> None:
         runner, step = self._runner, self._runner.simulation.step_size
-        end = time.monotonic() + SLICE
+        end = time.monotonic() + MAX_BURST_S
         ticks = 0
-        while not runner.paused and clock.is_due(now := time.monotonic()):
+        while not runner.paused and schedule.is_due(now := time.monotonic()):
             runner.tick()
-            clock.count_tick()
+            schedule.count_tick()
             ticks += 1
             if now >= end or self._jobs or self._stopping:
                 break
