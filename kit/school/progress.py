@@ -1,8 +1,8 @@
-"""What a student has done: a journal of events that only grows, in ``progress.db`` of the workspace.
+"""The student's progress: an append-only journal of events, in ``progress.db`` of the workspace.
 
-Everything shown of progress (lessons done, stars, what to ask next) is folded from these events, so there is nothing
-that could contradict them. An event counts when ``add`` has returned: by then it is on the disk, and a kill at any
-later instant does not lose it. A damaged file is set aside, never overwritten, and what can be read of it is taken over.
+All progress on display (completed lessons, stars, the next question) is computed from these events, so that nothing
+can contradict them. An event is on the disk when ``add`` returns, and no later kill loses it. A damaged file is set
+aside, never overwritten, and its readable events are copied to the new one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FILE: Final = "progress.db"
 FORMAT: Final = "robot-learning-kit progress"
 VERSION: Final = 1
 LOCK_TIMEOUT_S: Final = 10.0
-"""How long to wait for another process of the same student that is writing."""
+"""Seconds to wait for another process of the same student that is writing."""
 MAX_CONTENT_LENGTH: Final = 64 * 1024
 """Characters of one event's content: a student's answer fits, a file that was read by mistake does not."""
 
@@ -52,7 +52,7 @@ class ProgressError(Exception):
 
 
 class EventKind(StrEnum):
-    """What an event tells."""
+    """The kind of an event."""
 
     STEP = "step"
     PREDICTION = "prediction"
@@ -67,15 +67,15 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ProgressEvent:
-    """One thing that happened."""
+    """One recorded event."""
 
     uid: str
-    """Made once, anywhere: the same event imported twice stays one."""
+    """Globally unique: the same event imported twice is stored once."""
     timestamp: str
     """UTC, ISO 8601 with microseconds."""
     kind: EventKind
     subject: str
-    """What it is about: a lesson's step, an exercise, an item, a level."""
+    """The id of a lesson's step, an exercise, a quiz item or a level."""
     content: Mapping[str, Any]
     """JSON values."""
 
@@ -84,7 +84,7 @@ class ProgressEvent:
         return datetime.fromisoformat(self.timestamp)
 
     def number(self, key: str) -> float | None:
-        """A finite number of the content; None for anything else, for who wrote an imported file is not known."""
+        """A finite number of the content; None for anything else, since an imported file may hold anything."""
         value = self.content.get(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
             return None
@@ -95,7 +95,7 @@ class ProgressEvent:
         return number if math.isfinite(number) else None
 
     def text(self, key: str) -> str:
-        """A text of the content that a terminal just shows; empty for anything else."""
+        """A printable text of the content; empty for anything else."""
         value = self.content.get(key)
         return value if isinstance(value, str) and value.isprintable() else ""
 
@@ -106,7 +106,7 @@ class ProgressJournal:
     def __init__(self, folder: Path) -> None:
         self._file = folder / FILE
         self.notice = ""
-        """What a student has to be told of what was found at opening; empty: nothing."""
+        """Message for the student about a damaged file found at opening; else empty."""
         try:
             self._connection = self._connect()
             self._check()
@@ -134,7 +134,7 @@ class ProgressJournal:
         *,
         now: datetime | None = None,
     ) -> ProgressEvent:
-        """Notes one event. When this returns, it is on the disk."""
+        """Appends one event. It is on the disk when this returns."""
         at = (now or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="microseconds")
         event = ProgressEvent(uuid.uuid4().hex, at, kind, subject, dict(content or {}))
         self._write([event])
@@ -142,12 +142,12 @@ class ProgressJournal:
 
     @property
     def student_name(self) -> str:
-        """What the student wants to be called, as last said; empty: nothing was."""
+        """The name that the student gave last; empty if none."""
         names = [name for event in self.events(EventKind.ABOUT, "name") if (name := event.text("value"))]
         return names[-1] if names else ""
 
     def events(self, kind: EventKind | None = None, subject: str | None = None) -> list[ProgressEvent]:
-        """All events in the order of their time, or those of one kind, or about one subject."""
+        """Returns the events in the order of their time, all or those of one kind or subject."""
         filters = [("kind", kind), ("subject", subject)]
         conditions = " AND ".join(f"{column} = ?" for column, value in filters if value is not None)
         query = f"{_ALL} WHERE {conditions}" if conditions else _ALL
@@ -160,7 +160,7 @@ class ProgressJournal:
             raise self._unusable(error) from None
 
     def export(self, file: Path) -> int:
-        """Writes everything to one file, whole or not at all. Returns the number of events."""
+        """Writes all events to one file, atomically. Returns the number of events."""
         events = self.events()
         content = {
             "format": FORMAT,
@@ -185,7 +185,7 @@ class ProgressJournal:
         return len(events)
 
     def import_events(self, events: Iterable[ProgressEvent]) -> int:
-        """Adds events of another journal, all or none; those that are here already are left. Returns how many are new."""
+        """Adds events of another journal, all or none, and skips known ones. Returns the number of new events."""
         return self._write(events)
 
     def _write(self, events: Iterable[ProgressEvent]) -> int:
@@ -207,11 +207,11 @@ class ProgressJournal:
             raise self._unusable(error) from None
 
     def _has_moved(self) -> bool:
-        """Whether somebody has taken away the file that was opened, or put another in its place."""
+        """Whether the opened file was deleted, moved or replaced."""
         return _file_identity(self._file) != self._opened
 
     def _restore_file(self) -> None:
-        """What was confirmed is in the file that was taken away, which lives for as long as it is open."""
+        """Copies the events of the deleted file, which exists for as long as it is open, to a new file in its place."""
         rows = self._connection.execute(_ALL).fetchall()
         self._connection.close()
         self._connection = self._connect()
@@ -229,7 +229,7 @@ class ProgressJournal:
             raise sqlite3.DatabaseError("damaged")
 
     def _set_aside(self) -> None:
-        """Keeps the damaged file under another name and goes on with what can be read of it.
+        """Keeps the damaged file under another name and continues with the events that can be read from it.
 
         At every instant the file in its place is the damaged one or the whole new one, so that a kill loses nothing.
         """
@@ -243,7 +243,7 @@ class ProgressJournal:
             saved = [_row_from_event(event) for event in _salvaged_events(self._file)]
             with closing(_open_connection(fresh)) as connection:
                 _insert(connection, saved)
-            if _file_identity(self._file) == identity:  # else another process has mended it meanwhile
+            if _file_identity(self._file) == identity:  # else another process has repaired it meanwhile
                 _keep_as(self._file, backup)
                 fresh.replace(self._file)
             self._connection = self._connect()
@@ -255,13 +255,13 @@ class ProgressJournal:
                     left.unlink()
         self.notice = (
             f"{self._file.name} was damaged. It was kept as {backup.name}; "
-            f"{len(saved)} entries could be read of it and were taken over."
+            f"{len(saved)} events could be read from it and were kept."
         )
 
     def _unusable(self, error: Exception) -> ProgressError:
         if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError):
             return ProgressError(
-                f"{self._file}: was damaged just now ({error}). Begin again: what can be read of it is taken over then."
+                f"{self._file}: has just been damaged ({error}). Start again: the events that can be read are kept."
             )
         return ProgressError(
             f"{self._file}: progress cannot be kept there ({error}). "
@@ -270,7 +270,7 @@ class ProgressJournal:
 
 
 def _open_connection(file: Path) -> sqlite3.Connection:
-    # Other threads of one face may ask; SQLite serialises them itself.
+    # Several threads of a screen may use it; SQLite serialises them itself.
     connection = sqlite3.connect(file, timeout=LOCK_TIMEOUT_S, check_same_thread=False)
     try:
         # Not the write-ahead log: it needs shared memory, which network homes do not have.
@@ -294,7 +294,7 @@ def _insert(connection: sqlite3.Connection, rows: Sequence[_Row]) -> int:
 
 
 def _file_identity(file: Path) -> tuple[int, int] | None:
-    """Which file is there now, whatever it holds."""
+    """Device and inode of the file that is there now; None if there is none."""
     try:
         status = file.stat()
     except OSError:
@@ -303,7 +303,7 @@ def _file_identity(file: Path) -> tuple[int, int] | None:
 
 
 def _keep_as(file: Path, backup: Path) -> None:
-    """Another name for the file, with what SQLite keeps beside it; the first name stays where links can be made."""
+    """Gives the file, and those that SQLite keeps beside it, another name; the old name stays where links can be made."""
     try:
         os.link(file, backup)
     except OSError:
@@ -314,7 +314,7 @@ def _keep_as(file: Path, backup: Path) -> None:
 
 
 def read_export(file: Path) -> list[ProgressEvent]:
-    """The events of an exported file. Raises ProgressError with what is wrong with it."""
+    """Reads the events of an exported file. Raises ProgressError if it is malformed."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
@@ -349,7 +349,7 @@ def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
 
 
 def _utc(at: str) -> str:
-    """A time as the journal writes it, so that times are in the order of their texts."""
+    """Converts a time to the journal's format, in which texts sort like times."""
     time = datetime.fromisoformat(at)
     if time.tzinfo is None:
         raise ValueError("a time without its zone")
@@ -362,7 +362,7 @@ def _row_from_event(event: ProgressEvent) -> _Row:
 
 
 def _event_from_row(row: _Row) -> ProgressEvent | None:
-    """The event of a row; None for one of a newer kit, which is kept and not understood."""
+    """The event of a row; None for a row of an unknown kind, such as a newer kit's, which stays in the file."""
     uid, at, kind, subject, content = row
     try:
         event = ProgressEvent(uid, at, EventKind(kind), subject, json.loads(content))
@@ -373,7 +373,7 @@ def _event_from_row(row: _Row) -> ProgressEvent | None:
 
 
 def _salvaged_events(file: Path) -> Iterator[ProgressEvent]:
-    """What can be read of a damaged file, row by row, until nothing can."""
+    """Yields the events that can be read from a damaged file, row by row from both ends."""
     seen: set[int] = set()
     with suppress(sqlite3.Error), closing(sqlite3.connect(file, timeout=LOCK_TIMEOUT_S)) as connection:
         for order in ("ASC", "DESC"):

@@ -245,16 +245,16 @@ def test_an_event_of_a_newer_kit_is_kept_and_left_alone(tmp_path: Path) -> None:
 STUDENT = """
 import sys
 from pathlib import Path
-from kit.school.progress import Kind, Progress
+from kit.school.progress import EventKind, ProgressJournal
 folder = Path(sys.argv[1])
-kinds = [(Kind.STEP, "01-drive/1", {}), (Kind.ATTEMPT, "01-drive/flag", {"points": 1}), (Kind.ANSWER, "item", {"chosen": 1})]
-with Progress(folder) as progress:
+kinds = [(EventKind.STEP, "01-drive/1", {}), (EventKind.ATTEMPT, "01-drive/flag", {"points": 1}), (EventKind.ANSWER, "item", {"chosen": 1})]
+with ProgressJournal(folder) as journal:
     print("ready", flush=True)
     for turn in range(10**6):
         kind, subject, content = kinds[turn % 3]
-        print(progress.add(kind, subject, content).uid, flush=True)
+        print(journal.add(kind, subject, content).uid, flush=True)
         if turn % 5 == 4:
-            progress.export(folder / "export.json")
+            journal.export(folder / "export.json")
 """
 
 

@@ -1,4 +1,4 @@
-"""What is kept of a drive: an event always, and the recording where it is the driver's best."""
+"""Records a finished drive: always an event in the journal, and the recording where it is the driver's best."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from kit.workspace import Workspace
 
 @dataclass(frozen=True, slots=True)
 class DriveRecord:
-    """What a drive earned."""
+    """The result of recording one drive."""
 
     stars: tuple[bool, bool, bool]
-    """Of this drive: finished, safe, under par."""
+    """Stars of this drive: finished, safe, under par."""
     is_best: bool
     recording: Path | None
-    """The recording, where it was kept as the driver's best."""
+    """The saved recording, where the drive is the driver's best; else None."""
 
 
 def record_drive(
@@ -34,7 +34,7 @@ def record_drive(
     finish: RaceFinish,
     recording: Recording,
 ) -> DriveRecord:
-    """Notes a drive. A recording that cannot be written costs the ghost, not the stars. Raises ProgressError."""
+    """Records a drive. The stars count even where the recording cannot be written. Raises ProgressError."""
     (before,) = level_progress([level], journal.events(EventKind.FINISH))
     is_best = is_best_drive(before, driver, finish)
     kept = None
@@ -49,7 +49,7 @@ def record_drive(
 
 
 def _update_leaderboard(journal: ProgressJournal) -> None:
-    """Brings the entry in the hall of fame up to date, where the player is in it."""
+    """Updates the player's entry on the leaderboard, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
     if not leaderboard.has_joined(folder):
         return

@@ -1,4 +1,4 @@
-"""Ghosts: the best drives of a level so far, kept as recordings, and the reference's."""
+"""Ghosts to race against: the best recorded drive of each driver on a level, and the reference driver's."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ REFERENCE: Final = "reference"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ghost:
-    """Where somebody was, at every tick of a former drive."""
+    """The poses of a former drive at every tick."""
 
     name: str
-    """Whose: ``keys``, ``controller``, ``agent`` or ``reference``."""
+    """The driver: ``keys``, ``controller``, ``agent`` or ``reference``."""
     seconds: float
     tracks: tuple[NDArray[np.float64], ...]
-    """For each who drove, (ticks, 3) ``x y theta`` [m, m, rad]."""
+    """One array per robot, (ticks, 3) ``x y theta`` [m, m, rad]."""
     step_size: float
     """s"""
 
     def poses(self, time_s: float) -> list[tuple[float, float, float]]:
-        """Where they were then; at the end they stay."""
+        """The poses at a time [s], one per robot; after the end of the drive the last ones."""
         tick = max(0, round(time_s / self.step_size))
         return [tuple(track[min(tick, len(track) - 1)].tolist()) for track in self.tracks if len(track)]
 
 
 def ghosts_folder(workspace: Workspace) -> Path:
-    """Where the drives of levels are kept."""
+    """The folder of the recorded drives of levels."""
     return workspace.recordings / FOLDER
 
 
 def save_ghost(workspace: Workspace, level: GameLevel, name: str, recording: Recording) -> Path:
-    """Keeps a drive as the best of its driver. Raises OSError."""
+    """Saves a drive as the best one of its driver. Raises OSError."""
     file = _ghost_file(workspace, level, name)
     file.parent.mkdir(parents=True, exist_ok=True)
     save(recording, file)
@@ -52,7 +52,7 @@ def save_ghost(workspace: Workspace, level: GameLevel, name: str, recording: Rec
 
 
 def load_ghost(workspace: Workspace, level: GameLevel, name: str) -> Ghost | None:
-    """The best drive so far of one driver; None if there is none, or it cannot be read, or is of another map."""
+    """Reads the best drive of one driver; None if there is none, it cannot be read, or it is of another map."""
     try:
         recording = load(_ghost_file(workspace, level, name))
     except (RecordingError, OSError):
@@ -65,7 +65,7 @@ def load_ghost(workspace: Workspace, level: GameLevel, name: str) -> Ghost | Non
 
 
 def load_reference_ghost(workspace: Workspace, level: GameLevel) -> Ghost | None:
-    """The reference's drive; driven when first asked for, which takes a few seconds, and kept."""
+    """Reads the reference driver's drive. The first call drives it, which takes a few seconds, and saves it."""
     name = f"{REFERENCE}-{_kit_version()}"
     ghost = load_ghost(workspace, level, name)
     if ghost is None:
@@ -80,7 +80,7 @@ def load_reference_ghost(workspace: Workspace, level: GameLevel) -> Ghost | None
 
 
 def load_ghosts(workspace: Workspace, level: GameLevel) -> tuple[Ghost, ...]:
-    """Everybody's that is kept, the quickest first; without the reference."""
+    """Reads the ghosts of all drivers except the reference, fastest first."""
     ghosts = [load_ghost(workspace, level, driver.value) for driver in DriverKind]
     return tuple(sorted((each for each in ghosts if each is not None), key=lambda each: each.seconds))
 

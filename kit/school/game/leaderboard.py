@@ -1,9 +1,9 @@
-"""The hall of fame of one machine: a folder in which each user who joins has one file of their own.
+"""The leaderboard of one machine: a shared folder with one file per user who has joined.
 
-Nobody is in it who did not ask to be. A file counts only where its owner is the user it is named for, so nobody can
-write for another; nothing but names and times stands in it, and leaving takes the file away. Times are what each
-player's own kit has noted: whoever edits their own journal or their own file can claim what they like, but only for
-themselves, so the hall is for friends and no mark is made of it.
+Joining is voluntary. A file counts only if its owner is the user it is named after, so users cannot write for one
+another. It holds names and times only, and leaving deletes it. The times are those that each player's own kit has
+recorded: users who edit their own journal or file can claim any time, but only for themselves. The leaderboard is
+therefore for friends, and must not be used for marks.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MAX_NAME_LENGTH: Final = 40
 
 
 class LeaderboardError(Exception):
-    """The hall cannot be used; the message says why."""
+    """The leaderboard cannot be used; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +46,12 @@ class LeaderboardEntry:
 
 
 def leaderboard_folder() -> Path:
-    """Where it stands: ``$KIT_HALL``, or a folder that all users of the machine can write to."""
+    """The folder: ``$KIT_HALL``, or one that all users of the machine can write to."""
     return Path(os.environ.get(FOLDER_VARIABLE) or DEFAULT_FOLDER)
 
 
 def has_joined(folder: Path) -> bool:
-    """Whether this user is in it, by a file of their own: anybody can write one of that name before them."""
+    """Whether this user has joined. The file must be theirs: another user could have made one of that name."""
     try:
         return _own_file(folder).lstat().st_uid == os.getuid()
     except OSError:
@@ -59,7 +59,7 @@ def has_joined(folder: Path) -> bool:
 
 
 def publish_entry(folder: Path, name: str, levels_progress: Sequence[LevelProgress]) -> None:
-    """Enters this user, or brings the entry up to date. Raises FameError."""
+    """Adds or updates this user's entry. Raises LeaderboardError."""
     levels = {
         each.level.id: {
             "stars": each.star_count,
@@ -71,19 +71,19 @@ def publish_entry(folder: Path, name: str, levels_progress: Sequence[LevelProgre
     try:
         if not folder.exists():
             folder.mkdir(parents=True, exist_ok=True)
-            folder.chmod(0o1777)  # everybody may add a file, nobody take away another's
+            folder.chmod(0o1777)  # every user may add a file, and delete only their own
         _check_folder(folder)
         write_atomically(
             _own_file(folder), json.dumps({"name": name[:MAX_NAME_LENGTH], "levels": levels}).encode()
         )
     except OSError as error:
         raise LeaderboardError(
-            f"{folder}: the hall of fame cannot be written to ({error.strerror})."
+            f"{folder}: the leaderboard cannot be written to ({error.strerror})."
         ) from None
 
 
 def remove_own_entry(folder: Path) -> None:
-    """Takes this user out. Raises FameError."""
+    """Deletes this user's entry. Raises LeaderboardError."""
     try:
         _own_file(folder).unlink(missing_ok=True)
     except OSError as error:
@@ -91,7 +91,7 @@ def remove_own_entry(folder: Path) -> None:
 
 
 def read_entries(folder: Path) -> list[LeaderboardEntry]:
-    """Everybody's, the quickest first. Files that are wrong, or another's than they say, are passed over."""
+    """Reads all entries, sorted by level and time. Skips files that are malformed or not owned by the user they name."""
     entries: list[LeaderboardEntry] = []
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
@@ -136,9 +136,9 @@ def _own_file(folder: Path) -> Path:
 
 
 def _check_folder(folder: Path) -> None:
-    """A folder that a stranger owns, and in which they could exchange files, is not trusted with ours."""
+    """Raises LeaderboardError for a folder in which other users could replace this user's file."""
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode):
-        raise LeaderboardError(f"{folder}: is no folder.")
+        raise LeaderboardError(f"{folder}: is not a folder.")
     if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
-        raise LeaderboardError(f"{folder}: anybody may take away files there; `chmod +t` mends that.")
+        raise LeaderboardError(f"{folder}: any user may delete files there; `chmod +t` on it prevents that.")

@@ -1,4 +1,4 @@
-"""The levels: where each is, what is asked, which ones open it."""
+"""Reads the game's levels: map and case, par time, and the levels that open each."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ class GameLevel:
     id: str
     title: str
     map_name: str
-    """A map of the kit."""
+    """Name of a map of the kit."""
     case: str
     par: float
-    """s"""
+    """Time to beat [s]."""
     hint: str
     opened_by: tuple[str, ...]
-    """Levels any of which, once finished, opens this one; empty: it is open."""
+    """Ids of levels; finishing any of them opens this one. Empty: it is open from the start."""
     row: int
-    """On the map of levels: how many levels come before it at least."""
+    """Row on the map of levels: the smallest number of levels before it."""
 
     def find_scenario(self) -> Scenario:
-        """Where it is driven. Raises LookupError and WorldError."""
+        """Loads the scenario that is driven. Raises LookupError and WorldError."""
         return find_scenario(self.map_name, self.case, None)
 
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
-    """Every level in order. Raises WorldError with all mistakes of the file."""
+    """Reads all levels in order. Raises WorldError with all mistakes of the file."""
     file = (lessons_folder() if folder is None else folder) / LEVELS_FILE
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, problems).section(file, At(file))
@@ -59,7 +59,7 @@ def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
 
 
 def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:
-    """A level by its id or its number from 1. Raises UnknownLevel."""
+    """Finds a level by its id or its number, counted from 1. Raises UnknownLevel."""
     levels = all_levels() if levels is None else levels
     for number, level in enumerate(levels, 1):
         if name in (level.id, str(number)):

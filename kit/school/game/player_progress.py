@@ -1,4 +1,4 @@
-"""What a player has reached: folded from the journal."""
+"""The player's progress in the game's levels, computed from the journal."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ STAR_COUNT = 3
 
 @dataclass(frozen=True, slots=True)
 class LevelProgress:
-    """One level."""
+    """The player's progress in one level."""
 
     level: GameLevel
     is_open: bool
     stars: tuple[bool, bool, bool]
-    """Finished, safe, under par: each earned once, by whoever drove."""
+    """Finished, safe, under par: each counts once, no matter which driver earned it."""
     best_times: Mapping[DriverKind, float]
-    """The shortest time to the target [s], by who drove."""
+    """The shortest time to the target [s] of each driver."""
     drive_count: int
-    """How many there were."""
+    """Number of drives."""
 
     @property
     def star_count(self) -> int:
@@ -31,7 +31,7 @@ class LevelProgress:
 
 
 def finish_from_event(event: ProgressEvent) -> tuple[DriverKind, RaceFinish] | None:
-    """What a ``finish`` event says; None where it cannot be understood."""
+    """The driver and finish of a ``finish`` event; None for any other event or malformed content."""
     seconds, bumps = event.number("seconds"), event.number("bumps")
     driver = next((each for each in DriverKind if each.value == event.content.get("driver")), None)
     if driver is None or seconds is None or bumps is None or seconds <= 0.0 or bumps < 0.0:
@@ -40,7 +40,7 @@ def finish_from_event(event: ProgressEvent) -> tuple[DriverKind, RaceFinish] | N
 
 
 def level_progress(levels: Sequence[GameLevel], events: Sequence[ProgressEvent]) -> tuple[LevelProgress, ...]:
-    """Every level's standing."""
+    """The progress in every level."""
     finished: dict[str, list[tuple[DriverKind, RaceFinish]]] = {level.id: [] for level in levels}
     for event in events:
         if (
@@ -59,7 +59,7 @@ def level_progress(levels: Sequence[GameLevel], events: Sequence[ProgressEvent])
 
 
 def is_best_drive(progress: LevelProgress, driver: DriverKind, finish: RaceFinish) -> bool:
-    """Whether a drive is the driver's best so far on the level."""
+    """Whether a drive is the driver's best one so far."""
     return finish.reached and finish.seconds < progress.best_times.get(driver, float("inf"))
 
 

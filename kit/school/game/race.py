@@ -1,4 +1,4 @@
-"""One drive of a level, judged: whoever drives, by keys, as a program or as a trained agent."""
+"""Runs and judges one drive of a level, by the keys, a controller or a trained agent."""
 
 from __future__ import annotations
 
@@ -29,23 +29,23 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
 
 TIME_LIMIT_PARS: Final = 6.0
-"""A drive ends when it has taken so many times the level's par."""
+"""A drive ends after this many times the level's par time."""
 OUTPUT_INTERVAL: Final = 10
 """Ticks after which the program's output is read."""
 MAX_SPEED: Final = 1.05
-"""m/s that the robot may be driven at: it could be told more, but no such robot would do it."""
+"""Allowed speed [m/s]: the simulation would accept more, a real robot of this kind would not reach it."""
 RESET_DISTANCE: Final = 0.5
-"""m: farther in one step is no driving, but being sent home after a bump."""
+"""Distance [m]: a longer way in one step is not driving, but the reset to the start after a collision."""
 ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
-"""What the world may be told during a race; models are moved home, and nowhere else."""
+"""World services allowed during a race; models may only be moved to their start."""
 SEED: Final = 1
-"""Of every race: the same luck for all."""
+"""Seed of every race, so that conditions are equal."""
 PAIR_DRIVER: Final = "abreast"
-"""The kit's controller that drives two as one."""
+"""The kit's controller that drives two robots side by side."""
 
 
 class DriverKind(StrEnum):
-    """Who drove."""
+    """What kind of driver drove."""
 
     KEYS = "keys"
     CONTROLLER = "controller"
@@ -54,24 +54,24 @@ class DriverKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RaceFinish:
-    """How a drive ended."""
+    """The end of one drive."""
 
     reached: bool
-    """Whether everyone who drives got to the target."""
+    """Whether all robots that are driven reached the target."""
     seconds: float
-    """Simulated, until then or until the end."""
+    """Simulated time until the target, or until the end [s]."""
     bumps: int
-    """Of all who drive together."""
+    """Collisions of all robots that are driven."""
     failure: Failure | None = None
     foul: str = ""
-    """What was not fair about it; then nothing was reached."""
+    """The rule that was broken, if any; the target then does not count as reached."""
 
     def stars(self, par: float) -> tuple[bool, bool, bool]:
-        """Finished, finished safely (nothing touched), finished under par."""
+        """Stars: finished, finished without a collision, finished under par."""
         return self.reached, self.reached and self.bumps == 0, self.reached and self.seconds <= par
 
     def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
-        """What the journal keeps."""
+        """The content of the journal's event."""
         return {
             "driver": driver.value,
             "reached": self.reached,
@@ -82,7 +82,7 @@ class RaceFinish:
 
 
 class RaceReferee(Observer):
-    """Watches a runner's ticks: when all who drive have reached the target, and how often they touched something."""
+    """Observes a runner: when all driven robots have reached the target, how often they collided, and any foul."""
 
     def __init__(self, scenario: Scenario) -> None:
         self._scenario = scenario
@@ -97,7 +97,7 @@ class RaceReferee(Observer):
 
     @property
     def finish(self) -> RaceFinish:
-        """As of the last tick."""
+        """The finish as of the last tick."""
         reached_s = self._metrics.all_reached_s
         seconds = self._seconds if reached_s is None else reached_s
         has_reached = reached_s is not None and not self._foul
@@ -109,7 +109,7 @@ class RaceReferee(Observer):
         return EndCondition(EndReason.REACHED, lambda: self.finish.reached)
 
     def on_service(self, service: str, *arguments: Any) -> None:
-        """Whoever changes the world does not race in it."""
+        """Records a foul if a service that changes the world is called."""
         if service in ALLOWED_SERVICES[1:] or self._metrics.all_reached_s is not None:
             return
         homes = dict(zip(self._scenario.partners, self._scenario.starts, strict=True))
@@ -134,7 +134,7 @@ class RaceReferee(Observer):
 
 
 def drive_reference(level: GameLevel) -> tuple[RaceFinish, Recording]:
-    """The drive to be measured against: the guide's for one robot, the kit's own controller's for two."""
+    """Drives the level as reference: with the reference driver for one robot, with the kit's pair controller for two."""
     scenario = level.find_scenario()
     if len(scenario.partners) > 1:
         return race_controller(level, find_controller(PAIR_DRIVER))
@@ -146,13 +146,13 @@ def drive_reference(level: GameLevel) -> tuple[RaceFinish, Recording]:
 def race_controller(
     level: GameLevel, controller: ControllerFile, *, on_second: Callable[[float], None] | None = None
 ) -> tuple[RaceFinish, Recording]:
-    """A program drives the level, as fast as it goes."""
+    """Lets a controller drive the level, as fast as the simulation runs."""
 
     def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
-    # Locked in, where the machine can: who drives for stars has no business in the journal or among the recordings.
+    # Confined where the machine can: a program that drives for stars must not touch the journal or the recordings.
     is_stranger = controller not in kit_controllers()
     confinement = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
     return _run_race(level, level.find_scenario(), install_driver, on_second, confinement)
@@ -161,7 +161,7 @@ def race_controller(
 def race_agent(
     level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
 ) -> tuple[RaceFinish, Recording]:
-    """A trained policy drives the level, as the ROS 2 node it would be on a robot. Raises PolicyError."""
+    """Lets a trained policy drive the level, exported as the ROS 2 node it would be on a robot. Raises PolicyError."""
     from kit.learning.policies.policy_node import format_policy_node
 
     source = format_policy_node(policy)
@@ -172,7 +172,7 @@ def race_agent(
 
 
 def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
-    """How a recorded drive of the level ended: it is run again, to the bit. ValueError if it is of another level."""
+    """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level."""
     scenario = level.find_scenario()
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")

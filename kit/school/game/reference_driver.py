@@ -1,8 +1,8 @@
-"""The reference driver of the levels: it knows the map, follows the shortest way that keeps clear of walls, and touches
-nothing. What it needs is what a level's par is measured by, and its drive is the ghost to race.
+"""The reference driver of the levels: it knows the map and follows the shortest path that keeps clear of walls without a
+collision. A level's par is set by its time, and its drive is the ghost to race.
 
 Pure pursuit (Coulter 1992, "Implementation of the Pure Pursuit Path Tracking Algorithm", section 2): aim at a point of
-the way a little ahead, and turn in place first where that lies far to the side.
+the path a little ahead, and turn in place first where that lies far to the side.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from kit.run.scenario import Scenario
 from kit.run.session import Session
 
 MAX_SPEED: Final = 0.5
-"""m/s"""
+"""[m/s]"""
 MAX_TURN_RATE: Final = 1.57
-"""rad/s"""
+"""[rad/s]"""
 LOOKAHEAD: Final = 0.2
-"""m along the way: how far ahead it aims."""
+"""Distance along the path to the point it aims at [m]."""
 WALL_CLEARANCE: Final = 0.35
-"""m: it keeps so far from walls where there is room; nearer, a metre counts for up to ``DEAREST``."""
+"""Preferred distance from walls [m]; nearer to them, a metre of path costs up to ``MAX_WALL_COST``."""
 MAX_WALL_COST: Final = 12.0
 TURN_IN_PLACE_ANGLE: Final = 0.5
-"""rad: farther to the side than this it turns in place first."""
+"""Heading error beyond which it turns in place first [rad]."""
 CONTROL_TICKS: Final = 5
-"""Ticks between two decisions."""
+"""Ticks between two commands."""
 
 
 class AimPoint(NamedTuple):
@@ -38,10 +38,10 @@ class AimPoint(NamedTuple):
 
 
 class ReferenceDriver:
-    """Drives the robot of a session to its target. It is told the world; students' programs are not."""
+    """Drives the robot of a session to its target. Unlike students' programs it knows the whole world."""
 
     def __init__(self, session: Session) -> None:
-        """Raises ValueError where the place has no robot or no target, or a world the way cannot be found in."""
+        """Raises ValueError for a scenario without robot or target, or a world in which no path can be found."""
         place = session.scenario
         if place.robot is None or place.case is None:
             raise ValueError(f"{place.title}: nothing says from where to where")
@@ -53,7 +53,7 @@ class ReferenceDriver:
         self._target = AimPoint(*place.case.target)
 
     def exchange(self) -> bool:
-        """Tells the wheels what to do, a few times a second."""
+        """Publishes a velocity command every ``CONTROL_TICKS`` ticks; returns False, for it has no more messages."""
         session = self._session
         if session.runner.simulation.tick % CONTROL_TICKS:
             return False
@@ -73,7 +73,7 @@ class ReferenceDriver:
         return Twist(linear=Vector3(x=MAX_SPEED * speed_factor), angular=Vector3(z=turn))
 
     def _aim_point(self, x: float, y: float) -> AimPoint:
-        """The point of the shortest way that lies a little ahead."""
+        """The point of the shortest path ``LOOKAHEAD`` metres ahead of a position."""
         rows, columns = self._distance_field.values.shape
         corner = self._distance_field.corner
         column = min(max(round((x - corner[0]) / CELL), 0), columns - 1)

@@ -1,1 +1,1 @@
-"""Lessons: folders of data, read strictly; exercises laid out in the student's workspace and checked by the grader."""
+"""Lessons: folders of data, read strictly; exercises installed in the student's workspace and checked by the grader."""

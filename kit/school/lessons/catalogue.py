@@ -1,4 +1,4 @@
-"""All lessons beside each other: which there are, what is done of each, and where to go on."""
+"""Lists all lessons with the student's progress, and finds the lesson to continue with."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class LessonEntry:
     """One lesson of the list."""
 
     name: str
-    """Its folder: ``01-drive``."""
+    """The name of its folder: ``01-drive``."""
     progress: LessonProgress | None
-    """What is done of it; None where it cannot be read."""
+    """The student's progress; None for a lesson that cannot be read."""
     problem: str = ""
-    """Why it cannot be read."""
+    """Why the lesson cannot be read; else empty."""
 
     @property
     def lesson(self) -> Lesson | None:
@@ -30,7 +30,7 @@ class LessonEntry:
 
     @property
     def number(self) -> str:
-        """As one counts: ``1``."""
+        """The number without leading zeros: ``1``."""
         first = self.name.partition("-")[0]
         return first.lstrip("0") or first
 
@@ -48,15 +48,15 @@ class LessonEntry:
 
 
 def list_lessons(events: Sequence[ProgressEvent], folder: Path | None = None) -> tuple[LessonEntry, ...]:
-    """Every lesson in order. One that cannot be read does not hide the others. FileNotFoundError where no lessons
+    """Lists every lesson in order, including those that cannot be read. Raises FileNotFoundError where no lessons
     were installed."""
     folder = lessons_folder() if folder is None else folder
     return tuple(_entry(folder / name, events) for name in lesson_names(folder))
 
 
 def next_lesson(entries: Sequence[LessonEntry]) -> LessonEntry | None:
-    """Where to go on: the lesson that was worked on last, if it is not done; else the first one after it that is
-    not; else any that is not. None: all is done."""
+    """Finds the lesson to continue with: the one worked on last, if it is not completed; else the first one after it
+    that is not; else the first one at all that is not. None: all are completed."""
     last = max(
         (index for index, each in enumerate(entries) if each.has_started),
         key=lambda index: _last(entries[index]),

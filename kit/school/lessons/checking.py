@@ -1,5 +1,5 @@
-"""One check of an exercise: the grader in a process of its own, asked by its command, so that nothing slow or hostile
-touches the face. The kit never imports the grader."""
+"""Checks an exercise by running the grader's command in a process of its own, so that neither slow nor hostile code
+reaches the screen's process. The kit never imports the grader."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from kit.school.lessons.records import Exercise
 from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 
 TIMEOUT_S: Final = 300.0
-"""A check that takes longer has hung, and is ended."""
+"""A check that takes longer hangs, and is stopped [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +76,10 @@ class CheckReport:
 
 
 class ExerciseCheck:
-    """A check that runs. ``poll`` it, or ``wait``; leaving the context ends it and everything it started."""
+    """A running check. Call ``poll`` or ``wait``; leaving the context stops it with every process it started."""
 
     def __init__(self, exercise: Exercise, file: Path, *, recording: Path | None = None) -> None:
-        """``file``: what the student edits; where it came with others, their folder is handed in.
+        """``file``: the file that the student edits; where the starter is a folder, its folder is submitted.
         ``recording``: where to save the worst episode."""
         self._started_at = time.monotonic()
         self._recording = recording
@@ -89,12 +89,12 @@ class ExerciseCheck:
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
             self._report = _without_result(
-                f"{file} is not there. `x` lays the exercise out anew.", GradingVerdict.FAIL
+                f"{file} does not exist. `x` restarts the exercise with new files.", GradingVerdict.FAIL
             )
             return
         if not file.is_file():
             self._report = _without_result(
-                f"{file} is no file. Save your work under that name; `x` lays the exercise out anew and keeps what is there.",
+                f"{file} is not a file. Save your work under that name; `x` restarts the exercise and keeps a copy of what is there.",
                 GradingVerdict.FAIL,
             )
             return
@@ -109,7 +109,7 @@ class ExerciseCheck:
                 stdin=subprocess.DEVNULL,
                 stdout=self._stdout,
                 stderr=self._stderr,
-                # From another folder than the student's: nothing that lies there is imported by our own process.
+                # Not in the student's folder: no module that lies there is imported by the grader's own process.
                 cwd=exercise.folder,
                 start_new_session=True,
             )
@@ -128,11 +128,11 @@ class ExerciseCheck:
 
     @property
     def elapsed_s(self) -> float:
-        """How long it has been running."""
+        """Seconds since the start."""
         return time.monotonic() - self._started_at
 
     def poll(self) -> CheckReport | None:
-        """What came of it; None while it runs."""
+        """Returns the report; None while the check runs."""
         if self._report is None and self._process is not None:
             if self._process.poll() is not None:
                 self._report = self._read_report()
@@ -144,7 +144,7 @@ class ExerciseCheck:
         return self._report
 
     def wait(self) -> CheckReport:
-        """What came of it, however long it takes."""
+        """Waits for the report, at most ``TIMEOUT_S``."""
         while (report := self.poll()) is None:
             assert self._process is not None
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -152,7 +152,7 @@ class ExerciseCheck:
         return report
 
     def close(self) -> None:
-        """Ends it. May be called twice."""
+        """Stops the check. May be called twice."""
         self._kill()
         self._stdout.close()
         self._stderr.close()
@@ -161,7 +161,7 @@ class ExerciseCheck:
         if self._process is None or self._process.poll() is not None:
             return
         with contextlib.suppress(ProcessLookupError):
-            # Asked first: the grader then ends the programs it has started.
+            # SIGTERM first: the grader then stops the programs it has started.
             os.killpg(self._process.pid, signal.SIGTERM)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(2.0)
@@ -188,13 +188,13 @@ class ExerciseCheck:
 
 
 def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
-    """Checks an exercise and waits for what comes of it."""
+    """Checks an exercise and waits for the report."""
     with ExerciseCheck(exercise, file, recording=recording) as running:
         return running.wait()
 
 
 def submission_path(exercise: Exercise, file: Path) -> Path:
-    """The file, or the folder it came in where the starter is a folder."""
+    """The path to submit: the file, or its folder where the starter is a folder."""
     return file.parent if (exercise.folder / "starter").is_dir() else file
 
 

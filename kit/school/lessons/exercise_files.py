@@ -1,4 +1,4 @@
-"""The student's own files of an exercise: laid out once, begun again with a backup, never overwritten unasked."""
+"""The student's own files of an exercise: installed once, reset with a backup, never overwritten unasked."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ SOLUTION: Final = "solution"
 
 
 class ExerciseFilesError(Exception):
-    """The student's files cannot be laid out; the message says why."""
+    """The student's files cannot be installed; the message says why."""
 
 
 def exercise_folder(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
-    """Where the student's files of an exercise lie."""
+    """The folder of the student's files of an exercise."""
     return workspace.lessons / lesson.name / exercise.name
 
 
 def exercise_file(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
-    """What the student edits."""
+    """The file that the student edits."""
     return exercise_folder(workspace, lesson, exercise) / exercise.file
 
 
 def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -> Path:
-    """Makes what is missing of the exercise's files, and touches nothing that is there. Returns the file to edit.
+    """Creates the missing files of the exercise, and leaves existing ones alone. Returns the file to edit.
 
     Raises ExerciseFilesError.
     """
@@ -43,12 +43,12 @@ def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -
                 write_atomically(file, content)
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ExerciseFilesError(f"{folder}: the exercise cannot be laid out ({error.strerror}).") from None
+        raise ExerciseFilesError(f"{folder}: the exercise cannot be installed ({error.strerror}).") from None
     return folder / exercise.file
 
 
 def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, now: datetime) -> Path | None:
-    """Lays the exercise out anew. What was there is kept in a folder beside; returned, or None if nothing was there.
+    """Resets the exercise to its starter files. Returns the backup folder of the old files; None if there were none.
 
     Raises ExerciseFilesError.
     """
@@ -60,14 +60,14 @@ def reset_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise, *, 
             folder.rename(backup)
         except OSError as error:
             raise ExerciseFilesError(
-                f"{folder}: cannot be kept under another name ({error.strerror})."
+                f"{folder}: cannot be renamed to keep a backup ({error.strerror})."
             ) from None
     install_exercise(workspace, lesson, exercise)
     return backup
 
 
 def read_solution(lesson: Lesson, exercise: Exercise) -> dict[str, str]:
-    """The reference solution's files: name -> text, the file to edit first; those that are no text are left out.
+    """The texts of the reference solution's files by name, the file to edit first, without binary files.
     Empty where solutions were not installed."""
     try:
         folder = solutions_folder() / lesson.name / exercise.name

@@ -1,4 +1,4 @@
-"""Where a student stands in the lessons: folded from the journal, never kept beside it."""
+"""A student's progress in a lesson, computed from the journal and never stored beside it."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from kit.school.lessons.records import Exercise, Lesson, LessonStep
 from kit.school.progress import EventKind, ProgressEvent
 
 MAX_STEP_DIGITS: Final = 4
-"""Digits of a step's."""
+"""Digits of a step's number."""
 
 
 @dataclass(frozen=True, slots=True)
 class LessonProgress:
-    """What is done of one lesson."""
+    """A student's progress in one lesson."""
 
     lesson: Lesson
     completed_steps: frozenset[int]
-    """Numbers of the steps that were gone through."""
+    """Numbers of the steps without exercise that were completed."""
     predictions: dict[int, int]
-    """Step -> the option that was foreseen first; later ones do not count."""
+    """Step number -> index of the first predicted option; later predictions do not count."""
     best_shares: dict[str, float]
-    """Exercise -> the best share of its points so far, 0 to 1."""
+    """Exercise -> best share of its points so far, 0 to 1."""
     attempt_counts: dict[str, int]
     passed_exercises: frozenset[str]
-    """Exercises that earned everything once."""
+    """Exercises that earned all points at least once."""
     opened_hints: dict[str, int]
-    """``exercise/criterion`` -> how many hint steps were opened."""
+    """``exercise/criterion`` -> number of opened hints."""
     opened_solutions: frozenset[str]
     """Exercises whose reference solution was opened."""
     last_activity: str
-    """When something was last done here: ISO 8601; empty: never."""
+    """Time of the last event in this lesson, ISO 8601; empty: none."""
 
     @property
     def has_started(self) -> bool:
@@ -40,12 +40,12 @@ class LessonProgress:
 
     @property
     def is_completed(self) -> bool:
-        """Every step gone through and every exercise passed."""
+        """Whether every step is completed and every exercise passed."""
         return all(self.is_step_completed(step) for step in self.lesson.steps)
 
     @property
     def completed_count(self) -> int:
-        """How many steps are done."""
+        """Number of completed steps."""
         return sum(self.is_step_completed(step) for step in self.lesson.steps)
 
     def is_step_completed(self, step: LessonStep) -> bool:
@@ -55,7 +55,7 @@ class LessonProgress:
 
     @property
     def next_step(self) -> LessonStep:
-        """Where to go on: the first step that is not done; the last one where all are."""
+        """The first step that is not completed; the last one where all are."""
         return next(
             (step for step in self.lesson.steps if not self.is_step_completed(step)), self.lesson.steps[-1]
         )
@@ -65,7 +65,7 @@ class LessonProgress:
 
 
 def lesson_progress_from_events(lesson: Lesson, events: Sequence[ProgressEvent]) -> LessonProgress:
-    """The standing in a lesson; ``events`` may be those of everything."""
+    """Computes the progress in a lesson; ``events`` may include those of other lessons."""
     steps: set[int] = set()
     predictions: dict[int, int] = {}
     best: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""One student in one lesson: what every face lets them do, and what the journal hears of it."""
+"""One student working on one lesson: the actions of all faces, recorded in the journal."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ REPLAY_FILE = ".worst.npz"
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """One step of help with one criterion."""
+    """One hint for one criterion."""
 
     criterion: CriterionResult
     number: int
     text: str
     remaining: int
-    """How many steps follow."""
+    """Number of hints that follow."""
 
 
 class LessonSession:
-    """Everything but the drawing. Methods that note something raise ProgressError where the disk refuses, and
-    ExerciseFilesError where the student's files cannot be laid out."""
+    """A student's work on a lesson, without any user interface. Methods that record something raise ProgressError if
+    it cannot be written; those that make files raise ExerciseFilesError."""
 
     def __init__(self, lesson: Lesson, journal: ProgressJournal, workspace: Workspace) -> None:
         self.lesson = lesson
@@ -46,25 +46,25 @@ class LessonSession:
 
     @property
     def first_step(self) -> LessonStep:
-        """Where to begin or to go on."""
+        """The step to begin or to continue with."""
         return self._lesson_progress.next_step
 
     def step(self, number: int) -> LessonStep:
-        """A step by its number; the nearest one for a number there is none of."""
+        """The step with a number; the nearest one for a number out of range."""
         return self.lesson.steps[min(max(number, 1), len(self.lesson.steps)) - 1]
 
     def complete_step(self, step: LessonStep) -> None:
-        """The student has done with a step. Those with an exercise are done by passing it."""
+        """Marks a step as completed. Steps with an exercise are completed by passing it instead."""
         if step.number not in self._lesson_progress.completed_steps:
             self._record_event(EventKind.STEP, self.lesson.step_subject(step))
 
     def prediction(self, step: LessonStep) -> PredictionOption | None:
-        """What was foreseen first; None if nothing yet."""
+        """The first prediction made for a step; None if there is none yet."""
         chosen = self._lesson_progress.predictions.get(step.number)
         return step.options[chosen] if chosen is not None and 0 <= chosen < len(step.options) else None
 
     def predict(self, step: LessonStep, chosen: int) -> PredictionOption:
-        """Keeps a prediction, once: later ones change nothing. IndexError if there is no such option."""
+        """Records a prediction, once: later ones change nothing. Raises IndexError if there is no such option."""
         option = step.options[chosen]
         if self.prediction(step) is None:
             self._record_event(
@@ -75,26 +75,26 @@ class LessonSession:
         return option
 
     def exercise_file(self, exercise: Exercise) -> Path:
-        """What the student edits."""
+        """The file that the student edits."""
         return exercise_files.exercise_file(self._workspace, self.lesson, exercise)
 
     def install(self, exercise: Exercise) -> Path:
-        """Makes what is missing of the student's files."""
+        """Creates the missing files of the exercise; returns the file to edit."""
         return exercise_files.install_exercise(self._workspace, self.lesson, exercise)
 
     def reset(self, exercise: Exercise) -> Path | None:
-        """The exercise as at first; where the former files were kept."""
+        """Resets the exercise to its starter files; returns the backup folder, if any."""
         self._reports.pop(exercise.name, None)
         return exercise_files.reset_exercise(self._workspace, self.lesson, exercise, now=datetime.now(UTC))
 
     def start_check(self, exercise: Exercise) -> ExerciseCheck:
-        """Starts a check. Its report is to be handed to ``take``."""
+        """Starts a check. Pass its report to ``record``."""
         file = self.exercise_file(exercise)
         recording = file.parent / REPLAY_FILE if file.parent.is_dir() else None
         return ExerciseCheck(exercise, file, recording=recording)
 
     def record(self, exercise: Exercise, report: CheckReport) -> None:
-        """Notes what came of a check; one that broke counts for nothing."""
+        """Records the report of a check; one that broke does not count as an attempt."""
         self._reports[exercise.name] = report
         if not report.is_broken and report.criteria:
             self._record_event(
@@ -102,11 +102,11 @@ class LessonSession:
             )
 
     def latest_report(self, exercise: Exercise) -> CheckReport | None:
-        """The newest check's, of this visit."""
+        """The report of the newest check of this session; None if there is none."""
         return self._reports.get(exercise.name)
 
     def opened_hints(self, exercise: Exercise) -> tuple[Hint, ...]:
-        """The hints opened so far for the first criterion that was lost."""
+        """The hints opened so far for the first criterion that did not pass."""
         lost = self._first_lost_criterion(exercise)
         if lost is None:
             return ()
@@ -114,8 +114,8 @@ class LessonSession:
         return tuple(_hint(lost, number) for number in range(1, opened + 1))
 
     def next_hint(self, exercise: Exercise) -> Hint | None:
-        """Opens one more hint for the first criterion that was lost; None where there is none left, or none was
-        lost."""
+        """Opens one more hint for the first criterion that did not pass; None where there is no further hint or no
+        such criterion."""
         lost = self._first_lost_criterion(exercise)
         if lost is None:
             return None
@@ -128,11 +128,11 @@ class LessonSession:
         return _hint(lost, number)
 
     def can_see_solution(self, exercise: Exercise) -> bool:
-        """After success, and not before."""
+        """Whether the exercise has been passed."""
         return exercise.name in self._lesson_progress.passed_exercises
 
     def solution(self, exercise: Exercise) -> dict[str, str]:
-        """The reference solution's files by name; empty before success, or where none was installed."""
+        """The reference solution's files by name; empty before the exercise is passed, or where none was installed."""
         if not self.can_see_solution(exercise):
             return {}
         files = exercise_files.read_solution(self.lesson, exercise)

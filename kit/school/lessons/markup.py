@@ -1,7 +1,7 @@
 """The little markup of lessons' texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
 
-No library: the whole is this one page, and what it makes must wrap to a terminal's cells for the screen, the plain
-mode and the check that a text fits.
+Not a library, because the rows must wrap to a terminal's cells in the same way for the screen, the plain mode and
+the check that a text fits.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class MarkupError(ValueError):
 
 
 class TextStyle(Enum):
-    """How a piece of text is set."""
+    """The style of a piece of text."""
 
     PLAIN = "plain"
     CODE = "code"
@@ -32,7 +32,7 @@ class TextStyle(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StyledText:
-    """Some characters in one style."""
+    """Characters of one style."""
 
     text: str
     style: TextStyle
@@ -51,7 +51,7 @@ StyledRow = tuple[StyledText, ...]
 
 
 def parse_markup(text: str) -> tuple[MarkupBlock, ...]:
-    """The blocks of a text. Raises MarkupError."""
+    """Parses a text into blocks. Raises MarkupError."""
     if text.count("`") % 2 or re.sub(r"`[^`]+`", "", text).count("**") % 2:
         raise MarkupError("a ` or ** is opened and not closed")
     blocks: list[MarkupBlock] = []
@@ -76,7 +76,8 @@ def _blocks(lines: Sequence[str]) -> list[MarkupBlock]:
 
 
 def wrap_blocks(blocks: Sequence[MarkupBlock], width: int) -> list[StyledRow]:
-    """The blocks as rows of at most ``width`` characters; an empty row between blocks, none between list entries."""
+    """Wraps the blocks to rows of at most ``width`` characters, with an empty row between blocks but not between list
+    entries."""
     rows: list[StyledRow] = []
     before: MarkupBlock | None = None
     for block in blocks:
@@ -88,7 +89,7 @@ def wrap_blocks(blocks: Sequence[MarkupBlock], width: int) -> list[StyledRow]:
 
 
 def plain_text(row: StyledRow) -> str:
-    """A row's characters alone."""
+    """The characters of a row, without styles."""
     return "".join(piece.text for piece in row)
 
 

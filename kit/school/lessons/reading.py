@@ -1,4 +1,4 @@
-"""Lessons' folders become records. Every mistake is told with its file, line and column."""
+"""Reads lesson folders into records. Reports every mistake with its file, line and column."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OUTCOMES_FILE: Final = "outcomes.yaml"
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 
 TEXT_WIDTH: Final = 76
-"""Characters of a line of text: what fits on 80 columns."""
+"""Characters of a line of text, so that it fits on 80 columns."""
 MAX_TEXT_ROWS_WITH_PICTURE: Final = 12
 MAX_TEXT_ROWS: Final = 17
 MAX_PICTURE_ROWS: Final = 10
@@ -41,24 +41,24 @@ class UnknownLesson(LookupError):
 
 
 def lessons_folder() -> Path:
-    """Where the lessons lie: inside the installed package, or beside it in a checkout. FileNotFoundError if neither."""
+    """The folder of the lessons: in the installed package, or beside it in a checkout. Raises FileNotFoundError."""
     return _data_folder("lessons", "lessons")
 
 
 def solutions_folder() -> Path:
-    """Where the reference solutions lie. FileNotFoundError if they were left out."""
+    """The folder of the reference solutions. Raises FileNotFoundError if they were not installed."""
     return _data_folder("solutions", "tests/solutions")
 
 
 def lesson_names(folder: Path | None = None) -> tuple[str, ...]:
-    """Every lesson there is, in their order."""
+    """The names of all lessons, in order."""
     folder = lessons_folder() if folder is None else folder
     return tuple(sorted(each.parent.name for each in folder.glob(f"*/{LESSON_FILE}")))
 
 
 def find_lesson(name: str, folder: Path | None = None) -> Lesson:
-    """A lesson by its folder's name, its number, or its name without the number. Raises UnknownLesson, and WorldError
-    if its file is wrong."""
+    """Finds a lesson by the name of its folder, its number, or its name without the number. Raises UnknownLesson, and
+    WorldError if its file is wrong."""
     folder = lessons_folder() if folder is None else folder
     names = lesson_names(folder)
     for known in names:
@@ -71,7 +71,7 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
 
 
 def read_lesson(folder: Path) -> Lesson:
-    """The lesson in ``folder``. Raises WorldError with all its mistakes."""
+    """Reads the lesson in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
     section = _open_section(folder / LESSON_FILE, problems)
     lesson = Lesson(
@@ -94,7 +94,7 @@ def read_lesson(folder: Path) -> Lesson:
 
 
 def read_outcomes(folder: Path | None = None) -> Mapping[str, str]:
-    """The outcomes and practical concepts that lessons carry, by id. Raises WorldError."""
+    """Reads the outcomes and practical concepts that lessons refer to, by id. Raises WorldError."""
     file = (lessons_folder() if folder is None else folder) / OUTCOMES_FILE
     problems = ProblemCollector()
     section = _open_section(file, problems)
@@ -146,7 +146,7 @@ def _steps(section: Section, folder: Path) -> Iterator[LessonStep]:
 
 
 def _check(section: Section, step: LessonStep) -> None:
-    """What a step of this kind must have, and what fits on a screen."""
+    """Reports parts that a step of this kind lacks or must not have, and text that does not fit on a screen."""
     predicts = step.kind is StepKind.PREDICT
     if predicts != bool(step.options) or predicts != bool(step.question):
         section.error("a step to predict, and no other, has a question and options")
@@ -188,7 +188,7 @@ def _scene(section: Section, folder: Path) -> LessonScene | None:
 
 
 def _own_file(name: str, folder: Path) -> str:
-    """The name itself, or the file of the lesson's folder that it names."""
+    """The path of the file of the lesson's folder with that name; the name itself if there is none."""
     if not name:
         return name
     file = (folder / name).resolve()

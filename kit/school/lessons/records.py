@@ -1,4 +1,4 @@
-"""What a lesson is: steps in order, each for one idea, some with something to do."""
+"""The records of a lesson: steps in order, one idea each, some with an exercise."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 class StepKind(StrEnum):
-    """What a step asks of the student."""
+    """The kind of activity of a step."""
 
     PREDICT = "predict"
     RUN = "run"
@@ -18,7 +18,7 @@ class StepKind(StrEnum):
 
 
 class CommandKind(StrEnum):
-    """What a printed command needs, so that a test can run it."""
+    """What a command of a step needs, so that a test can run it."""
 
     ALONE = "alone"
     """It runs and ends by itself."""
@@ -30,16 +30,16 @@ class CommandKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class LessonScene:
-    """A world to look at: where, who drives, and for how long."""
+    """A world shown in a step: map, controller and duration."""
 
     map_name: str
     """A map of the kit, or a world file in the lesson's folder."""
     case: str | None
     controller: str
-    """One of the kit's by name, or a file in the lesson's folder; may be empty: nobody drives."""
+    """Name of one of the kit's controllers, or a file in the lesson's folder; empty: nothing drives."""
     seed: int
     seconds: float
-    """Simulated; then it rests."""
+    """Simulated time [s], after which the scene stops."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +49,12 @@ class LessonCommand:
     line: str
     kind: CommandKind
     map_name: str
-    """The map of the world beside which it runs, for ``BESIDE``."""
+    """Map of the world that must run meanwhile, for ``BESIDE``."""
 
 
 @dataclass(frozen=True, slots=True)
 class PredictionOption:
-    """One thing that may be foreseen."""
+    """One option of a prediction."""
 
     text: str
     is_right: bool
@@ -63,23 +63,23 @@ class PredictionOption:
 
 @dataclass(frozen=True, slots=True)
 class Exercise:
-    """Something to write, checked by the grader."""
+    """An exercise, checked by the grader."""
 
     name: str
     """Unique in its lesson: the folder beside the lesson's file, which is the grader's assignment."""
     folder: Path
     file: str
-    """What the student edits."""
+    """Name of the file that the student edits."""
     seconds: float
-    """Promised for one check on two cores."""
+    """Upper limit of the time of one check on two cores [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LessonStep:
-    """One screen of a lesson."""
+    """One step of a lesson, shown on one screen."""
 
     number: int
-    """From 1."""
+    """Counted from 1."""
     kind: StepKind
     title: str
     goal: str
@@ -90,7 +90,7 @@ class LessonStep:
     """Fixed characters instead of a scene; may be empty."""
     commands: tuple[LessonCommand, ...]
     question: str
-    """Of a prediction; else empty."""
+    """Question of a prediction; else empty."""
     options: tuple[PredictionOption, ...]
     exercise: Exercise | None
 
@@ -100,15 +100,15 @@ class Lesson:
     """One lesson."""
 
     name: str
-    """Its folder: ``01-drive``."""
+    """The name of its folder: ``01-drive``."""
     folder: Path
     title: str
     summary: str
     minutes: int
-    """Promised, all in all."""
+    """Expected duration of the whole lesson."""
     outcomes: tuple[str, ...]
     outcome_ids: tuple[str, ...]
-    """Which outcomes and practical concepts of ``outcomes.yaml``."""
+    """Ids of outcomes and practical concepts in ``outcomes.yaml``."""
     steps: tuple[LessonStep, ...]
 
     @property
@@ -116,9 +116,9 @@ class Lesson:
         return tuple(step.exercise for step in self.steps if step.exercise is not None)
 
     def step_subject(self, step: LessonStep) -> str:
-        """What the journal calls a step."""
+        """The journal's subject for a step."""
         return f"{self.name}/{step.number}"
 
     def exercise_subject(self, exercise: Exercise) -> str:
-        """What the journal calls an exercise."""
+        """The journal's subject for an exercise."""
         return f"{self.name}/{exercise.name}"

@@ -318,7 +318,7 @@ def namespace(item: QuizItem, folder: Path) -> Finding:
 
 def _launched(*entities: Any, **arguments: str) -> list[Any]:
     service = LaunchService("/p/launch/x.launch.py", arguments, environment={})
-    return service.begin(LaunchDescription(list(entities)))
+    return service.start(LaunchDescription(list(entities)))
 
 
 def launch_argument(item: QuizItem, folder: Path) -> Finding:
