@@ -19,14 +19,14 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from types import TracebackType
+from types import MappingProxyType, TracebackType
 from typing import Final, Literal, NoReturn, Self, TypeAlias
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, GuestError
 from kit.host.output import Output, Position, Printed, Stream
 from kit.host.package_program import Installed
-from kit.host.protocol import Confined, Ended, Failed, Frame, Refused, parse
+from kit.host.protocol import ASKING, Confined, Ended, Failed, Frame, Refused, State, check_allowed, parse
 from kit.host.sandbox.confinement import DESK_LEVEL, Cage, Level
 from kit.host.sandbox.limits import DESK, KIB, Limits
 from kit.host.sandbox.reaper import end_descendants, remove_folder
@@ -46,6 +46,14 @@ _SYSTEM: Final = (
     "/etc/localtime", "/usr/share/zoneinfo", "/sys/devices/system/cpu", "/dev/zero", "/dev/random", "/dev/urandom",
 )  # fmt: skip
 """Shared libraries and what the C library looks at."""
+
+_STARTING: Final[Mapping[Role, State]] = MappingProxyType(
+    {
+        "node": State.STARTING_NODE,
+        "functions": State.STARTING_FUNCTIONS,
+        "launch": State.STARTING_LAUNCH,
+    }
+)
 
 _HERE = Path(__file__).parent
 _READ = 1 << 16
@@ -69,6 +77,8 @@ class Child:
         installed: Installed | None = None,
     ) -> None:
         self.failure: Failure | None = None
+        self._state = State.CONFINING
+        self._starting = _STARTING[role]
         self._file = file.absolute()
         self._limits = limits
         self._level = level
@@ -140,10 +150,8 @@ class Child:
         until = self._deadline if wait_s is None else min(self._deadline, time.monotonic() + wait_s)
         while self._answer is None:
             frame = self._receive(until)
-            if isinstance(frame, Confined) and frame.level == self._level and self._start:
-                self._start["start_s"] = max(0.001, self._deadline - time.monotonic())
-                self._unsent += encode(["start", 0, self._start])
-                self._start = {}
+            if isinstance(frame, Confined):
+                self._send_program(frame)
             elif isinstance(frame, Refused):
                 raise self.condemn(failure_messages.cannot_confine(self._level, frame.reason))
             elif frame is not None:
@@ -154,11 +162,22 @@ class Child:
                 return None
         return self._answer
 
+    def _send_program(self, frame: Confined) -> None:
+        """Sends the student's code, and what it needs to start, to a child that is locked in."""
+        if frame.level != self._level:
+            raise self.condemn(failure_messages.nonsense("another level of confinement than was asked for"))
+        self._start["start_s"] = max(0.001, self._deadline - time.monotonic())
+        self._unsent += encode(["start", 0, self._start])
+        self._start = {}
+        self._state = self._starting
+
     def ask(self, kind: str, *content: Json) -> Frame:
         """Sends one frame and waits for its answer."""
         assert self._answer is not None, "ask before started"
         if self.failure is not None:
             raise GuestError(self.failure)
+        self._refuse_unasked()
+        self._state = ASKING[kind]
         self._seq += 1
         self._unsent += encode([kind, self._seq, *content])
         began = time.monotonic()
@@ -213,13 +232,24 @@ class Child:
                         self._read()
                 content = self._frame()
                 if content is not None:
-                    return parse(decode(content))
+                    frame = parse(decode(content))
+                    check_allowed(frame, self._state)
+                    return frame
                 if time.monotonic() >= deadline:
                     return None
         except ProtocolError as problem:
             raise self.condemn(failure_messages.nonsense(str(problem))) from None
         except (EOFError, ConnectionError):
             raise self.condemn(self._post_mortem()) from None
+
+    def _refuse_unasked(self) -> None:
+        """Ends a child that has said something while nothing was asked."""
+        try:
+            self._read()
+        except (EOFError, ConnectionError):
+            raise self.condemn(self._post_mortem()) from None
+        if self._buffer:
+            raise self.condemn(failure_messages.nonsense("something while nothing was asked"))
 
     def _post_mortem(self) -> Failure:
         """Why the child is gone, after its last words."""
@@ -266,12 +296,13 @@ class Child:
 
     def _checked(self, frame: Frame) -> Frame:
         """An answer to what was asked last."""
-        if isinstance(frame, (Confined, Refused)) or frame.seq != self._seq:
+        if isinstance(frame, (Confined, Refused)) or frame.seq != self._seq:  # the first two for mypy only
             raise self.condemn(failure_messages.nonsense("an answer to a question that was not asked"))
         if isinstance(frame, Failed):
             raise self.condemn(failure_messages.told(frame.failure, self._limits))
         if isinstance(frame, Ended):
             self.close()
+        self._state = State.IDLE
         return frame
 
     def _drain(self, descriptor: int) -> None:

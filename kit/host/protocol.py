@@ -12,6 +12,10 @@ anything else is ended.
     tell   n, function, record                   told n, what it returned
                                                  ended n, events        the program is over, as it wished
                                                  failed n, what, where  the program is over, by its own fault
+
+Which frame may come when is ``ALLOWED``: by what the parent waits for. Nothing that the student's code can write
+has a meaning before ``confined`` (it is not there yet), and nothing that only the code above it may say has one
+afterwards.
 """
 
 from __future__ import annotations
@@ -19,6 +23,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
@@ -101,6 +106,48 @@ class Failed:
 
 
 Frame: TypeAlias = Confined | Refused | Reply | Functions | Values | Told | Ended | Failed
+
+
+class State(Enum):
+    """What the parent waits for. The student's code is sent, and so can write, from ``STARTING`` states on."""
+
+    CONFINING = "confining"
+    """That the child is locked in. Only the kit's own code runs in it so far."""
+    STARTING_NODE = "starting node"
+    STARTING_FUNCTIONS = "starting functions"
+    STARTING_LAUNCH = "starting launch"
+    TICKING = "ticking"
+    CALLING = "calling"
+    TELLING = "telling"
+    IDLE = "idle"
+    """For nothing: nothing has been asked."""
+
+
+ALLOWED: Final[Mapping[State, tuple[type[Frame], ...]]] = MappingProxyType(
+    {
+        State.CONFINING: (Confined, Refused),
+        State.STARTING_NODE: (Reply, Ended, Failed),
+        State.STARTING_FUNCTIONS: (Functions, Failed),
+        State.STARTING_LAUNCH: (Reply, Ended, Failed),
+        State.TICKING: (Reply, Ended, Failed),
+        State.CALLING: (Values, Failed),
+        State.TELLING: (Told, Failed),
+        State.IDLE: (),
+    }
+)
+"""The kinds of frame a child may send in each state. Any other ends it, by its own fault."""
+
+ASKING: Final[Mapping[str, State]] = MappingProxyType(
+    {"tick": State.TICKING, "call": State.CALLING, "tell": State.TELLING}
+)
+"""The state that follows a question."""
+
+
+def check_allowed(frame: Frame, state: State) -> None:
+    """ProtocolError if a child may not send this kind of frame in this state."""
+    if not isinstance(frame, ALLOWED[state]):
+        raise ProtocolError(f"a frame {type(frame).__name__.lower()!r} at the wrong time ({state.value})")
+
 
 DEEPEST: Final = 3
 """Lists in lists that a function may return."""

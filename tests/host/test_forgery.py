@@ -11,17 +11,20 @@ import pytest
 
 from kit.host.failure import FailureKind, GuestError
 from kit.host.node_process import Guest
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import allows
+from kit.host.student_functions import StudentFunctions
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 from tests.host.conftest import LINUX, QUICK, Student
 
 FORGER = """
-import json, os, struct, time
+import json, os, stat, struct, time
 
 def pipe():
     for fd in range(3, 64):
         try:
-            if os.readlink(f"/proc/self/fd/{{fd}}").startswith("socket:"): return fd
+            if stat.S_ISSOCK(os.fstat(fd).st_mode): return fd
         except OSError: pass
 
 def say(content):
@@ -74,6 +77,9 @@ FORGED: dict[str, Any] = {
     "an answer to another question": ["reply", 1, None, []],
     "functions instead of nodes": ["functions", 0, ["f"]],
     "a level of confinement": ["confined", 0],
+    "a machine that cannot confine": ["refused", "no Landlock here"],
+    "values instead of nodes": ["values", 0, ""],
+    "what a function told": ["told", 0, None],
     "a time that is none": ["reply", 0, "now", []],
     "a time before all time": ["reply", 0, -1, []],
 }  # fmt: skip
@@ -113,3 +119,15 @@ def test_an_honest_answer_by_hand_is_taken(student: Student) -> None:
         assert guest.failure is None
         assert said == ["evil /cmd_vel 0.5"]
         assert [node.get_name() for node in graph.nodes] == ["evil"]
+
+
+@LINUX
+@pytest.mark.parametrize("level", Level)
+def test_no_program_can_blame_the_machine(student: Student, level: Level) -> None:
+    """A forged "refused" is the program's own fault, at every level: nobody may confine it less for that."""
+    if not allows(level):
+        pytest.skip("not on this machine")
+    file = student(FORGER.format(frame=json.dumps(["refused", "no Landlock here"])))
+    with pytest.raises(GuestError) as caught:
+        StudentFunctions(file, limits=QUICK, level=level)
+    assert caught.value.failure.kind is FailureKind.PROTOCOL

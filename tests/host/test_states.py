@@ -1,0 +1,123 @@
+"""Every kind of frame in every state of the conversation: taken where the table says so, else the child's fault."""
+
+from __future__ import annotations
+
+import json
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kit.host import process
+from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.process import Child, Role
+from kit.host.protocol import ALLOWED, State, parse
+from kit.host.sandbox.confinement import DESK_LEVEL
+from tests.host.conftest import LINUX, QUICK, Student
+
+FRAMES: dict[str, Callable[[int], list[Any]]] = {
+    "confined": lambda seq: ["confined", int(DESK_LEVEL)],
+    "refused": lambda seq: ["refused", "no Landlock here"],
+    "reply": lambda seq: ["reply", seq, None, []],
+    "functions": lambda seq: ["functions", seq, ["f"]],
+    "values": lambda seq: ["values", seq, ""],
+    "told": lambda seq: ["told", seq, None],
+    "ended": lambda seq: ["ended", seq, []],
+    "failed": lambda seq: ["failed", seq, "exception", "E", None, None],
+}
+
+ROLES: dict[State, Role] = {
+    State.STARTING_NODE: "node",
+    State.STARTING_LAUNCH: "launch",
+    State.TICKING: "node",
+    State.IDLE: "node",
+}
+"""By state, the role of a child that comes to it; "functions" where nothing is said."""
+
+QUESTIONS = {State.TICKING: "tick", State.CALLING: "call", State.TELLING: "tell", State.IDLE: "tick"}
+
+SPEAKER = """
+import json, os, struct, sys
+def hear():
+    count, = struct.unpack(">I", os.read(0, 4))
+    while count: count -= len(os.read(0, count))
+def say(content):
+    data = json.dumps(content).encode()
+    os.write(0, struct.pack(">I", len(data)) + data)
+for step in json.loads(sys.argv[1]):
+    hear() if step is None else say(step)
+os.read(0, 1)
+"""
+"""A child that hears (null) and says what it was given, in place of the kit's own."""
+
+
+@pytest.fixture
+def speaks(student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Child]:
+    """Starts a child that takes these steps."""
+    speaker = tmp_path / "speaker.py"
+    speaker.write_text(textwrap.dedent(SPEAKER))
+
+    def start(role: Role, *steps: list[Any] | None) -> Child:
+        command = [sys.executable, "-S", str(speaker), json.dumps(steps)]
+        monkeypatch.setattr(process, "command", lambda: command)
+        return Child(role, student(""), {"seed": 0}, limits=QUICK)
+
+    return start
+
+
+def failure_of(child: Child, state: State) -> Failure | None:
+    """Talks with a child as the parent would, until it has taken the frame that is tried in this state."""
+    try:
+        child.started()
+        if state is State.IDLE:
+            wait_for(child)
+        if state in QUESTIONS:
+            child.ask(QUESTIONS[state])
+    except GuestError as error:
+        return error.failure
+    return None
+
+
+@LINUX
+@pytest.mark.parametrize("state", State)
+@pytest.mark.parametrize("kind", FRAMES)
+def test_every_frame_in_every_state(speaks: Callable[..., Child], kind: str, state: State) -> None:
+    role = ROLES.get(state, "functions")
+    first = ["functions", 0, ["f"]] if role == "functions" else ["reply", 0, None, []]
+    seq = 1 if state in QUESTIONS else 0
+    tried = FRAMES[kind](seq)
+    steps: list[list[Any] | None] = [None]
+    if state is not State.CONFINING:
+        steps += [["confined", int(DESK_LEVEL)], None]
+    if state is State.CONFINING and kind == "confined":
+        tried, steps = first, [None, tried, None]
+    if state in QUESTIONS:
+        steps.append(first)
+        if state is not State.IDLE:
+            steps.append(None)
+    is_allowed = isinstance(parse(FRAMES[kind](seq)), ALLOWED[state])
+    expected = {"refused": FailureKind.CONFINEMENT, "failed": FailureKind.EXCEPTION}.get(kind)
+    with speaks(role, *steps, tried) as child:
+        failure = failure_of(child, state)
+    if is_allowed:
+        assert (failure and failure.kind) is expected
+    else:
+        assert failure is not None
+        assert failure.kind is FailureKind.PROTOCOL
+
+
+def wait_for(child: Child) -> None:
+    """Waits until something that nobody asked for lies in the pipe, at most 20 s."""
+    child._poller.poll(20_000)
+
+
+def test_only_the_code_above_the_students_can_say_that_a_machine_cannot_confine() -> None:
+    """And it can say nothing after the student's code was sent."""
+    before = {"confined", "refused"}
+    for state, kinds in ALLOWED.items():
+        names = {kind.__name__.lower() for kind in kinds}
+        assert names == before if state is State.CONFINING else not names & before
+    assert {kind.__name__.lower() for kinds in ALLOWED.values() for kind in kinds} == FRAMES.keys()
