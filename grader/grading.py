@@ -21,6 +21,7 @@ from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level, shield_this_process
+from kit.host.sandbox.probe import highest_up_to
 from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
 
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
@@ -55,6 +56,10 @@ class LevelTooLow(Exception):
     """Secret seeds would be used at a lower confinement level than the assignment allows."""
 
 
+class LevelUnavailable(LevelTooLow):
+    """This machine does not reach the confinement level that was requested; the message says what to do."""
+
+
 @dataclass(frozen=True, slots=True)
 class GradingOptions:
     """How to grade a submission."""
@@ -64,7 +69,8 @@ class GradingOptions:
     secret: bool = False
     """Whether to use the secret seeds too, for the grade."""
     may_fall: bool = True
-    """Whether practice may go on at a lower level where this machine supports none higher."""
+    """Whether practice, without secret seeds, may go on at a lower level where this machine supports none higher, if no
+    level was requested."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,19 +280,36 @@ class Grading:
 def open_grading(
     assignment: Assignment, submission: Submission, options: GradingOptions
 ) -> Iterator[Grading]:
-    """Opens a grading of one submission. Raises LevelTooLow."""
+    """Opens a grading of one submission. Raises LevelTooLow.
+
+    The level is decided here, by trying this machine with an empty program: no submission can influence it.
+    """
     level = assignment.level if options.level is None else options.level
     if options.secret and level < assignment.level:
         raise LevelTooLow(
             f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
             f"not at {int(level)}. `kit doctor` says what this machine can do."
         )
+    may_fall = options.may_fall and options.level is None and not options.secret
+    available = _available_level(level, may_fall=may_fall)
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
-        evidence_options = EvidenceOptions(level, options.secret, options.may_fall and options.level is None)
+        evidence_options = EvidenceOptions(available, options.secret)
         with find_kind(assignment.kind).collect(assignment, file, evidence_options) as collector:
             yield Grading(assignment, submission, collector, secret=options.secret)
+
+
+def _available_level(level: Level, *, may_fall: bool) -> Level:
+    """The level to use: ``level``, or the highest below it that this machine has. Raises LevelUnavailable."""
+    available = highest_up_to(level)
+    if available == level:
+        return level
+    message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
+    if not may_fall:
+        raise LevelUnavailable(message)
+    sys.stderr.write(f"WARNING: {message} The program runs at level {int(available)}, for practice only.\n")
+    return available
 
 
 def grade(assignment: Assignment, submission: Submission, options: GradingOptions) -> GradingResult:

@@ -19,7 +19,7 @@ import pytest
 
 from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
-from grader.grading import Grading, GradingOptions, LevelTooLow, open_grading
+from grader.grading import Grading, GradingOptions, LevelTooLow, LevelUnavailable, open_grading
 from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
@@ -127,6 +127,8 @@ class GradingSession:
                     Path(str(self._config.getoption("--submission"))), assignment.submit
                 )
                 self._open[key] = self._stack.enter_context(open_grading(assignment, submission, options))
+            except LevelUnavailable as error:
+                raise GraderError(str(error)) from None
             except (SubmissionRefused, LevelTooLow) as error:
                 raise CriterionFailed(str(error)) from None
         return self._open[key]

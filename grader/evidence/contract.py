@@ -20,10 +20,9 @@ class EvidenceOptions:
     """How to collect evidence about one submission."""
 
     level: Level
+    """The confinement level of the program: one that this machine has."""
     secret: bool
     """Whether the secret seeds are used too."""
-    may_fall: bool
-    """Whether a machine that cannot confine so far may confine less."""
 
 
 class Evidence(Protocol):

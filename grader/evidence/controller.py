@@ -8,22 +8,17 @@ from pathlib import Path
 from grader.assignment import Assignment, Criterion, SeedSet, Trial
 from grader.evidence.drive_record import DriveRecord
 from grader.evidence.episodes import EpisodeSpec, run_episode
-from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 
 
 class ControllerEpisodes:
     """Runs each episode of one submission when a criterion first needs it."""
 
-    def __init__(
-        self, assignment: Assignment, file: Path, *, level: Level, secret: bool, may_fall: bool
-    ) -> None:
-        """``may_fall``: whether a machine that cannot confine so far may confine less; for practice only."""
+    def __init__(self, assignment: Assignment, file: Path, *, level: Level, secret: bool) -> None:
         self.level = level
         self._assignment = assignment
         self._file = file
         self._secret = secret
-        self._may_fall = may_fall and not secret
         self._drives: dict[tuple[str, bool, int], DriveRecord] = {}
 
     def evidence(self, criterion: Criterion) -> Sequence[DriveRecord]:
@@ -52,9 +47,4 @@ class ControllerEpisodes:
         return self._drives[key]
 
     def _run(self, spec: EpisodeSpec) -> DriveRecord:
-        while True:
-            drive = run_episode(spec, self._file, limits=self._assignment.limits, level=self.level)
-            cannot = drive.failure is not None and drive.failure.kind is FailureKind.CONFINEMENT
-            if not (cannot and self._may_fall and self.level > Level.LIMITED):
-                return drive
-            self.level = Level(self.level - 1)
+        return run_episode(spec, self._file, limits=self._assignment.limits, level=self.level)

@@ -181,19 +181,9 @@ class RewardEvidence:
 class RewardCollector:
     """Collects the single piece of evidence about a reward."""
 
-    def __init__(self, assignment: Assignment, file: Path, *, level: Level, may_fall: bool) -> None:
+    def __init__(self, assignment: Assignment, file: Path, *, level: Level) -> None:
         self.level = level
-        while True:
-            self._evidence = RewardEvidence(file, assignment, self.level)
-            failure = self._evidence.failure
-            if (
-                failure is None
-                or failure.kind is not FailureKind.CONFINEMENT
-                or not may_fall
-                or self.level == 0
-            ):
-                break
-            self.level = Level(self.level - 1)
+        self._evidence = RewardEvidence(file, assignment, level)
 
     def __enter__(self) -> Self:
         return self

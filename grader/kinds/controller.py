@@ -42,7 +42,6 @@ def collect(
             file,
             level=options.level,
             secret=options.secret,
-            may_fall=options.may_fall,
         )
     )
 

@@ -30,7 +30,6 @@ from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, exam
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.sandbox.confinement import Level
 from kit.host.wire import printable
 from kit.plain_text import quoted
 
@@ -65,25 +64,14 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Examines the environment once; with the secret seed where secrets are used."""
-    level = options.level
-    while True:
-        evidence = _examine(assignment, file, level, options)
-        failure = evidence.failure
-        if (
-            failure is None
-            or failure.kind is not FailureKind.CONFINEMENT
-            or not options.may_fall
-            or level == Level.LIMITED
-        ):
-            return nullcontext(FixedEvidence([evidence], level))
-        level = Level(level - 1)
+    return nullcontext(FixedEvidence([_examine(assignment, file, options)], options.level))
 
 
-def _examine(assignment: Assignment, file: Path, level: Level, options: EvidenceOptions) -> EvidenceRecord:
+def _examine(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     task: EnvironmentTask = assignment.task
     seed = task.secret_seed if options.secret and task.secret_seed is not None else task.seed
     try:
-        record = examine_environment(task, assignment, file, level, seed)
+        record = examine_environment(task, assignment, file, options.level, seed)
     except GuestError as error:
         failure = error.failure
         if failure.file == "examiner.py":  # the grader's own examiner means nothing to the student

@@ -34,7 +34,6 @@ from grader.checks.contract import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
 from kit.plain_text import quoted, suggestion
@@ -203,17 +202,7 @@ class FunctionCollector:
         assert seed is not None  # without one, no secret evidence is collected
         cases = cases_of(self._reference, spec.name, seed)
         blank = EvidenceRecord(label=f"{spec.name}()" + (" on secret cases" if secret else ""), secret=secret)
-        while True:
-            evidence = self._call_all(spec, cases, blank)
-            failure = evidence.failure
-            if (
-                failure is None
-                or failure.kind is not FailureKind.CONFINEMENT
-                or not self._conditions.may_fall
-                or self.level == Level.LIMITED
-            ):
-                return evidence
-            self.level = Level(self.level - 1)
+        return self._call_all(spec, cases, blank)
 
     def _call_all(
         self, spec: FunctionSpec, cases: Sequence[Mapping[str, Json]], blank: EvidenceRecord

@@ -24,8 +24,6 @@ from grader.checks.contract import Check, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from kit.host.failure import FailureKind
-from kit.host.sandbox.confinement import Level
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
@@ -255,7 +253,6 @@ class LaunchCollector:
         self._assignment = assignment
         self._file = file
         self._secret = options.secret
-        self._may_fall = options.may_fall and not options.secret
         self._records: dict[tuple[str, bool], LaunchRecord] = {}
         self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
@@ -272,17 +269,12 @@ class LaunchCollector:
 
     def _run(self, run: LaunchCase) -> LaunchRecord:
         key = run.name, run.secret
-        while key not in self._records:
+        if key not in self._records:
             with copied_package(self._assignment.task.package, self._file) as target:
                 record = run_launch(
                     run, target, self._queries, level=self.level, limits=self._assignment.limits
                 )
-            cannot = record.failure is not None and record.failure.kind is FailureKind.CONFINEMENT
-            if cannot and self._may_fall and self.level > Level.LIMITED:
-                self.level = Level(self.level - 1)
-                continue
-            record = replace(record, explain_with=_explain)
-            self._records[key] = record
+            self._records[key] = replace(record, explain_with=_explain)
         return self._records[key]
 
 

@@ -28,7 +28,7 @@ def collect(
     """Evaluates the function once, for all criteria."""
     from grader.evidence.reward import RewardCollector
 
-    return RewardCollector(assignment, file, level=options.level, may_fall=options.may_fall)
+    return RewardCollector(assignment, file, level=options.level)
 
 
 def _grid(section: Section) -> GridTask:

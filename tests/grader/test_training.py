@@ -29,7 +29,7 @@ checks:
   - {check: honest, points: 1}
   - {check: steps_used, points: 1}
 """
-DESK = EvidenceOptions(Level.LIMITED, secret=False, may_fall=True)
+DESK = EvidenceOptions(Level.LIMITED, secret=False)
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     text = "batch: 5000\nsteps: 5000\n"
     public = trained(folder, text).content
     (folder / "secret.yaml").write_text("seeds: [7]\n")
-    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True, may_fall=False)).content
+    secret = trained(folder, text, EvidenceOptions(Level.LIMITED, secret=True)).content
     assert len(secret.trainings) == 1
     assert secret.trainings[0].tests != public.trainings[0].tests
 

@@ -47,6 +47,22 @@ def allows(level: Level) -> bool:
         return _try(level, file).is_available
 
 
+def highest_up_to(wanted: Level) -> Level:
+    """The highest level that can be had here and is not above ``wanted``.
+
+    For whoever must know before a student's code runs: what that code says later changes nothing. A level that was
+    reached once in this process is not tried again.
+    """
+    for level in sorted(Level, reverse=True):
+        if level <= wanted and (level is Level.LIMITED or level in _reached or allows(level)):
+            _reached.add(level)
+            return level
+    raise AssertionError("the lowest level can always be had")
+
+
+_reached: Final[set[Level]] = set()
+
+
 def _try(level: Level, file: Path) -> Rung:
     try:
         StudentFunctions(file, level=level).close()
