@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import venv
 import zipfile
 from pathlib import Path
 
+import numpy
 import pytest
 
 from kit.school.lessons.exercise_files import exercise_folder
@@ -47,14 +49,8 @@ def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
 
 def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> None:
     """The dependencies come from this environment; the kit itself only from the wheel."""
-    place = tmp_path / "venv"
-    venv.create(place, symlinks=True)
-    python = place / "bin" / "python"
-    site = next((place / "lib").glob("python*/site-packages"))
-    zipfile.ZipFile(wheel).extractall(site)
-    ours = [path for path in map(Path, sys.path) if path.name == "site-packages"]
-    (site / "dependencies.pth").write_text("\n".join(str(path) for path in ours) + "\n")
-    environment = {**os.environ, "KIT_WORKSPACE": str(tmp_path / "workspace")}
+    python, site = _install(wheel, tmp_path / "venv")
+    environment = _environment(tmp_path)
     where = subprocess.run(
         [python, "-c", "import kit; print(kit.__file__)"],
         cwd=tmp_path,
@@ -95,6 +91,94 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     assert file.is_file()
     assert " points, in " in walked.stdout
     assert "stars" in _said(python, tmp_path, environment, "game", "--plain")
+
+
+THIEF = """
+import os, sys
+
+def _read(path):
+    with open(path, "rb") as opened: return len(opened.read())
+
+def stolen():
+    count = 0
+    for path in {secrets!r}:
+        try: count += _read(path)
+        except OSError: pass
+    for name in ("grader", "kit.sim", "kit.school"):
+        try:
+            __import__(name)
+            count += 1
+        except (ImportError, OSError): pass
+    return count
+
+def beside():
+    import beside, numpy
+    assert numpy.__file__.startswith({site!r})
+    return float(numpy.arange(4).sum())
+"""
+
+TRIAL = """
+import sys
+from pathlib import Path
+from kit.host.student_functions import StudentFunctions
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import allows
+for level in Level:
+    if allows(level):
+        with StudentFunctions(Path(sys.argv[1]), level=level) as functions:
+            print(int(level), functions.call("stolen", [{}])[0] > 0, functions.call("beside", [{}])[0])
+"""
+
+
+@pytest.mark.long
+def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_path: Path) -> None:
+    """And what is installed beside the kit can be imported, at every level that this machine has."""
+    python, site = _install(wheel, tmp_path / "venv")
+    (site / "beside").mkdir()
+    (site / "beside" / "__init__.py").touch()
+    installed = Path(numpy.__file__).parent
+    for folder in (installed, installed.with_name("numpy.libs")):
+        if folder.is_dir():
+            shutil.copytree(folder, site / folder.name, ignore=shutil.ignore_patterns("tests"))
+    data = site / "kit" / "data"
+    secrets = [
+        *(path for path in (data / "solutions").rglob("*") if path.is_file()),
+        *(path for name in ("secret.yaml", "reference.py") for path in data.rglob(name)),
+        *site.glob("robot_learning_kit-*/*"),
+        site / "grader" / "session.py",
+    ]
+    assert len(secrets) > 50
+    file = tmp_path / "student" / "controller.py"
+    file.parent.mkdir()
+    file.write_text(THIEF.format(secrets=list(map(str, secrets)), site=str(site)))
+    said = subprocess.run(
+        [python, "-c", TRIAL, str(file)],
+        cwd=tmp_path,
+        env=_environment(tmp_path),
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=240,
+    )
+    assert said.returncode == 0, said.stderr
+    levels = said.stdout.splitlines()
+    assert levels == ["0 True 6.0", *(f"{level} False 6.0" for level in range(1, len(levels)))]
+
+
+def _install(wheel: Path, place: Path) -> tuple[Path, Path]:
+    """The Python of a new environment with the wheel in it, and its folder of packages."""
+    venv.create(place, symlinks=True)
+    site = next((place / "lib").glob("python*/site-packages"))
+    zipfile.ZipFile(wheel).extractall(site)
+    ours = [path for path in map(Path, sys.path) if path.name == "site-packages"]
+    (site / "dependencies.pth").write_text("\n".join(str(path) for path in ours) + "\n")
+    return place / "bin" / "python", site
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """Without what would put a checkout before the wheel."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return {**kept, "KIT_WORKSPACE": str(folder / "workspace")}
 
 
 def _said(python: Path, folder: Path, environment: dict[str, str], *arguments: str) -> str:

@@ -12,7 +12,6 @@ import socket
 import stat
 import subprocess
 import sys
-import sysconfig
 import tempfile
 import time
 from collections.abc import Mapping
@@ -24,6 +23,7 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, GuestError
+from kit.host.grants import Grants, grants, libraries
 from kit.host.output import Output, Position, Printed, Stream
 from kit.host.package_program import Installed
 from kit.host.protocol import ASKING, Confined, Ended, Failed, Frame, Refused, State, check_allowed, parse
@@ -40,12 +40,6 @@ DUMP_S: Final = 1.0
 """How long to wait, after a deadline, for the child's Python to say where it was."""
 FAREWELL_S: Final = 3.0
 """How long the process above the child may take to clean up."""
-
-_SYSTEM: Final = (
-    "/lib", "/lib32", "/lib64", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache",
-    "/etc/localtime", "/usr/share/zoneinfo", "/sys/devices/system/cpu", "/dev/zero", "/dev/random", "/dev/urandom",
-)  # fmt: skip
-"""Shared libraries and what the C library looks at."""
 
 _STARTING: Final[Mapping[Role, State]] = MappingProxyType(
     {
@@ -90,7 +84,8 @@ class Child:
         self._waited = 0.0
         self._output = Output(limits.output)
         self._folder = tempfile.mkdtemp(prefix="kit-")
-        cage = Cage(level, limits, self._folder, [*readable_paths(self._file), *_packages(installed)])
+        granted = _granted(level, self._file, installed)
+        cage = Cage(level, limits, self._folder, granted.readable, granted.listed)
         for folder in (cage.scratch, cage.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
@@ -372,23 +367,9 @@ def environment(scratch: str) -> dict[str, str]:
     return fixed | ({"LD_LIBRARY_PATH": library_path} if library_path else {})
 
 
-def libraries() -> list[str]:
-    """The folders of installed packages, without what ``.pth`` files add, such as a checkout."""
-    return [path for path in sys.path if Path(path).name in ("site-packages", "dist-packages")]
-
-
-def _packages(installed: Installed | None) -> list[str]:
-    """What a program of a package may read besides: the package, and what it imports from."""
-    return (
-        [] if installed is None else [str(path.absolute()) for path in (installed.folder, *installed.imports)]
-    )
-
-
-def readable_paths(file: Path) -> list[str]:
-    """What a locked-in child may read: Python, installed packages, our own half, and the file's folder."""
-    package = _HERE.parent
-    ours = [package / name for name in ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")]
-    python = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), f"{sys.base_prefix}/lib"]
-    loader = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if path]
-    paths = [*map(str, ours), *python, *libraries(), *loader, *_SYSTEM, str(file.parent)]
-    return list(dict.fromkeys(os.path.abspath(path) for path in paths))
+def _granted(level: Level, file: Path, installed: Installed | None) -> Grants:
+    """What a program may read; of one that is a part of a package: the package too, and what it imports from."""
+    if level == Level.LIMITED:  # nothing is kept from it
+        return Grants()
+    more = () if installed is None else (installed.folder, *installed.imports)
+    return grants((file.parent, *more))

@@ -51,6 +51,8 @@ class Cage:
     """The run's own folder, removed at the end, with two empty ones in it: ``scratch`` and ``root``."""
     readable: Sequence[str]
     """Files and folders it may read, as absolute paths; everything below them too. From level 1 on."""
+    listed: Sequence[str]
+    """Folders of which it may read the names of what lies in them, as absolute paths. From level 1 on."""
 
     @property
     def scratch(self) -> str:
@@ -66,7 +68,7 @@ class Cage:
     def from_json(cls, content: Json) -> Cage:
         """The record that ``dataclasses.asdict`` and JSON made of one."""
         limits = Limits(**content["limits"])
-        return cls(Level(content["level"]), limits, content["folder"], content["readable"])
+        return cls(Level(content["level"]), limits, content["folder"], content["readable"], content["listed"])
 
 
 class CannotConfine(Exception):
@@ -152,7 +154,7 @@ def _require_filters() -> None:
 def _filter(cage: Cage) -> None:
     try:
         _drop_capabilities()
-        landlock.restrict(cage.readable, (cage.scratch, *WRITABLE))
+        landlock.restrict(cage.readable, cage.listed, (cage.scratch, *WRITABLE))
         seccomp.install()
     except OSError as problem:
         raise CannotConfine(

@@ -53,10 +53,11 @@ def abi() -> int:
     return max(0, version)
 
 
-def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
+def restrict(readable: Iterable[str], listed: Iterable[str], writable: Iterable[str]) -> None:
     """From now on this thread, and what it starts, sees and changes only what is at or below these paths.
 
-    Readable paths that are missing, or out of reach anyway, are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
+    Of ``listed`` folders, and of folders in them, it sees names alone. Paths to be seen that are missing, or out of
+    reach anyway, are left out. Needs ``no_new_privs``. OSError if the kernel refuses.
     """
     version = abi()
     handled = sum(bits for since, bits in ALL_FILE_ACCESS if version >= since)
@@ -70,9 +71,10 @@ def restrict(readable: Iterable[str], writable: Iterable[str]) -> None:
         _CREATE, ctypes.byref(ruleset), ctypes.c_size_t(ctypes.sizeof(ruleset)), ctypes.c_uint32(0)
     )
     try:
-        for path in readable:
-            with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
-                _grant(descriptor, path, SEE & handled)
+        for paths, access in ((readable, SEE), (listed, READ_DIR)):
+            for path in paths:
+                with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
+                    _grant(descriptor, path, access & handled)
         for path in writable:
             _grant(descriptor, path, handled)
         _call(_RESTRICT, ctypes.c_int(descriptor), ctypes.c_uint32(0))

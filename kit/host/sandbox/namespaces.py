@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
     0x00020000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000,
@@ -50,10 +50,9 @@ def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch:
     _unshare(_NEW_MOUNT)
     _mount("none", "/", "", _RECURSIVE | _PRIVATE)
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES, _TREE)
-    for path in readable:
-        _show(root, path, _READ_ONLY)
-    for path in writable:
-        _show(root, path, 0)
+    wanted = dict.fromkeys(readable, _READ_ONLY) | dict.fromkeys(writable, 0)
+    for name, real, flags in _outer_first(wanted):
+        _show(root, name, real, flags)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
     _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes=10k,mode=700")
     _mount("none", root, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
@@ -64,22 +63,40 @@ def narrow(root: str, readable: Iterable[str], writable: Iterable[str], scratch:
     os.chdir(scratch)
 
 
-def _show(root: str, path: str, flags: int) -> None:
-    real = os.path.realpath(path)
-    for name in dict.fromkeys((path, real)):
-        target = root + name
-        if not os.path.exists(real) or os.path.exists(target):
-            continue
-        if os.path.isdir(real):
-            os.makedirs(target)
-        else:
-            os.makedirs(os.path.dirname(target), exist_ok=True)
-            os.close(os.open(target, os.O_CREAT, 0o444))
-        # With what is mounted below: a part of a tree may hide what the whole one does not show.
-        _mount(real, target, "", _BIND | _RECURSIVE)
-        # A mount that came from outside may only be made stricter: what it forbids has to be forbidden again.
-        kept = os.statvfs(target).f_flag & (_READ_ONLY | _NO_SUID | _NO_DEVICES | _NO_EXECUTE)
-        _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)
+def _outer_first(wanted: Mapping[str, int]) -> Iterator[tuple[str, str, int]]:
+    """Each path under its own name and under its real one, with its real path and flags: folders before what lies
+    in them, which is left out because it has been shown with them."""
+    names: dict[str, tuple[str, int]] = {}
+    for path, flags in wanted.items():
+        real = os.path.realpath(path)
+        if os.path.exists(real):
+            names |= {name: (real, flags) for name in (path, real) if name not in names}
+    shown: set[str] = set()
+    for name in sorted(names, key=len):
+        if shown.isdisjoint(_and_above(name)):
+            shown.add(name)
+            yield name, *names[name]
+
+
+def _and_above(path: str) -> Iterator[str]:
+    """A path and every folder that it lies in, without the root."""
+    while path != "/":
+        yield path
+        path = os.path.dirname(path)
+
+
+def _show(root: str, name: str, real: str, flags: int) -> None:
+    target = root + name
+    if os.path.isdir(real):
+        os.makedirs(target)
+    else:
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        os.close(os.open(target, os.O_CREAT, 0o444))
+    # With what is mounted below: a part of a tree may hide what the whole one does not show.
+    _mount(real, target, "", _BIND | _RECURSIVE)
+    # A mount that came from outside may only be made stricter: what it forbids has to be forbidden again.
+    kept = os.statvfs(target).f_flag & (_READ_ONLY | _NO_SUID | _NO_DEVICES | _NO_EXECUTE)
+    _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)
 
 
 def _unshare(flags: int) -> None:

@@ -1,0 +1,94 @@
+"""What lies beside the kit's own half, where packages are installed, cannot be read; every other package can."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from kit.host.grants import grants
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.namespaces import _outer_first
+from kit.host.sandbox.probe import allows
+from kit.host.student_functions import StudentFunctions
+from tests.host.conftest import QUICK, Student
+
+SECRETS = (
+    "kit/data/solutions/01/controller.py",
+    "kit/data/lessons/01/secret.yaml",
+    "kit/data/lessons/01/reference.py",
+    "kit/sim/__init__.py",
+    "grader/__init__.py",
+    "robot_learning_kit-0.1.0.dist-info/RECORD",
+    "_editable_impl_robot_learning_kit.pth",
+)
+PUBLIC = ("beside/__init__.py", "alone.py", "kitchen/__init__.py", "beside-1.dist-info/METADATA")
+
+
+@pytest.fixture
+def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of installed packages with a copy of the kit and of the grader, and a link to each."""
+    folder = tmp_path / "python" / "site-packages"
+    for name in (*SECRETS, *PUBLIC):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("'something'\n")
+    (folder / "alias").symlink_to("kit")
+    (folder / "aside").symlink_to(folder / "kit" / "data")
+    (tmp_path / "python" / "lib64").symlink_to("site-packages")
+    monkeypatch.syspath_prepend(str(folder))
+    monkeypatch.setenv(
+        "LD_LIBRARY_PATH", str(tmp_path / "python")
+    )  # granted as a whole, if nothing hid in it
+    return folder
+
+
+@pytest.mark.parametrize("level", [level for level in Level if level])
+def test_every_package_but_ours_can_be_read(student: Student, library: Path, level: Level) -> None:
+    if not allows(level):
+        pytest.skip("not on this machine")
+    file = student(
+        """
+        def read(path):
+            try: return len(open(path).read())
+            except OSError: return 0
+
+        def imports(name):
+            try: __import__(name)
+            except (ImportError, OSError): return 0
+            return 1
+        """
+    )
+    hidden = [library / name for name in SECRETS]
+    hidden += [library / "alias" / SECRETS[0][4:], library / "aside" / "solutions/01/controller.py"]
+    hidden += [library.parent / "lib64" / name for name in SECRETS]
+    with StudentFunctions(file, limits=QUICK, level=level) as functions:
+        assert not any(functions.call("read", [{"path": str(path)} for path in hidden]))
+        assert all(functions.call("read", [{"path": str(library / name)} for name in PUBLIC]))
+        names = ["beside", "alone", "kitchen", "kit.host", "kit.msg", "kit.ros", "kit.geometry", "numpy"]
+        assert all(functions.call("imports", [{"name": name} for name in names]))
+        assert not any(
+            functions.call("imports", [{"name": name} for name in ("kit.sim", "grader", "alias.sim")])
+        )
+
+
+def test_nothing_of_ours_lies_below_what_is_granted(library: Path) -> None:
+    granted = grants([Path("/nowhere")])
+    readable = [Path(path).resolve() for path in granted.readable]
+    for name in SECRETS:
+        assert not any((library / name).is_relative_to(path) for path in readable)
+    assert {str(library), str(library.parent)} <= set(granted.listed)
+    ours = Path(sys.modules["kit"].__path__[0])
+    assert ours / "sim" not in readable
+    assert not any((ours / "sim" / "simulation.py").is_relative_to(path) for path in readable)
+
+
+def test_folders_are_shown_before_what_lies_in_them(tmp_path: Path) -> None:
+    inner = tmp_path / "site-packages" / "kit" / "host"
+    inner.mkdir(parents=True)
+    (tmp_path / "link").symlink_to(inner)
+    wanted = {
+        str(path): 1 for path in (inner, tmp_path / "link", tmp_path / "site-packages", tmp_path / "no")
+    }
+    names = [name for name, _, _ in _outer_first(wanted)]
+    assert names == [str(tmp_path / "link"), str(tmp_path / "site-packages")]
