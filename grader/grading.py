@@ -276,6 +276,12 @@ class Grading:
         return next(each for each in self.assignment.criteria if each.id == identity)
 
 
+def level_for_untrusted(assignment: Assignment, requested: Level | None) -> Level:
+    """The confinement level for programs that other people wrote: as requested, else as the assignment says, but at
+    least 1."""
+    return max(assignment.level, Level.FILTERED) if requested is None else requested
+
+
 @contextmanager
 def open_grading(
     assignment: Assignment, submission: Submission, options: GradingOptions

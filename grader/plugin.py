@@ -19,7 +19,14 @@ import pytest
 
 from grader.archives import SubmissionRefused
 from grader.assignment import Assignment, Criterion
-from grader.grading import Grading, GradingOptions, LevelTooLow, LevelUnavailable, open_grading
+from grader.grading import (
+    Grading,
+    GradingOptions,
+    LevelTooLow,
+    LevelUnavailable,
+    level_for_untrusted,
+    open_grading,
+)
 from grader.reading import ASSIGNMENT_FILE, read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
@@ -119,8 +126,10 @@ class GradingSession:
         key = str(assignment.folder)
         if key not in self._open:
             level = self._config.getoption("--grading-level")
+            secret = bool(self._config.getoption("--secret-seeds"))
+            requested = None if level is None else Level(level)
             options = GradingOptions(
-                None if level is None else Level(level), secret=bool(self._config.getoption("--secret-seeds"))
+                level_for_untrusted(assignment, requested) if secret else requested, secret=secret
             )
             try:
                 submission = read_submission(

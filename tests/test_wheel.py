@@ -145,7 +145,7 @@ def test_a_program_reads_no_solution_from_an_installed_wheel(wheel: Path, tmp_pa
         *(path for path in (data / "solutions").rglob("*") if path.is_file()),
         *(path for name in ("secret.yaml", "reference.py") for path in data.rglob(name)),
         *site.glob("robot_learning_kit-*/*"),
-        site / "grader" / "session.py",
+        site / "grader" / "grading.py",
     ]
     assert len(secrets) > 50
     file = tmp_path / "student" / "controller.py"

@@ -79,11 +79,12 @@ def check(
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; there are: {', '.join(FORMATS)}.")
     assignment = options.load_assignment(folder)
-    grading_level = options.to_level(level)
+    grading_level = (
+        options.level_for_untrusted(assignment, level, secret=True) if secret else options.to_level(level)
+    )
     if require_level is not None:
-        grading_level = options.require_level(
-            max(require_level, assignment.level if level is None else level)
-        )
+        least = assignment.level if grading_level is None else grading_level
+        grading_level = options.require_level(max(require_level, least))
     try:
         submission = read_submission(file, assignment.submit)
         with open_grading(assignment, submission, GradingOptions(grading_level, secret)) as grading:

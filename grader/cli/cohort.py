@@ -61,21 +61,18 @@ def cohort(
     from grader.cohort.executors import ExecutorUnavailable, run_locally, run_on_dask, run_on_slurm
     from grader.cohort.queue import Queue, QueueError, prepare_queue
     from grader.grading import GradingOptions
-    from kit.host.sandbox.probe import highest
 
     def count(key: str) -> None:
         bar.update(1)
 
     assignment = options.load_assignment(folder)
     queue = Queue(queue_folder.absolute())
-    grading_options = GradingOptions(options.to_level(level), secret, may_fall=False)
-    wanted = assignment.level if grading_options.level is None else grading_options.level
+    wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
+    grading_options = GradingOptions(wanted, secret, may_fall=False)
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
         )
-    if executor == "local" and highest() < wanted:
-        options.fail(f"This machine does not reach confinement level {int(wanted)}; `kit doctor` says why.")
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
         waiting = queue.waiting()
@@ -126,6 +123,8 @@ def work(folder: Path, shard: str, jobs: int) -> None:
         options.fail(f"{shard}: say which share of how many, from 0, such as 0/4.")
     queue = Queue(folder.absolute())
     try:
+        secret = queue.grading_options().secret
+        options.level_for_untrusted(queue.assignment(), int(queue.level()), secret=secret)
         keys = queue.waiting((int(found[1]), int(found[2])))
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:

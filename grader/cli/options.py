@@ -36,7 +36,7 @@ assignment: Decorator = click.option(
 level: Decorator = click.option(
     "--level",
     type=click.IntRange(0, 3),
-    help="Confinement level of programs, exactly; by default the assignment's.",
+    help="Confinement level of programs, exactly; by default the assignment's, and for a grade at least 1.",
 )
 secret: Decorator = click.option(
     "--secret", is_flag=True, help="Use the secret seeds too: for the grade, on the teacher's machine."
@@ -62,6 +62,23 @@ def require_level(number: int) -> Level:
     if highest() < number:
         fail(f"This machine does not reach confinement level {number}; `kit doctor` says why.")
     return Level(number)
+
+
+def level_for_untrusted(
+    assignment: Assignment, number: int | None, *, secret: bool, runs_here: bool = True
+) -> Level:
+    """The confinement level at which programs of others are graded; exit code 2 if they run here and this machine does
+    not reach it."""
+    from grader import grading
+    from kit.host.sandbox.probe import highest_up_to
+
+    level = grading.level_for_untrusted(assignment, to_level(number))
+    if not runs_here or highest_up_to(level) == level:
+        return level
+    message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
+    if not (secret and assignment.level):
+        message += " To grade without it, say --level 0: then a program that was handed in can read and change whatever you can."
+    fail(message)
 
 
 def to_level(number: int | None) -> Level | None:

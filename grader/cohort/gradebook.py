@@ -35,6 +35,8 @@ class GradebookRow:
     statuses: Mapping[str, str]
     note: str
     submission: str
+    level: int | None = None
+    """The confinement level of the program; None without a result, and in older gradebooks."""
 
 
 def gradebook_rows(
@@ -76,6 +78,7 @@ def _rows(
                 next((test.rationale for test in result.tests if test.status is not CriterionStatus.PASS), "")
             ),
             result.submission,
+            result.level,
         )
 
 
@@ -133,7 +136,7 @@ def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> It
 
 
 def summary(table: Sequence[GradebookRow]) -> str:
-    """One line: how many of each."""
+    """One line: how many of each verdict, and the confinement levels of their programs."""
     kinds = [
         GradingVerdict.PASS.value,
         GradingVerdict.FAIL.value,
@@ -142,4 +145,9 @@ def summary(table: Sequence[GradebookRow]) -> str:
         WAITING,
     ]
     counts: dict[str, Any] = {kind: sum(row.verdict == kind for row in table) for kind in kinds}
-    return ", ".join(f"{count} {kind}" for kind, count in counts.items() if count) or "nobody"
+    text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count) or "nobody"
+    levels = sorted({row.level for row in table if row.level is not None})
+    if not levels:
+        return text
+    word = "level" if len(levels) == 1 else "levels"
+    return f"{text}, at confinement {word} {', '.join(map(str, levels))}"

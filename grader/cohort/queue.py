@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from grader.archives import SubmissionRefused, is_archive
 from grader.assignment import Assignment
-from grader.grading import GradingOptions
+from grader.grading import GradingOptions, level_for_untrusted
 from grader.reading import read_assignment
 from grader.submission import IGNORED_NAMES, Submission, read_submission
 from grader.version import grader_version
@@ -66,9 +66,19 @@ class Queue:
             raise QueueError(f"{self.folder}: no queue of the grader; `grader cohort` makes one.") from None
         return content
 
-    def grading_options(self) -> GradingOptions:
+    def level(self) -> Level:
+        """The confinement level of every program. Raises QueueError where it is 0 and nobody has asked for that."""
         content = self.manifest()
-        return GradingOptions(Level(content["level"]), bool(content["secret"]), may_fall=False)
+        level = Level(content["level"])
+        if level == Level.LIMITED and not content.get("level_0_asked"):
+            raise QueueError(
+                f"{self.folder}: an older queue, which says level 0 although nobody asked for it. Run `grader cohort` again: "
+                "it grades at level 1 or higher, or at 0 if you say --level 0."
+            )
+        return level
+
+    def grading_options(self) -> GradingOptions:
+        return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_fall=False)
 
     def entries(self) -> tuple[QueueEntry, ...]:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
@@ -99,7 +109,7 @@ class Queue:
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """What decides a result, as one name."""
-    level = assignment.level if options.level is None else options.level
+    level = level_for_untrusted(assignment, options.level)
     parts = (submission.digest, assignment.version, grader_version(), SCHEMA, options.secret, int(level))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
@@ -115,13 +125,14 @@ def prepare_queue(
         (queue.folder / part).mkdir(parents=True, exist_ok=True)
     _copy_assignment(queue, assignment)
     entries = tuple(_entries(queue, cohort, assignment, options))
-    level = assignment.level if options.level is None else options.level
+    level = level_for_untrusted(assignment, options.level)
     content = {
         "assignment": assignment.id,
         "assignment_version": assignment.version,
         "grader_version": grader_version(),
         "secret": options.secret,
         "level": int(level),
+        "level_0_asked": options.level == Level.LIMITED,
         "entries": [{"name": each.name, "key": each.key, "refused": each.refused} for each in entries],
     }
     write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())

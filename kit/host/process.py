@@ -23,11 +23,11 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 
 from kit.host import failure_messages
 from kit.host.failure import Failure, GuestError
-from kit.host.grants import Grants, grants, libraries
 from kit.host.output import Output, Position, Printed, Stream
 from kit.host.package_program import Installed
 from kit.host.protocol import ASKING, Confined, Ended, Failed, Frame, Refused, State, check_allowed, parse
 from kit.host.sandbox.confinement import DESK_LEVEL, Cage, Level
+from kit.host.sandbox.grants import Grants, grants, libraries
 from kit.host.sandbox.limits import DESK, KIB, Limits
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode

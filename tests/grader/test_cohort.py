@@ -38,8 +38,8 @@ from grader.cohort.work import WorkerPool, grade_job
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission
+from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import probe
 from kit.school.result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
@@ -358,7 +358,7 @@ def test_levels_do_not_change_points(tmp_path: Path) -> None:
     assignment = read_assignment(write_assignment(tmp_path / "quick"))
     folder = submissions(tmp_path / "in")
     tables = []
-    levels = [rung.level for rung in probe() if rung.is_available]
+    levels = [rung.level for rung in probe.probe() if rung.is_available]
     assert len(levels) >= 2
     for level in levels:
         made = Queue(tmp_path / f"queue{int(level)}")
@@ -455,3 +455,79 @@ def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytes
         while below(scratch) and time.monotonic() < deadline:
             time.sleep(0.1)
         assert below(scratch) == set(), "nothing that was graded outlives its grader"
+
+
+@pytest.fixture
+def no_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine that can lock nothing in."""
+    monkeypatch.setattr(probe, "_reached", set())
+    monkeypatch.setattr(probe, "allows", lambda level: False)
+
+
+def verb(name: str, *arguments: object) -> tuple[int, str]:
+    done = CliRunner().invoke(main, [name, *map(str, arguments)])
+    return done.exit_code, done.output
+
+
+def one_of_a_class(tmp_path: Path) -> list[object]:
+    """A class of one and an assignment that says level 0, as ``grader cohort`` takes them."""
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "ada.py").write_text(FORWARD)
+    folder = write_assignment(tmp_path / "quick")
+    assert read_assignment(folder).level is Level.LIMITED
+    return [tmp_path / "in", "--assignment", folder, "--queue", tmp_path / "queue", "--jobs", "1"]
+
+
+@LOCKS
+def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
+    asked = one_of_a_class(tmp_path)
+    code, told = verb("cohort", *asked)
+    queue = Queue(tmp_path / "queue")
+    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, 1, 1)
+    assert "1 fail, at confinement level 1: " in told
+    assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == 1
+    code, told = verb("cohort", *asked, "--level", "0")
+    assert (code, gradebook_rows(queue)[0].level) == (0, 0)
+    assert "1 fail, at confinement level 0: " in told
+
+
+@pytest.mark.usefixtures("no_level_1")
+def test_a_machine_without_level_1_grades_no_class_unless_told(tmp_path: Path) -> None:
+    asked = one_of_a_class(tmp_path)
+    code, told = verb("cohort", *asked)
+    assert (code, "level 1; `kit doctor`" in told, "say --level 0" in told) == (2, True, True)
+    assert not (tmp_path / "queue").exists()
+    assert verb("cohort", *asked, "--executor", "none")[0] == 0  # others are to do the work
+    code, told = verb("work", tmp_path / "queue")
+    assert (code, "level 1; `kit doctor`" in told) == (2, True)
+    assert verb("cohort", *asked, "--level", "0")[0] == 0
+
+
+def test_an_older_queue_at_level_0_is_not_gone_on_with(tmp_path: Path) -> None:
+    asked = one_of_a_class(tmp_path)
+    assert verb("cohort", *asked, "--executor", "none", "--level", "0")[0] == 0
+    file = tmp_path / "queue" / "manifest.json"
+    manifest = json.loads(file.read_bytes())
+    del manifest["level_0_asked"]
+    file.write_text(json.dumps(manifest))
+    code, told = verb("work", tmp_path / "queue")
+    assert (code, "say --level 0" in told) == (2, True)
+
+
+@LOCKS
+def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
+    folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    asked = (file, "--assignment", folder, "--json")
+    for more, level in ((("--secret",), 1), (("--secret", "--level", "0"), 0), ((), 0)):
+        code, told = verb("check", *asked, *more)
+        assert (code, json.loads(told)["level"]) == (1, level)
+
+
+@pytest.mark.usefixtures("no_level_1")
+def test_a_machine_without_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> None:
+    folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
+    file.write_text("1/0")
+    code, told = verb("check", file, "--assignment", folder, "--secret")
+    assert (code, "say --level 0" in told) == (2, True)
+    assert verb("check", file, "--assignment", folder, "--secret", "--level", "0")[0] == 1

@@ -102,6 +102,8 @@ class ExerciseCheck:
             recording.unlink(missing_ok=True)
         command = [sys.executable, "-m", "grader", "check", str(submission_path(exercise, file))]
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
+        # Their own program on their own machine.
+        command += ["--level", "0"]
         command += ["--replay", str(recording)] if recording is not None else []
         try:
             self._process = subprocess.Popen(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.host.grants import grants
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.grants import grants
 from kit.host.sandbox.namespaces import _outer_first
 from kit.host.sandbox.probe import allows
 from kit.host.student_functions import StudentFunctions

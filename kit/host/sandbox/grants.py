@@ -21,7 +21,7 @@ _SYSTEM: Final = (
 )  # fmt: skip
 """Shared libraries and what the C library looks at."""
 
-_PACKAGE = Path(__file__).parents[1]
+_PACKAGE = Path(__file__).parents[2]
 _OURS: Final = ("__init__.py", "geometry.py", "plain_text.py", "host", "msg", "ros")
 """The parts of the kit that a student's process consists of, and all that these import of the kit."""
 _DISTRIBUTION: Final = "robot_learning_kit"
