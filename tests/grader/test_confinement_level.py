@@ -58,7 +58,9 @@ def graded(folder: Path, kind: str, level: Level, source: str, terms: GradingOpt
     sheet = ASSIGNMENTS[kind].replace("level: 0", "").rstrip() + f"\nlevel: {int(level)}\n"
     write_assignment(folder, sheet)
     (folder / "reference.py").write_text(REFERENCE)
-    return grade(read_assignment(folder), Submission("ada", "controller.py", {"controller.py": source.encode()}), terms)
+    return grade(
+        read_assignment(folder), Submission("ada", "controller.py", {"controller.py": source.encode()}), terms
+    )
 
 
 @pytest.fixture
