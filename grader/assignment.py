@@ -38,7 +38,7 @@ class Trial:
     """One set-up of episodes: the scenario, the time limit and the seeds."""
 
     name: str
-    place: Scenario
+    scenario: Scenario
     time_s: float
     """Simulated."""
     seeds: tuple[int, ...]
@@ -59,7 +59,7 @@ class Trial:
 
     def home(self) -> Pose:
         """Returns the robot's start before a seed shifts it."""
-        return self.place.start or Pose()
+        return self.scenario.start or Pose()
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,13 +89,9 @@ def run_teacher_tests(
     with _isolated_environment():
         import pytest
 
-        pytest.main(
-            [
-                *("-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"),
-                *("-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib", *map(str, files)),
-            ],
-            plugins=[_plugin(session)],
-        )
+        options = ["-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"]
+        options += ["-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib"]
+        pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
     return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)
 
 

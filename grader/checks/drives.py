@@ -110,7 +110,7 @@ def in_time(drive: DriveRecord, params: NoParams) -> float:
 def approach(drive: DriveRecord, params: NoParams) -> float:
     """In the worst episode ({where}) the robot closed {actual} of the distance to its target; {full} earns all
     points."""
-    case = drive.place.case
+    case = drive.scenario.case
     if case is None or not len(drive.track):
         return math.nan
     away = np.hypot(drive.track[:, 0] - case.target[0], drive.track[:, 1] - case.target[1])
@@ -175,7 +175,7 @@ def _speeds(drive: DriveRecord) -> Floats:
 def short_way(drive: DriveRecord, params: NoParams) -> float:
     """The way was {actual} times as long as the straight line to the target ({where}); {full} or less earns all
     points."""
-    case = drive.place.case
+    case = drive.scenario.case
     if case is None or drive.score.reached_s is None or not len(drive.track):
         return math.inf
     straight = math.hypot(drive.track[0, 0] - case.target[0], drive.track[0, 1] - case.target[1])
@@ -305,9 +305,28 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
         each.name: each
         for each in (
-            *(runs, reached, in_time, approach, bumps, clearance),
-            *(keeps_distance, smooth, moves, top_speed, short_way, rate, topics, obeys, circle),
-            *(comes_by, comes_back, drives_at, says, keeps_speed, answered, goes_home),
+            runs,
+            reached,
+            in_time,
+            approach,
+            bumps,
+            clearance,
+            keeps_distance,
+            smooth,
+            moves,
+            top_speed,
+            short_way,
+            rate,
+            topics,
+            obeys,
+            circle,
+            comes_by,
+            comes_back,
+            drives_at,
+            says,
+            keeps_speed,
+            answered,
+            goes_home,
         )
     }
 )

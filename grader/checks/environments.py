@@ -89,7 +89,7 @@ def _space_text(value: Mapping[str, object]) -> str:
 @complaint_check(none=0, full=1, unit="%")
 def resets(record: EnvironmentRecord) -> Iterator[str]:
     """reset() begins an episode; it did so rightly in {actual} of the cases."""
-    home = record.task.place.start or Pose()
+    home = record.task.scenario.start or Pose()
     for episode in record.episodes.values():
         returned = episode.returned
         parts = returned.get("parts", [])
@@ -164,14 +164,14 @@ def _explain_difference(
     numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     if not isinstance(numbers, list) or len(numbers) != len(wanted):
         return f"an observation is {SECTORS} numbers."
-    place = next(
+    index = next(
         k
         for k, (one, other) in enumerate(zip(numbers, wanted, strict=True))
         if not isinstance(one, float) or not math.isclose(one, other, abs_tol=OBSERVATION_TOLERANCE)
     )
-    given = numbers[place]
+    given = numbers[index]
     shown = f"{given:.3f}" if isinstance(given, float) else "no finite number"
-    return f"sector {place} should be {wanted[place]:.3f} m by the newest scan, and is {shown}."
+    return f"sector {index} should be {wanted[index]:.3f} m by the newest scan, and is {shown}."
 
 
 @complaint_check(none=0.5, full=0.98, unit="%")
@@ -205,7 +205,7 @@ def crash(record: EnvironmentRecord) -> Iterator[str]:
 @complaint_check(none=0, full=1, words=("something else", "terminated"))
 def arrival(record: EnvironmentRecord) -> Iterator[str]:
     """Reaching the target ends the episode."""
-    case = record.task.place.case
+    case = record.task.scenario.case
     assert case is not None  # drives to a target are only asked for where there is one
     episode, radius = record.episodes["to the target"], case.target_radius
     step_records = episode.step_records

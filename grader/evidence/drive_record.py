@@ -49,7 +49,7 @@ class DriveRecord:
     """In words that give no secret away: ``maze, secret seed 2``."""
     seed: int
     secret: bool
-    place: Scenario
+    scenario: Scenario
     limit_s: float
     recording: Recording
     score: DriveMetrics
@@ -88,7 +88,7 @@ class DriveRecord:
     @cached_property
     def track(self) -> Floats:
         """(ticks, 3) the robot's poses."""
-        return self.recording.track(self.place.robot or "") if self.steps else np.empty((0, 3))
+        return self.recording.track(self.scenario.robot or "") if self.steps else np.empty((0, 3))
 
     @cached_property
     def clearances(self) -> Floats:
@@ -106,7 +106,7 @@ class DriveRecord:
     @cached_property
     def walls(self) -> Floats:
         """(n, 4) every wall of the world."""
-        layers = self.place.world.layers
+        layers = self.scenario.world.layers
         unique = {layer.walls.file: layer.walls for layer in layers if layer.walls is not None}
         return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
 
@@ -126,7 +126,7 @@ class DriveRecord:
 
     def body(self, pose: Pose) -> Body:
         """Returns the robot's body at a pose."""
-        model = next(model for model in self.place.world.models if model.name == self.place.robot)
+        model = next(model for model in self.scenario.world.models if model.name == self.scenario.robot)
         footprints = [footprint.shape for footprint in model.bodies[0].footprints]
         polygons = tuple(
             np.array([pose.transform_point(*point) for point in shape.points])
@@ -148,7 +148,7 @@ class DriveRecord:
         """Draws the robot's path and its last pose in plain characters; the same for every check."""
         if not len(self.track):
             return ""
-        case = self.place.case
+        case = self.scenario.case
         scene = Scene(
             walls=self.walls,
             bodies=(self.body(Pose(*self.track[-1].tolist())),),

@@ -49,7 +49,7 @@ class EnvironmentTask:
     """The environment that is to be written, and its scenario."""
 
     class_name: str
-    place: Scenario
+    scenario: Scenario
     moves: tuple[tuple[float, float], ...]
     """The velocities of each action: m/s, rad/s."""
     step_s: float
@@ -141,9 +141,9 @@ def examine_environment(
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
         shutil.copyfile(file, Path(folder, file.name))
         graph = Graph(log_sink=lambda record: None)
-        simulation = Simulation(with_laser_noise(task.place.world, 0.0), seed=1, step_size=STEP)
+        simulation = Simulation(with_laser_noise(task.scenario.world, 0.0), seed=1, step_size=STEP)
         runner = UnrestrictedRunner(simulation, graph, frozenset({"move_model"}))
-        arguments = [file.stem, task.class_name, *controller_arguments(task.place)]
+        arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.
         examination = _EnvironmentExaminer(runner, task, seed)
         guest = Guest.start(
@@ -166,11 +166,11 @@ class _EnvironmentExaminer:
         self._task = task
         self._seed = seed
         self.record = EnvironmentRecord(task)
-        assert task.place.robot is not None  # the sheet's reader sees to it
-        self._robot = task.place.robot
+        assert task.scenario.robot is not None  # the sheet's reader sees to it
+        self._robot = task.scenario.robot
         self._answers: list[str] = []
         self._ranges: tuple[float, ...] = ()
-        self._metrics = MetricsRecorder.for_scenario(task.place)
+        self._metrics = MetricsRecorder.for_scenario(task.scenario)
         runner.observers.append(self._metrics)
         node = create_graph_node(runner.graph, "grader")
         self._request_publisher = node.create_publisher(String, REQUEST_TOPIC, 10)
@@ -217,7 +217,7 @@ class _EnvironmentExaminer:
         before, contact_steps = self._pose(), self._metrics.contact_steps(self._robot)
         answer = self._call(f"step({action})", call="step", action=action)
         self.record.steps += 1
-        case = self._task.place.case
+        case = self._task.scenario.case
         assert case is not None  # the sheet's reader sees to it
         distance = self._runner.simulation.hull_distance(self._robot, case.target)
         returned, is_in_space = answer.get("returned", {}), answer.get("inside") is True

@@ -121,26 +121,26 @@ class TrafficRecorder:
 def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> DriveRecord:
     """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
     trial = spec.trial
-    place = _place(trial)
+    scenario = _scenario(trial)
     graph = Graph(log_sink=lambda record: None)
     simulation = Simulation(
-        place.world,
+        scenario.world,
         seed=spec.seed,
         step_size=STEP,
         has_subscribers=lambda topic: graph.subscription_count(topic) > 0,
     )
     runner = RestrictedRunner(simulation, graph, trial.services)
-    recorder = Recorder.for_scenario(place, simulation)
-    metrics, fingerprint = MetricsRecorder.for_scenario(place), Fingerprint()
+    recorder = Recorder.for_scenario(scenario, simulation)
+    metrics, fingerprint = MetricsRecorder.for_scenario(scenario), Fingerprint()
     runner.observers += [recorder, metrics, fingerprint]
     home = shifted_start(trial, spec.seed)
-    if place.robot is not None:
+    if scenario.robot is not None:
         if home != trial.home():
-            runner.call_unrestricted("move_model", place.robot, tuple(home))
-        runner.allow_home(place.robot, home)
+            runner.call_unrestricted("move_model", scenario.robot, tuple(home))
+        runner.allow_home(scenario.robot, home)
     traffic_recorder = TrafficRecorder(graph)
     service_caller = ServiceCaller(graph, trial.calls)
-    arguments = [*controller_arguments(place, home), *_parameters(trial)]
+    arguments = [*controller_arguments(scenario, home), *_parameters(trial)]
     failure, printed = _drive(runner, metrics, spec, file, arguments, limits, level, service_caller)
     traffic_recorder.stop()
     return DriveRecord(
@@ -148,7 +148,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         label=spec.label,
         seed=spec.seed,
         secret=spec.secret,
-        place=place,
+        scenario=scenario,
         limit_s=trial.time_s,
         recording=recorder.recording(),
         score=metrics.metrics,
@@ -159,7 +159,7 @@ def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) 
         fingerprint=fingerprint.text,
         level=int(level),
         answers=service_caller.answers(),
-        bump_ticks=() if place.robot is None else metrics.bump_steps(place.robot),
+        bump_ticks=() if scenario.robot is None else metrics.bump_steps(scenario.robot),
     )
 
 
@@ -205,11 +205,11 @@ def shifted_start(trial: Trial, seed: int) -> Pose:
     )
 
 
-def _place(trial: Trial) -> Scenario:
-    place = trial.place
+def _scenario(trial: Trial) -> Scenario:
+    scenario = trial.scenario
     if trial.noise is None:
-        return place
-    return replace(place, world=with_laser_noise(place.world, trial.noise))
+        return scenario
+    return replace(scenario, world=with_laser_noise(scenario.world, trial.noise))
 
 
 def with_laser_noise(world: World, noise: float) -> World:

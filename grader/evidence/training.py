@@ -182,11 +182,11 @@ def _run_training(
         [settings.train_on] if settings.order is CaseOrder.MIXED else [(case,) for case in settings.train_on]
     )
     learner: Learner | None = None
-    for place, on in enumerate(stages, 1):
-        learner = _learner(settings, budget, on, derive_seed(seed, "training", place), learner)
+    for stage, on in enumerate(stages, 1):
+        learner = _learner(settings, budget, on, derive_seed(seed, "training", stage), learner)
         monitor.learner = learner
         try:
-            learner.learn(settings.steps * place // len(stages), monitor)
+            learner.learn(settings.steps * stage // len(stages), monitor)
         except StopLearning:
             break
     assert learner is not None  # a plan names at least one case

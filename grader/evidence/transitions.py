@@ -15,31 +15,27 @@ from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.transition import Transition
 
 MODEL_FACTS: Final = (
-    *(
-        "collided",
-        "reached",
-        "hit",
-        "in_target",
-        "was_in_target",
-        "move",
-        "previous_move",
-        "pose",
-        "previous_pose",
-    ),
-    *(
-        "target",
-        "to_go",
-        "previous_to_go",
-        "front",
-        "distance",
-        "previous_distance",
-        "bearing",
-        "previous_bearing",
-    ),
+    "collided",
+    "reached",
+    "hit",
+    "in_target",
+    "was_in_target",
+    "move",
+    "previous_move",
+    "pose",
+    "previous_pose",
+    "target",
+    "to_go",
+    "previous_to_go",
+    "front",
+    "distance",
+    "previous_distance",
+    "bearing",
+    "previous_bearing",
     "max_steps",
 )
-"""Parameters of a reward function that the model can provide. The others (the step's number, turns made so far, the lidar's rays) depend
-on what the model leaves out."""
+"""Parameters of a reward function that the model can provide. The others (the step's number, the turns made so far, the
+lidar's rays) depend on what the model leaves out."""
 
 KIT_MOVES: Final = np.array([Move.FORWARD, Move.BACK, Move.LEFT, Move.RIGHT, -1])
 """The kit's number for each of the model's moves; the last stands for no move."""

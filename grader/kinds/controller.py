@@ -56,7 +56,7 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         if name in seen:
             each.error(f"a trial named {quoted(name)} already exists", "name")
         seen.add(name)
-        place = read_scenario(each, folder)
+        scenario = read_scenario(each, folder)
         time_s = each.number("time", 60.0, above=0, maximum=MAX_EPISODE_S)
         seeds = _seeds(each, "seeds", (1, 2, 3))
         shift = Shift(*each.numbers("shift", (0.0, 0.0, 0.0), length=3))
@@ -74,9 +74,17 @@ def trials(files: AssignmentFiles) -> Iterator[Trial]:
         calls = tuple(read_service_call(one) for one in each.sections("calls", ()))
         each.finish()
         secret_seeds = _seeds(hidden, name, ()) if hidden is not None and name else ()
-        if place is not None:
+        if scenario is not None:
             yield Trial(
-                *(name, place, time_s, seeds, secret_seeds, shift, noise, until, frozenset(services)),
+                name=name,
+                scenario=scenario,
+                time_s=time_s,
+                seeds=seeds,
+                secret_seeds=secret_seeds,
+                shift=shift,
+                noise=noise,
+                until_reached=until,
+                services=frozenset(services),
                 parameters=parameters,
                 calls=calls,
             )
@@ -106,15 +114,15 @@ def read_scenario(section: Section, folder: Path) -> Scenario | None:
     try:
         inside = (folder / name).resolve()
         is_ours = inside.exists() and inside.is_relative_to(folder.resolve())
-        place = find_scenario(str(folder / name) if is_ours else name, case, folder if is_ours else None)
+        scenario = find_scenario(str(folder / name) if is_ours else name, case, folder if is_ours else None)
     except (LookupError, WorldError, OSError) as error:
         section.error(str(error), "place")
         return None
     if target is None:
-        return place
-    start = place.start or Pose()
+        return scenario
+    start = scenario.start or Pose()
     made = MapCase(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    return replace(place, case=made)
+    return replace(scenario, case=made)
 
 
 KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

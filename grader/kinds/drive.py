@@ -63,7 +63,7 @@ ARRAYS: Final = MappingProxyType({"header.npy": 1, "poses.npy": 2, "counts.npy":
 class HandDriveTask:
     """The scenario of the drive and its time limit."""
 
-    place: Scenario | None
+    scenario: Scenario | None
     """None only if the assignment has a mistake."""
     time_s: float
     """The longest recording that is accepted [s]."""
@@ -114,12 +114,12 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
     _check_size(data, file.name)
     recording = load(file)
-    place = task.place
-    assert place is not None  # the assignment has no mistake
-    case = None if place.case is None else place.case.name
-    if recording.place != place.name or recording.case != case:
+    scenario = task.scenario
+    assert scenario is not None  # the assignment has no mistake
+    case = None if scenario.case is None else scenario.case.name
+    if recording.place != scenario.name or recording.case != case:
         was = " ".join(filter(None, (recording.place, recording.case)))
-        wanted = " ".join(filter(None, (place.name, case)))
+        wanted = " ".join(filter(None, (scenario.name, case)))
         raise RecordingError(f"This is a drive at {was}; the task asks for one at {wanted}.")
     if recording.step_size != STEP or recording.seed < 0:
         raise RecordingError(f"Its ticks last {recording.step_size} s; those of the kit last {STEP} s.")
@@ -132,7 +132,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
         )
     if len(recording.inputs) > MAX_INPUTS_PER_S * (1 + recording.ticks * STEP):
         raise RecordingError("It holds more commands than anybody can give by hand.")
-    names = tuple(model.name for model in place.world.models)
+    names = tuple(model.name for model in scenario.world.models)
     if recording.models != ((0, names),):
         raise RecordingError("It has other models in it than the map.")
     return recording
@@ -181,19 +181,19 @@ class _Rerun:
     """Replays the recording in the grader's world; only inputs that the keyboard can give are allowed."""
 
     def __init__(self, task: HandDriveTask, recording: Recording) -> None:
-        assert task.place is not None
-        self._place = task.place
+        assert task.scenario is not None
+        self._scenario = task.scenario
         simulation = Simulation(
-            task.place.world, seed=recording.seed, step_size=STEP, has_subscribers=lambda topic: False
+            task.scenario.world, seed=recording.seed, step_size=STEP, has_subscribers=lambda topic: False
         )
         self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
         self._recording = recording
-        self._metrics = MetricsRecorder.for_scenario(task.place)
+        self._metrics = MetricsRecorder.for_scenario(task.scenario)
         self._recorder = Recorder(recording.place, recording.case, simulation)
-        ends = simulation.model_endpoints(task.place.robot or "")
+        ends = simulation.model_endpoints(task.scenario.robot or "")
         self._topics = {end.topic for end in ends if end.direction == "subscribe" and end.type is Twist}
         self.fingerprint = Fingerprint()
-        self.poses = np.empty((0, len(task.place.world.models), 3))
+        self.poses = np.empty((0, len(task.scenario.world.models), 3))
         """(ticks, models, 3): where everything was, once it has been run."""
 
     def attempts(self) -> list[_Attempt]:
@@ -227,18 +227,18 @@ class _Rerun:
         self._runner.call_service(service, *arguments)
 
     def _is_going_home(self, service: str, arguments: tuple[Any, ...]) -> bool:
-        home = self._place.start
+        home = self._scenario.start
         if service != "move_model" or home is None or len(arguments) != 2:
             return False
         name, pose = arguments
-        return name == self._place.robot and all(
+        return name == self._scenario.robot and all(
             abs(wanted - there) <= HOME_TOLERANCE for wanted, there in zip(pose, home, strict=True)
         )
 
 
 def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
     """Replays the recording and returns its best attempt. Raises RecordingError."""
-    assert task.place is not None
+    assert task.scenario is not None
     run = _Rerun(task, recording)
     best = max(run.attempts(), key=lambda attempt: attempt.rank)
     claimed = recording.poses.reshape(recording.ticks, -1, 3)
@@ -249,7 +249,7 @@ def _rerun(task: HandDriveTask, recording: Recording) -> ReplayedDrive:
         label="your recording",
         seed=recording.seed,
         secret=False,
-        place=task.place,
+        scenario=task.scenario,
         limit_s=task.time_s,
         recording=_cut(recording, run.poses[ticks], best.first),
         score=best.score,

@@ -40,7 +40,7 @@ MOST_STEPS: Final = 400
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the scenario of the environment, and what its actions do."""
     section = files.public.section("environment")
-    place = read_scenario(section, files.folder)
+    scenario = read_scenario(section, files.folder)
     moves = section.points("moves", at_least=2, at_most=20)
     seed = files.public.integer("seed", 1, minimum=0, maximum=10**6)
     secret = None if files.secret is None else files.secret.integer("seed", minimum=0, maximum=10**6)
@@ -50,13 +50,15 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     waypoints = section.points("way", at_least=1, at_most=50)
     scan, clip = section.name("scan", "/static_laser"), section.number("clip", 2.0, above=0)
     section.finish()
-    if place is None:
+    if scenario is None:
         return KindSettings()
-    if place.case is None or place.robot is None:
+    if scenario.case is None or scenario.robot is None:
         section.error("the place must have a robot and a target: give a case of a map of the kit", "place")
         return KindSettings()
     return KindSettings(
-        task=EnvironmentTask(class_name, place, moves, step_s, max_steps, waypoints, scan, clip, seed, secret)
+        task=EnvironmentTask(
+            class_name, scenario, moves, step_s, max_steps, waypoints, scan, clip, seed, secret
+        )
     )
 
 

@@ -77,7 +77,7 @@ class FieldDrive(DriveRecord):
     @property
     def partners(self) -> Sequence[np.ndarray[Any, np.dtype[np.float64]]]:
         """(ticks, 3) of each robot."""
-        return [self.recording.track(name) for name in self.place.partners]
+        return [self.recording.track(name) for name in self.scenario.partners]
 
     def explain(self, check: str, params: Any = None) -> str:
         """Names the largest trap of the field, if that explains the lost points."""
@@ -237,23 +237,23 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
     """Makes one drive to its end. Raises WorldError, LookupError or ValueError for a file that cannot be used."""
     if file.stat().st_size > MAX_BYTES:
         raise ValueError(f"{file.name} is larger than {MAX_BYTES // 1024} KiB.")
-    place = _shifted_scenario(trial, seed)
-    case = place.case
+    scenario = _shifted_scenario(trial, seed)
+    case = scenario.case
     if case is None:
-        raise LookupError(f"{place.name} has no target.")
+        raise LookupError(f"{scenario.name} has no target.")
     course = ControllerSetup.open(
-        place.world.file, place.partners, case.target, case.target_radius, derived=True
+        scenario.world.file, scenario.partners, case.target, case.target_radius, derived=True
     )
     course = replace(course, layout=_check_limits(read_layout(file, course.grid)))
-    simulation = Simulation(place.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
-    field_run = _FieldRun(place, course, simulation)
+    simulation = Simulation(scenario.world, seed=seed, step_size=STEP, has_subscribers=lambda topic: False)
+    field_run = _FieldRun(scenario, course, simulation)
     field_run.run(trial)
     return FieldDrive(
         trial=trial.name,
         label=label,
         seed=seed,
         secret=secret,
-        place=place,
+        scenario=scenario,
         limit_s=trial.time_s,
         recording=field_run.recording(),
         score=field_run.score(),
@@ -263,7 +263,7 @@ def run_field_drive(trial: Trial, file: Path, seed: int, label: str, *, secret: 
         printed=(),
         fingerprint=field_run.fingerprint.text,
         level=0,
-        bump_ticks=() if place.robot is None else field_run.metrics.bump_steps(place.robot),
+        bump_ticks=() if scenario.robot is None else field_run.metrics.bump_steps(scenario.robot),
         course=course,
         all_reached_s=field_run.metrics.all_reached_s,
     )
@@ -282,25 +282,25 @@ def _check_limits(layout: ChargeLayout) -> ChargeLayout:
 
 def _shifted_scenario(trial: Trial, seed: int) -> Scenario:
     """Returns the scenario with all its robots shifted together, as the seed sets."""
-    place, home, start = trial.place, trial.home(), shifted_start(trial, seed)
+    scenario, home, start = trial.scenario, trial.home(), shifted_start(trial, seed)
     moved = {
         model.name: start.compose(home.relative(model.pose))
-        for model in place.world.models
-        if model.name in place.partners
+        for model in scenario.world.models
+        if model.name in scenario.partners
     }
-    models = tuple(replace(each, pose=moved.get(each.name, each.pose)) for each in place.world.models)
-    return replace(place, world=replace(place.world, models=models))
+    models = tuple(replace(each, pose=moved.get(each.name, each.pose)) for each in scenario.world.models)
+    return replace(scenario, world=replace(scenario.world, models=models))
 
 
 class _FieldRun:
     """The controller ``fields`` at the wheels: it decides ten times a second, and stops when something is touched."""
 
-    def __init__(self, place: Scenario, course: ControllerSetup, simulation: Simulation) -> None:
-        self._place = place
+    def __init__(self, scenario: Scenario, course: ControllerSetup, simulation: Simulation) -> None:
+        self._scenario = scenario
         self._course = course
         self._simulation = simulation
-        self._recorder = Recorder.for_scenario(place, simulation)
-        self.metrics = MetricsRecorder.for_scenario(place)
+        self._recorder = Recorder.for_scenario(scenario, simulation)
+        self.metrics = MetricsRecorder.for_scenario(scenario)
         self.fingerprint = Fingerprint()
         self._runner = Runner(simulation, Graph(log_sink=lambda record: None))
         self._runner.observers += [self._recorder, self.metrics, self.fingerprint]
@@ -321,7 +321,7 @@ class _FieldRun:
         return replace(self.metrics.metrics, bumps=self.metrics.total_bumps)
 
     def _decide(self) -> None:
-        poses = [Pose(*self._simulation.pose(name)) for name in self._place.partners]
+        poses = [Pose(*self._simulation.pose(name)) for name in self._scenario.partners]
         stands = self.metrics.total_bumps > 0
         commands = control_step(poses, self._course.target, self._course.layout).commands
         for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):

@@ -283,9 +283,9 @@ def _first_difference(expected: Json, actual: Json) -> str:
         return ""
     if len(expected) != len(actual):
         return f": {len(actual)} entries instead of {len(expected)}"
-    for place, (one, other) in enumerate(zip(expected, actual, strict=True)):
+    for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
         if not is_close(one, other, 1e-6):
-            return f": [{place}] should be {format_value(one)}, and is {format_value(other)}"
+            return f": [{index}] should be {format_value(one)}, and is {format_value(other)}"
     return ""
 
 

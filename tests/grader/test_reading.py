@@ -117,5 +117,5 @@ def test_a_world_of_the_teachers_own(tmp_path: Path) -> None:
     world.write_text(world.read_text().replace("../robots/", ""))
     own = QUICK.replace("place: turn", "place: world.yaml, target: [1.6, 1.6], target_radius: 0.3")
     (trial,) = read_assignment(write_assignment(folder, own)).trials
-    assert trial.place.case is not None
-    assert trial.place.case.target == (1.6, 1.6)
+    assert trial.scenario.case is not None
+    assert trial.scenario.case.target == (1.6, 1.6)

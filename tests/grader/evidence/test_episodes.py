@@ -53,7 +53,7 @@ def measure(name: str, seen: DriveRecord, params: object | None = None) -> float
 
 
 def test_the_recording_runs_again_to_the_bit(forward: DriveRecord) -> None:
-    again = rerun(forward.recording, forward.place.world)
+    again = rerun(forward.recording, forward.scenario.world)
     assert np.array_equal(again.poses, forward.recording.poses)
 
 
@@ -107,7 +107,7 @@ def test_every_check_says_what_to_do_and_no_measure_is_credit_for_nothing(tmp_pa
 
 
 def test_a_shipped_controller_gets_there(tmp_path: Path) -> None:
-    trial = dataclasses.replace(TURN, place=find_scenario("simple"), time_s=30.0, shift=Shift())
+    trial = dataclasses.replace(TURN, scenario=find_scenario("simple"), time_s=30.0, shift=Shift())
     seen = drive(tmp_path, find_controller("avoid").file.read_text(), trial)
     assert seen.score.reached_s is not None
     assert seen.seconds == pytest.approx(seen.score.reached_s, abs=0.02)
