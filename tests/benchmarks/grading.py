@@ -25,12 +25,12 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.cohort.gradebook import GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue
-from tests.grader.attacks import ASSIGNMENT_FILE as ATTACKED
+from tests.grader.attacks import ASSIGNMENT_TEXT as ATTACKED
 from tests.grader.attacks import ATTACKS, TOKEN, program
 
 ROOT = Path(__file__).parents[2]
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Round the corner
 submit: controller.py
 level: 1
@@ -180,7 +180,7 @@ def main() -> None:
         folder = Path(name)
         for part in ("in", "assignment"):
             (folder / part).mkdir()
-        (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+        (folder / "assignment" / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
         secret = folder / "assignment" / "secret.yaml"
         secret.write_text(f"seeds: {{there: [{TOKEN}]}}\n")
         kind_names = write_class(folder / "in", secret, count)

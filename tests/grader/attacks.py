@@ -30,7 +30,7 @@ from kit.school.result import CriterionStatus, GradingResult
 TOKEN = "735192468013"
 """A secret: in the assignment, in the grader's environment, in its memory."""
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Nothing here is easy
 submit: controller.py
 budget: {start: 30, reply: 8, total: 20, cpu: 10, memory: 512}
@@ -41,7 +41,7 @@ checks:
   - {check: obeys, points: 1, after: runs}
 """
 
-HASTY = ASSIGNMENT_FILE.replace(
+HASTY = ASSIGNMENT_TEXT.replace(
     "start: 30, reply: 8, total: 20, cpu: 10", "start: 2, reply: 0.5, total: 1, cpu: 2"
 )
 """For those that never come back: no need to wait for them."""
@@ -132,7 +132,7 @@ class Attack:
     """Handed in beside it."""
     pack: Callable[[Path], None] | None = None
     """Makes what is handed in by itself."""
-    sheet: str = ASSIGNMENT_FILE
+    sheet: str = ASSIGNMENT_TEXT
     caught: str = "Exception"
 
 

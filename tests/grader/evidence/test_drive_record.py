@@ -23,7 +23,7 @@ from kit.run.scenario import find_scenario
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Forward
 kind: drive
 submit: drive.npz
@@ -41,7 +41,7 @@ Edit = Callable[[dict[str, Any]], None]
 @pytest.fixture(scope="module")
 def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     folder = tmp_path_factory.mktemp("forward")
-    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     return read_assignment(folder)
 
 
@@ -210,7 +210,7 @@ def test_a_file_that_is_no_recording_is_refused_and_harms_nobody(assignment: Ass
 def test_a_sheet_without_a_place_is_told_so(tmp_path: Path) -> None:
     from kit.world.problems import WorldError
 
-    (tmp_path / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace("place: simple", "place: simpel"))
+    (tmp_path / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace("place: simple", "place: simpel"))
     with pytest.raises(WorldError, match="simple"):
         read_assignment(tmp_path)
 

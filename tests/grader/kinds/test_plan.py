@@ -13,7 +13,7 @@ from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: A hangar
 kind: plan
 submit: plan.yaml
@@ -42,7 +42,7 @@ DESK = GradingOptions(Level.LIMITED, secret=True)
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "hangar"
     made.mkdir()
-    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     (made / "secret.yaml").write_text("case: hangar.layers.yaml\n")
     (made / "hangar.layers.yaml").write_text(CASE)
     return made

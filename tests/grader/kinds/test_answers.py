@@ -13,7 +13,7 @@ from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Words
 kind: answers
 submit: answers.yaml
@@ -39,7 +39,7 @@ DESK = GradingOptions(Level.LIMITED, secret=True)
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "words"
     made.mkdir()
-    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     (made / "secret.yaml").write_text(KEYS)
     return made
 

@@ -13,7 +13,7 @@ from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Charges
 kind: field
 submit: charges.yaml
@@ -28,7 +28,7 @@ checks:
   - {check: force_at, points: 1, with: {x: 0.0, y: 0.0, fx: FX, fy: FY}}
 """
 GOOD = (
-    Path(__file__).parents[1] / "solutions" / "13-potential-fields" / "corner" / "solution.yaml"
+    Path(__file__).parents[2] / "solutions" / "13-potential-fields" / "corner" / "solution.yaml"
 ).read_text()
 
 
@@ -37,7 +37,7 @@ def assignment(tmp_path_factory: pytest.TempPathFactory) -> Assignment:
     folder = tmp_path_factory.mktemp("charges")
     # By hand at (0, 0): the end pushes up by 1 / 0.22^2, the two side walls cancel, the target pulls.
     pull = 15 / (2 * 1.6**2) / 2**0.5
-    sheet = ASSIGNMENT_FILE.replace("FX", f"{pull}").replace("FY", f"{pull + 1 / 0.22**2}")
+    sheet = ASSIGNMENT_TEXT.replace("FX", f"{pull}").replace("FY", f"{pull + 1 / 0.22**2}")
     (folder / "assignment.yaml").write_text(sheet)
     return read_assignment(folder)
 

@@ -17,9 +17,9 @@ from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
-LESSON = Path(__file__).parents[2] / "lessons" / "10-words-of-learning" / "hallway"
-GOOD = Path(__file__).parents[1] / "solutions" / "10-words-of-learning" / "hallway" / "solution.py"
-ASSIGNMENT_FILE = """
+LESSON = Path(__file__).parents[3] / "lessons" / "10-words-of-learning" / "hallway"
+GOOD = Path(__file__).parents[2] / "solutions" / "10-words-of-learning" / "hallway" / "solution.py"
+ASSIGNMENT_TEXT = """
 title: Short
 kind: environment
 submit: hallway_env.py
@@ -51,7 +51,7 @@ DESK = GradingOptions(Level.LIMITED)
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "short"
     made.mkdir()
-    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     return made
 
 
@@ -154,7 +154,7 @@ def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> 
     ],
 )
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
-    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace(old, new))
     with pytest.raises(WorldError, match=message):
         read_assignment(folder)
 

@@ -16,9 +16,9 @@ from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
-LESSON = Path(__file__).parents[2] / "lessons" / "04-launch-files" / "driver"
+LESSON = Path(__file__).parents[3] / "lessons" / "04-launch-files" / "driver"
 SOLUTION = (
-    Path(__file__).parents[1] / "solutions" / "04-launch-files" / "driver" / "solution.py"
+    Path(__file__).parents[2] / "solutions" / "04-launch-files" / "driver" / "solution.py"
 ).read_text()
 DESK = GradingOptions(Level.LIMITED, secret=True)
 

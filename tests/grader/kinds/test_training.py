@@ -16,7 +16,7 @@ from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus
 from kit.world.problems import WorldError
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: A table
 kind: training
 submit: training.yaml
@@ -36,7 +36,7 @@ DESK = EvidenceOptions(Level.LIMITED, secret=False)
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "table"
     made.mkdir()
-    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     return made
 
 
@@ -130,6 +130,6 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
     ],
 )
 def test_a_teachers_mistake_is_told_when_read(folder: Path, old: str, new: str, message: str) -> None:
-    (folder / "assignment.yaml").write_text(ASSIGNMENT_FILE.replace(old, new))
+    (folder / "assignment.yaml").write_text(ASSIGNMENT_TEXT.replace(old, new))
     with pytest.raises(WorldError, match=message):
         read_assignment(folder)

@@ -15,7 +15,7 @@ from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 
-ASSIGNMENT_FILE = """
+ASSIGNMENT_TEXT = """
 title: Two functions
 kind: function
 submit: scans.py
@@ -58,7 +58,7 @@ GRADE = GradingOptions(Level.LIMITED, secret=True)
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "scans"
     made.mkdir()
-    (made / "assignment.yaml").write_text(ASSIGNMENT_FILE)
+    (made / "assignment.yaml").write_text(ASSIGNMENT_TEXT)
     (made / "reference.py").write_text(REFERENCE)
     (made / "secret.yaml").write_text("seed: 77\n")
     return made
@@ -97,7 +97,7 @@ def test_the_first_difference_is_told(folder: Path) -> None:
 
 def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
     (folder / "assignment.yaml").write_text(
-        ASSIGNMENT_FILE.replace("share: {none: 0.9, full: 1}", "seeds: secret")
+        ASSIGNMENT_TEXT.replace("share: {none: 0.9, full: 1}", "seeds: secret")
     )
     source = NEAREST + "def halves(ranges, side):\n    return [side, [0.0, 0.0]]\n"
     test = graded(folder, source, GRADE).tests[1]
