@@ -1,8 +1,8 @@
-"""ROS 2's conversation, without ROS: nodes, topics, services, parameters and timers in rclpy's shape.
+"""ROS 2's Python API without ROS 2: nodes, topics, services, parameters and timers, as in rclpy.
 
-``graph`` is the middle of it. A program that imports ``rclpy``, ``std_msgs.msg`` and so on finds them in
-``names_folder()``, which whoever runs such a program puts first on its ``sys.path``; nobody else does, so an
-installed ROS 2 is never in the way.
+``graph`` is the core. A program that imports ``rclpy``, ``std_msgs.msg`` and so on finds them in ``names_folder()``,
+which the process that runs such a program puts first on ``sys.path``. No other process does, so an installed ROS 2 does
+not interfere.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 def names_folder() -> Path:
     """The folder of packages under ROS 2's import names."""
-    from pathlib import Path  # a fifth of the time that starting a node takes, and few need it
+    from pathlib import Path  # imported here: it takes a fifth of a node's start-up, and few programs need it
 
     return Path(__file__).parent / "names"
 
 
 def shims_folder() -> Path:
-    """The folder of packages that stand in for what packages of Flatland's time import and is not installed."""
+    """The folder of substitutes for old packages that programs written for Flatland import (``gym``, ``pynput``)."""
     from pathlib import Path
 
     return Path(__file__).parent / "shims"

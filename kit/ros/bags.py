@@ -1,4 +1,4 @@
-"""Bags: what was said on topics, and when, in files that ROS 2's tools open (rosbag2), by way of rosbags.
+"""Records and reads bags: the messages of topics with their times, in rosbag2 files. Uses the rosbags library.
 
 Times are those of the graph: in a simulation, simulation time. Not imported by the rest of ``kit.ros``.
 """
@@ -40,23 +40,23 @@ from kit.ros.serialization import Distro, Serializer
 Storage = Literal["mcap", "sqlite3"]
 
 RECORDER: Final = "rosbag2_recorder"
-FOR_EVER: Final = QosTime(9223372036, 854775807)
-"""How ROS 2 writes a time that never comes."""
+INFINITE_TIME: Final = QosTime(9223372036, 854775807)
+"""How ROS 2 writes an infinite duration."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Kind:
-    """What goes with a kind of storage: the oldest ROS 2 that reads it by itself is what it is written for."""
+class _StorageSettings:
+    """The settings of a kind of storage: files are written for the oldest ROS 2 that reads it without plugins."""
 
     plugin: StoragePlugin
     version: Literal[8, 9]
     distro: Distro
 
 
-_KINDS: Final = MappingProxyType(
+_STORAGE_SETTINGS: Final = MappingProxyType(
     {
-        "mcap": _Kind(StoragePlugin.MCAP, 9, "jazzy"),
-        "sqlite3": _Kind(StoragePlugin.SQLITE3, 8, "humble"),
+        "mcap": _StorageSettings(StoragePlugin.MCAP, 9, "jazzy"),
+        "sqlite3": _StorageSettings(StoragePlugin.SQLITE3, 8, "humble"),
     }
 )
 
@@ -65,24 +65,24 @@ class BagError(OSError):
     """A bag that cannot be read or written; the message says which and why."""
 
 
-class _Tap(Subscription[Any]):
-    """Hands on each message at the moment at which it is said."""
+class _RecordingSubscription(Subscription[Any]):
+    """A subscription that calls back at once, with the time at which the message was published."""
 
     def __init__(
         self, node: Node, cls: type[Message], topic: str, qos: QoSProfile, hear: Callable[[Any], None]
     ) -> None:
-        self._hear = hear
+        self._on_message = hear
         group = MutuallyExclusiveCallbackGroup()
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
         super().__init__(node.handle, cls, topic, hear, group, qos, quiet)
         node.handle.subscriptions.append(self)
 
     def enqueue(self, msg: Any) -> None:
-        self._hear(msg)
+        self._on_message(msg)
 
 
 class BagRecorder:
-    """Writes what is said in a graph into a new bag, until it is closed. A guest of whoever ticks.
+    """Records the messages of a graph in a new bag until it is closed. A participant of the lock-step.
 
     ``topics`` None: all but hidden ones, also those that come later. The bag appears under its name when it is
     complete; until then, and after a kill, what there is of it lies in ``.NAME.part`` beside it.
@@ -101,18 +101,18 @@ class BagRecorder:
         self._graph = graph
         self._folder = folder.absolute()
         self._wanted = None if topics is None else frozenset(topics)
-        self._kind = _KINDS[storage]
+        self._kind = _STORAGE_SETTINGS[storage]
         self._serializer = Serializer(self._kind.distro)
         self._connections: dict[str, Connection] = {}
         self._version = -1
         self._node = node
         self.failure: str | None = None
-        """Why nothing more is written; None while all is well."""
+        """Why writing has stopped; None while it works."""
         self.count = 0
-        """Messages so far."""
+        """Number of messages written."""
         if self._folder.exists():
             raise BagError(f"{folder} is there already. Name another folder, or remove it.")
-        self._part = _free(self._folder.parent, f".{self._folder.name}.part")
+        self._part = _unused_path(self._folder.parent, f".{self._folder.name}.part")
         self._writer = Writer(
             self._part / self._folder.name, version=self._kind.version, storage_plugin=self._kind.plugin
         )
@@ -134,16 +134,16 @@ class BagRecorder:
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """Those it listens to."""
+        """The topics it records."""
         return tuple(self._connections)
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Topics it was to listen to and that nobody publishes yet."""
+        """Requested topics that no node publishes yet."""
         return tuple(sorted((self._wanted or frozenset()) - self._connections.keys()))
 
     def exchange(self) -> bool:
-        """Listens to topics that are new since the last time. Never has anything to say."""
+        """Subscribes to new topics. Returns False, since it sends nothing."""
         directory = self._graph.directory
         if directory.version != self._version:
             for name, types in directory.topic_names_and_types():
@@ -151,12 +151,12 @@ class BagRecorder:
                     not topic_or_service_is_hidden(name) if self._wanted is None else name in self._wanted
                 )
                 if chosen and name not in self._connections and len(types) == 1:
-                    self._listen(name, types[0])
+                    self._subscribe(name, types[0])
             self._version = directory.version
         return False
 
     def close(self) -> None:
-        """Completes the bag. May be called twice. Raises BagError when its end cannot be written."""
+        """Completes the bag. May be called twice. Raises BagError if writing fails."""
         node, self._node = self._node, None
         if node is None:
             return
@@ -173,7 +173,7 @@ class BagRecorder:
         if self.failure is not None:
             raise BagError(self.failure)
 
-    def _listen(self, topic: str, type_of: str) -> None:
+    def _subscribe(self, topic: str, type_of: str) -> None:
         assert self._node is not None
         cls = find_message(type_of)
         publishers = list(self._graph.directory.publishers(topic))
@@ -182,17 +182,17 @@ class BagRecorder:
             type_of,
             msgdef=self._serializer.definition(cls),
             rihs01=self._serializer.type_hash(cls),
-            offered_qos_profiles=[_offered(publisher.qos_profile) for publisher in publishers],
+            offered_qos_profiles=[_rosbags_qos(publisher.qos_profile) for publisher in publishers],
         )
-        _Tap(
+        _RecordingSubscription(
             self._node,
             cls,
             topic,
             self._graph.directory.matching_qos(topic),
-            lambda msg: self._keep(connection, msg),
+            lambda msg: self._write(connection, msg),
         )
 
-    def _keep(self, connection: Connection, message: Message) -> None:
+    def _write(self, connection: Connection, message: Message) -> None:
         if self.failure is None:
             try:
                 self._writer.write(connection, self._graph.now_ns, self._serializer.serialize(message))
@@ -202,13 +202,13 @@ class BagRecorder:
                 self.count += 1
 
 
-def _free(folder: Path, name: str) -> Path:
-    """A path that nothing is at: what a killed recording left is not touched."""
+def _unused_path(folder: Path, name: str) -> Path:
+    """A path that does not exist, so that the rest of a killed recording is not overwritten."""
     numbered = (f"{name}{number}" for number in count(2))
     return next(folder / each for each in chain([name], numbered) if not (folder / each).exists())
 
 
-def _offered(profile: QoSProfile) -> Qos:
+def _rosbags_qos(profile: QoSProfile) -> Qos:
     return Qos(
         QosHistory(int(profile.history)),
         profile.depth,
@@ -224,7 +224,7 @@ def _offered(profile: QoSProfile) -> Qos:
 
 def _time(duration: Duration) -> QosTime:
     if duration.nanoseconds == 0:
-        return FOR_EVER
+        return INFINITE_TIME
     return QosTime(*divmod(duration.nanoseconds, 1_000_000_000))
 
 
@@ -235,29 +235,29 @@ class BagTopic:
     count: int
     serialization: str
     qos: QoSProfile
-    """To publish it with: what was offered first."""
+    """The profile to publish it with: the first one offered."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bag:
-    """What a bag's own summary says of it."""
+    """The summary of a bag."""
 
     folder: Path
     files: tuple[str, ...]
     size: int
-    """Bytes of the files."""
+    """Size of the files [bytes]."""
     storage: str
     distro: str
     start_ns: int
     duration_ns: int
     count: int
     topics: tuple[BagTopic, ...]
-    """By name."""
+    """Sorted by name."""
 
 
 def read_bag(folder: Path) -> Bag:
-    """The summary of a bag: a folder with ``metadata.yaml``. Raises BagError."""
-    with _opened(folder) as reader:
+    """Reads the summary of a bag, a folder with ``metadata.yaml``. Raises BagError."""
+    with _open_reader(folder) as reader:
         files = tuple(sorted(path.name for path in folder.iterdir() if path.suffix in (".mcap", ".db3")))
         return Bag(
             folder,
@@ -277,16 +277,16 @@ def read_bag(folder: Path) -> Bag:
 def read_messages(
     folder: Path, topics: Collection[str] | None = None, *, skipped: Callable[[str, str], None] | None = None
 ) -> Iterator[tuple[int, str, Message]]:
-    """``(time_ns, topic, message)`` in order of time. Raises BagError.
+    """Yields ``(time_ns, topic, message)`` in order of time. Raises BagError.
 
     Topics of a type that the kit does not have are left out; ``skipped`` is told their name and type.
     """
     serializers = [Serializer("humble"), Serializer("jazzy")]
-    with _opened(folder) as reader:
+    with _open_reader(folder) as reader:
         found: dict[int, tuple[Serializer, type[Message]]] = {}
         for connection in reader.connections:
             if topics is None or connection.topic in topics:
-                way = _way_to_read(connection, serializers)
+                way = _serializer_for(connection, serializers)
                 if way is not None:
                     found[connection.id] = way
                 elif skipped is not None:
@@ -302,10 +302,10 @@ def read_messages(
             raise BagError(f"{folder}: a damaged bag: {problem}") from None
 
 
-def _way_to_read(
+def _serializer_for(
     connection: Connection, serializers: Sequence[Serializer]
 ) -> tuple[Serializer, type[Message]] | None:
-    """Whose types the messages of a topic are; None if the kit does not have them."""
+    """The serializer and class for the messages of a topic; None if the kit does not have the type."""
     try:
         cls = find_message(connection.msgtype)
     except UnknownInterface:
@@ -316,7 +316,7 @@ def _way_to_read(
 
 
 @contextmanager
-def _opened(folder: Path) -> Iterator[Reader]:
+def _open_reader(folder: Path) -> Iterator[Reader]:
     if not (folder / "metadata.yaml").is_file():
         raise BagError(f"{folder}: not a bag: a bag is a folder with a metadata.yaml in it.")
     try:

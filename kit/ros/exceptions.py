@@ -1,4 +1,4 @@
-"""The errors of the conversation: rclpy's own, under its names, and those that explain what ROS 2 leaves unsaid."""
+"""Exceptions: those of rclpy under its names, and a few that explain what fails silently in ROS 2."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ if TYPE_CHECKING:
 
 
 class NotInitializedException(Exception):
-    """Something was asked of a context before ``rclpy.init()`` or after ``rclpy.shutdown()``."""
+    """A context was used before ``rclpy.init()`` or after ``rclpy.shutdown()``."""
 
     def __init__(self, *what: object) -> None:
         super().__init__("rclpy.init() has not been called", *what)
 
 
 class NoTypeSupportImportedException(Exception):
-    """A message class was needed, and this is none."""
+    """A message class was expected."""
 
 
 class InvalidHandle(Exception):
@@ -36,7 +36,7 @@ class TimerCancelledError(Exception):
 
 
 class TimeoutException(Exception):
-    """The time given for a wait is over."""
+    """A wait has reached its time-out."""
 
 
 class ShutdownException(Exception):
@@ -51,11 +51,11 @@ class ExternalShutdownException(Exception):
 
 
 class ConditionReachedException(Exception):
-    """The future that was waited for is done."""
+    """The awaited future is done."""
 
 
 class WouldDeadlock(RuntimeError):
-    """A call that would wait for ever: on a robot it hangs silently; here it says why."""
+    """A call that would never return: on a robot it hangs silently; here the message says why."""
 
 
 class NodeFailure(RuntimeError):
@@ -69,7 +69,7 @@ class NodeFailure(RuntimeError):
 
 
 class NameValidationException(Exception):
-    """A name that ROS 2 does not allow; ``invalid_index`` is where it goes wrong."""
+    """A name that ROS 2 does not allow; ``invalid_index`` is the position of the error."""
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {' ' * invalid_index}^")
@@ -100,11 +100,11 @@ class InvalidServiceNameException(NameValidationException):
 
 
 class InvalidRosArguments(ValueError):
-    """What follows ``--ros-args`` makes no sense; the message says which part and what would."""
+    """An argument after ``--ros-args`` is wrong; the message names it and shows the right form."""
 
 
 class ParameterException(Exception):
-    """Something is wrong with parameters."""
+    """Base class of parameter errors."""
 
     def __init__(self, message: str, parameters: str | Iterable[str]) -> None:
         names = [parameters] if isinstance(parameters, str) else list(parameters)
@@ -132,7 +132,7 @@ class ParameterImmutableException(ParameterException):
 
 
 class ParameterUninitializedException(ParameterException):
-    """A parameter was declared with a type only, and nobody gave it a value."""
+    """A parameter was declared with a type only, and has no value."""
 
     def __init__(self, parameters: str | Iterable[str]) -> None:
         super().__init__("The parameter is not initialized", parameters)
@@ -163,4 +163,4 @@ class InvalidParameterValueException(ParameterException):
 
 
 class NodeNameNonExistentError(RuntimeError):
-    """Something was asked about a node that is not in the graph."""
+    """No node of this name is in the graph."""

@@ -1,4 +1,4 @@
-"""Log lines: loggers, their levels and filters, and the sink they end in."""
+"""Loggers: levels, filters, and the sink that receives the log lines."""
 
 from __future__ import annotations
 
@@ -28,40 +28,40 @@ class LogRecord:
     """One line of a log."""
 
     time_ns: int
-    """The graph's time: in a simulation, simulation time."""
+    """The time of the graph; simulated in a simulation."""
     severity: LoggingSeverity
     name: str
-    """The logger's: its node's full name with dots."""
+    """The name of the logger: the full name of its node with dots."""
     text: str
     file: str
     function: str
     line: int
 
     def __str__(self) -> str:
-        """As ROS 2 prints it: ``[INFO] [12.340000000] [node]: text``."""
+        """The line as ROS 2 prints it: ``[INFO] [12.340000000] [node]: text``."""
         seconds, nanoseconds = divmod(self.time_ns, S_TO_NS)
         return f"[{self.severity.name}] [{seconds}.{nanoseconds:09d}] [{self.name}]: {self.text}"
 
 
 LogSink = Callable[[LogRecord], None]
-"""Where log lines go. Called by whichever thread logs."""
+"""A function that receives log lines, called in the thread that logs."""
 
 
 def log_to_stderr(record: LogRecord) -> None:
-    """The sink of a program that stands alone."""
+    """The sink of a program that runs without the kit."""
     sys.stderr.write(f"{record}\n")
     sys.stderr.flush()
 
 
 @dataclass
 class Log:
-    """The loggers' common ground: levels by logger name, the clock and the sink."""
+    """The state that the loggers of a graph share: levels by logger name, clock and sink."""
 
     now_ns: Callable[[], int]
     sink: LogSink = log_to_stderr
     levels: dict[str, LoggingSeverity] = field(default_factory=dict)
     level: LoggingSeverity = LoggingSeverity.INFO
-    """Of loggers for which, and for whose ancestors, none is set."""
+    """The level of loggers without a level of their own or of an ancestor."""
 
     def effective_level(self, name: str) -> LoggingSeverity:
         while name:
@@ -71,14 +71,14 @@ class Log:
         return self.level
 
     def warning(self, name: str, text: str) -> None:
-        """A warning of the library's own, beside any logger."""
+        """Logs a warning of the library itself."""
         if self.effective_level(name) <= LoggingSeverity.WARN:
             self.sink(LogRecord(self.now_ns(), LoggingSeverity.WARN, name, text, "", "", 0))
 
 
 @dataclass(slots=True)
-class _Site:
-    """What one call site has logged so far."""
+class _CallSite:
+    """How often, and when last, one line of code has logged."""
 
     count: int = 0
     last_ns: int | None = None
@@ -100,17 +100,17 @@ class RcutilsLogger:
         self.name = name
         self._log = log
         self.publish = publish
-        """A second place for its lines: the node's ``/rosout``."""
-        self._sites: dict[tuple[str, int], _Site] = {}
+        """A second receiver of its lines: the node's ``/rosout`` publisher."""
+        self._sites: dict[tuple[str, int], _CallSite] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """The logger ``parent.name``; it obeys its parent's level until it is given its own."""
+        """The logger ``parent.name``; it has its parent's level until it is given its own."""
         if not name:
             raise ValueError("Child logger name must not be empty.")
         return RcutilsLogger(f"{self.name}.{name}" if self.name else name, self._log, self.publish)
 
     def set_level(self, level: LoggingSeverity | int) -> None:
-        """Lines below this level are dropped. UNSET: as the parent logger."""
+        """Drops lines below this level. UNSET: the parent's level holds."""
         severity = LoggingSeverity(level)
         if severity is LoggingSeverity.UNSET:
             self._log.levels.pop(self.name, None)
@@ -124,7 +124,7 @@ class RcutilsLogger:
         return severity >= self.get_effective_level()
 
     def log(self, message: str, severity: LoggingSeverity | int, **kwargs: Any) -> bool:
-        """Logs a line if level and filters let it through, and says whether they did."""
+        """Logs a line if level and filters admit it; returns whether they did."""
         return self._write(message, LoggingSeverity(severity), kwargs)
 
     def debug(self, message: str, **kwargs: Any) -> bool:
@@ -168,7 +168,7 @@ class RcutilsLogger:
         throttle_duration_sec: float | None = None,
         throttle_time_source_type: TimeSource | None = None,
     ) -> bool:
-        site = self._sites.setdefault(place, _Site())
+        site = self._sites.setdefault(place, _CallSite())
         site.count += 1
         if once and site.count > 1:
             return False
@@ -187,7 +187,7 @@ class RcutilsLogger:
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """The severity called ``debug``, ``INFO``, ... Raises RuntimeError if there is none."""
+    """The severity of this name: ``debug``, ``INFO``, ... Raises RuntimeError if there is none."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:

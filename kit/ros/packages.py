@@ -1,4 +1,4 @@
-"""ROS 2 packages as they lie on disk, before any build: what they are called, what programs they have.
+"""Finds and reads ROS 2 packages on disk without building them: their names, programs and launch files.
 
 Nothing of a package is run: its ``setup.py`` is read as a syntax tree. A package's *share* folder is its own
 folder here, so that ``world/x.yaml`` lies where an installed package would have it.
@@ -16,23 +16,23 @@ from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
 
-DEEPEST: Final = 3
-"""Folders below a search folder in which packages are looked for, as in a workspace: ``src/group/package``."""
+MAX_DEPTH: Final = 3
+"""Depth to which search folders are searched for packages, as in a workspace: ``src/group/package``."""
 
 SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
-"""Environment variable with the folders in which programs look for packages."""
+"""Environment variable with the folders in which packages are searched."""
 
-IGNORED: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
-"""A folder with such a file is left out, as by colcon."""
+IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
+"""Folders with one of these files are skipped, as by colcon."""
 
 
 class PackageError(Exception):
-    """A package that cannot be read or is not there; the message names file, line and what to do."""
+    """A package cannot be read or found; the message names the file, the line and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Executable:
-    """A program of a package: what ``ros2 run PACKAGE NAME`` starts."""
+    """A program of a package, started by ``ros2 run PACKAGE NAME``."""
 
     name: str
     module: str
@@ -48,16 +48,16 @@ class Package:
     build_type: str = ""
     executables: tuple[Executable, ...] = ()
     source: Path | None = None
-    """The folder that its modules are imported from, if it has programs in Python."""
+    """The folder its modules are imported from; None if it has no programs in Python."""
 
     @property
     def launch_files(self) -> tuple[Path, ...]:
-        """Python launch files, by name, at its top or in its ``launch`` folder."""
+        """Python launch files in its folder or in ``launch``, sorted by name."""
         found = [*self.folder.glob("*launch.py"), *self.folder.glob("launch/**/*launch.py")]
         return tuple(sorted(found, key=lambda path: (path.name, path)))
 
     def executable(self, name: str) -> Executable:
-        """Raises PackageError, naming those there are."""
+        """The program of this name. Raises PackageError, which lists the existing ones."""
         for each in self.executables:
             if each.name == name:
                 return each
@@ -65,7 +65,7 @@ class Package:
         raise PackageError(f"package '{self.name}' has no executable '{name}'; it has: {there}")
 
     def file_of(self, executable: Executable) -> Path:
-        """The file in which a program's module stands. Raises PackageError."""
+        """The file of a program's module. Raises PackageError."""
         source = self.source or self.folder
         base = source.joinpath(*executable.module.split("."))
         for path in (base.with_suffix(".py"), base / "__init__.py"):
@@ -78,7 +78,7 @@ class Package:
 
 
 def read_package(folder: Path) -> Package:
-    """The package in a folder with a ``package.xml``. Raises PackageError."""
+    """Reads the package in a folder with a ``package.xml``. Raises PackageError."""
     file = folder / "package.xml"
     try:
         root = ElementTree.fromstring(file.read_bytes())
@@ -105,10 +105,10 @@ def read_package(folder: Path) -> Package:
 
 
 def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
-    """Names and folders of the packages in and below some folders; the first of a name counts."""
+    """The folders of the packages in and below some folders, by name; the first of a name counts."""
     found: dict[str, Path] = {}
     for start in folders:
-        for folder in _package_folders(start, DEEPEST):
+        for folder in _package_folders(start, MAX_DEPTH):
             try:
                 name = (
                     ElementTree.fromstring((folder / "package.xml").read_bytes()).findtext("name") or ""
@@ -121,12 +121,12 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
 
 
 def search_folders() -> list[Path]:
-    """Where this program looks for packages."""
+    """The folders in which this program searches for packages."""
     return [Path(entry) for entry in os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep) if entry]
 
 
 def share_folder(name: str) -> Path:
-    """The share folder of a package, as a program asks for it. Raises PackageError."""
+    """The share folder of a package: its own folder. Raises PackageError."""
     found = find_packages(search_folders())
     if name in found:
         return found[name]
@@ -135,7 +135,7 @@ def share_folder(name: str) -> Path:
 
 
 def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
-    if any((folder / name).exists() for name in IGNORED):
+    if any((folder / name).exists() for name in IGNORE_MARKERS):
         return
     if (folder / "package.xml").is_file():
         yield folder
@@ -154,7 +154,7 @@ def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
 
 
 def _programs(folder: Path) -> tuple[tuple[Executable, ...], Path | None]:
-    """A package's programs in Python, and where their modules lie."""
+    """The Python programs of a package, and the folder of their modules."""
     lines: list[str] = []
     source: Path | None = None
     setup = folder / "setup.py"
@@ -208,7 +208,7 @@ def _from_project(file: Path) -> list[str]:
 
 
 def _setup_arguments(file: Path) -> dict[str, Any]:
-    """The keyword arguments of the file's call of ``setup`` that are plain values."""
+    """The keyword arguments of the file's ``setup`` call that are plain values."""
     try:
         tree = ast.parse(file.read_bytes(), str(file))
     except (OSError, ValueError) as problem:
@@ -221,13 +221,13 @@ def _setup_arguments(file: Path) -> dict[str, Any]:
         if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
             try:
                 names[statement.targets[0].id] = _value(statement.value, names)
-            except _NotPlain:
+            except _NotConstant:
                 continue
         for call in ast.walk(statement):
             if isinstance(call, ast.Call) and _called(call) == "setup":
                 for keyword in call.keywords:
                     if keyword.arg in ("entry_points", "package_dir"):
-                        arguments[keyword.arg] = _plain(keyword.value, names, file)
+                        arguments[keyword.arg] = _constant(keyword.value, names, file)
     return arguments
 
 
@@ -235,17 +235,17 @@ def _called(call: ast.Call) -> str:
     return call.func.id if isinstance(call.func, ast.Name) else getattr(call.func, "attr", "")
 
 
-class _NotPlain(Exception):
-    """An expression that only running the file could evaluate."""
+class _NotConstant(Exception):
+    """An expression that cannot be evaluated without running the file."""
 
     def __init__(self, node: ast.AST) -> None:
         self.line = getattr(node, "lineno", 0)
 
 
-def _plain(node: ast.expr, names: Mapping[str, Any], file: Path) -> Any:
+def _constant(node: ast.expr, names: Mapping[str, Any], file: Path) -> Any:
     try:
         return _value(node, names)
-    except _NotPlain as problem:
+    except _NotConstant as problem:
         raise PackageError(
             f"{file}:{problem.line}: this is computed when the file runs, which the kit does not do; "
             "write the entry points as plain texts"
@@ -253,7 +253,7 @@ def _plain(node: ast.expr, names: Mapping[str, Any], file: Path) -> Any:
 
 
 def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    """What an expression of plain values, names of such, and texts put together from them is."""
+    """Evaluates an expression of literals, names of literals, and texts formatted from them."""
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.Name) and node.id in names:
@@ -272,7 +272,7 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
             return left + right
     if isinstance(node, ast.JoinedStr):
         return "".join(_piece(part, names) for part in node.values)
-    raise _NotPlain(node)
+    raise _NotConstant(node)
 
 
 def _piece(node: ast.expr, names: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Frames and the transforms between them: the broadcasters, buffer and listener of ROS 2's ``tf2_ros``."""
+"""Transforms between frames: the broadcasters, buffer and listener of ROS 2's ``tf2_ros``."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
 _DYNAMIC = QoSProfile(depth=100)
 _STATIC = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _NOW = Time(clock_type=ClockType.ROS_TIME)
-_AT_ONCE = Duration()
+_NO_WAIT = Duration()
 
 
 class TransformException(Exception):
-    """A transform cannot be had."""
+    """Base class: a transform is not available."""
 
 
 class LookupException(TransformException):
-    """A frame that nobody has ever mentioned."""
+    """A frame is not known."""
 
 
 class ConnectivityException(TransformException):
-    """Two frames that are not in one tree."""
+    """Two frames are not in the same tree."""
 
 
 class ExtrapolationException(TransformException):
-    """A time before the oldest or after the newest known transform."""
+    """The time is before the oldest or after the newest known transform."""
 
 
 class InvalidArgumentException(TransformException):
-    """An empty frame name, or one that begins with a slash."""
+    """A frame name is empty or begins with a slash."""
 
 
 class Rigid:
@@ -65,7 +65,7 @@ class Rigid:
         return Transform(translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw))
 
     def then(self, inner: Rigid) -> Rigid:
-        """``inner``, given in this frame, seen from the frame that this one is given in."""
+        """Composes two transforms: ``inner`` is given in this frame, the result in this frame's parent."""
         x, y, z = self.translation
         dx, dy, dz = rotate_vector(self.rotation, inner.translation)
         return Rigid((x + dx, y + dy, z + dz), quaternion_multiply(self.rotation, inner.rotation))
@@ -76,38 +76,38 @@ class Rigid:
         return Rigid((-x, -y, -z), back)
 
     def towards(self, other: Rigid, fraction: float) -> Rigid:
-        """The transform at ``fraction`` of the way to the other one."""
+        """Interpolates between this transform (0) and the other one (1)."""
         x, y, z = (a + (b - a) * fraction for a, b in zip(self.translation, other.translation, strict=True))
         return Rigid((x, y, z), quaternion_slerp(self.rotation, other.rotation, fraction))
 
 
 class _Frame:
-    """What is known of a frame: its parent, and where it was in it when."""
+    """A frame: its parent, and its transforms in the parent by time."""
 
     def __init__(self, parent: str, *, is_static: bool) -> None:
         self.parent = parent
         self.is_static = is_static
         self.times: list[int] = []
-        self.places: list[Rigid] = []
+        self.transforms: list[Rigid] = []
 
     def add(self, time_ns: int, place: Rigid, keep_ns: int) -> None:
         if self.is_static:
-            self.times, self.places = [time_ns], [place]
+            self.times, self.transforms = [time_ns], [place]
             return
         index = bisect_right(self.times, time_ns)
         if index and self.times[index - 1] == time_ns:
-            self.places[index - 1] = place
+            self.transforms[index - 1] = place
             return
         self.times.insert(index, time_ns)
-        self.places.insert(index, place)
+        self.transforms.insert(index, place)
         old = bisect_right(self.times, self.times[-1] - keep_ns - 1)
-        del self.times[:old], self.places[:old]
+        del self.times[:old], self.transforms[:old]
 
     def at(self, time_ns: int, name: str) -> Rigid:
-        """Where it was; between two known times, on the way. Raises ExtrapolationException."""
+        """Its transform at a time, interpolated between known times. Raises ExtrapolationException."""
         times = self.times
         if self.is_static:
-            return self.places[0]
+            return self.transforms[0]
         if not times[0] <= time_ns <= times[-1]:
             when, edge = ("past", times[0]) if time_ns < times[0] else ("future", times[-1])
             raise ExtrapolationException(
@@ -116,10 +116,10 @@ class _Frame:
             )
         index = bisect_right(times, time_ns)
         if times[index - 1] == time_ns:
-            return self.places[index - 1]
+            return self.transforms[index - 1]
         before, after = times[index - 1], times[index]
         fraction = (time_ns - before) / (after - before)
-        return self.places[index - 1].towards(self.places[index], fraction)
+        return self.transforms[index - 1].towards(self.transforms[index], fraction)
 
 
 class Buffer:
@@ -131,21 +131,21 @@ class Buffer:
         self._frames: dict[str, _Frame] = {}
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Notes where ``child_frame_id`` is in ``header.frame_id``. Raises InvalidArgumentException."""
-        self._note(transform, is_static=False)
+        """Adds the transform of ``child_frame_id`` in ``header.frame_id``. Raises InvalidArgumentException."""
+        self._add(transform, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """As ``set_transform``, for all times."""
-        self._note(transform, is_static=True)
+        """Adds a transform that holds for all times."""
+        self._add(transform, is_static=True)
 
     def clear(self) -> None:
-        """Forgets everything."""
+        """Removes all frames."""
         self._frames.clear()
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time = _NOW, timeout: Duration = _AT_ONCE
+        self, target_frame: str, source_frame: str, time: Time = _NOW, timeout: Duration = _NO_WAIT
     ) -> TransformStamped:
-        """Where ``source_frame`` is in ``target_frame``; time zero means the newest that is known of both.
+        """The transform of ``source_frame`` in ``target_frame``; time zero means the newest common time.
 
         Waits up to ``timeout`` for it, unless in a callback that the transforms would have to wait for. Raises
         LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException.
@@ -159,10 +159,10 @@ class Buffer:
         target_frame: str,
         source_frame: str,
         time: Time = _NOW,
-        timeout: Duration = _AT_ONCE,
+        timeout: Duration = _NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """Whether ``lookup_transform`` would succeed; with ``return_debug_tuple`` also why not."""
+        """True if ``lookup_transform`` would succeed; with ``return_debug_tuple`` also the reason if not."""
         if timeout.nanoseconds > 0:
             self._wait_for(target_frame, source_frame, time, timeout)
         try:
@@ -176,7 +176,7 @@ class Buffer:
         lines = [f"{name}:\n  parent: '{frame.parent}'\n" for name, frame in sorted(self._frames.items())]
         return "".join(lines) or "{}"
 
-    def _note(self, transform: TransformStamped, *, is_static: bool) -> None:
+    def _add(self, transform: TransformStamped, *, is_static: bool) -> None:
         child, parent = transform.child_frame_id.lstrip("/"), transform.header.frame_id.lstrip("/")
         if not child or not parent or child == parent:
             raise InvalidArgumentException(
@@ -213,14 +213,14 @@ class Buffer:
         return result
 
     def _chain(self, path: list[str], time_ns: int) -> Rigid:
-        """Where the first frame of a path is in the parent of its last."""
+        """The transform of the first frame of a path in the parent of its last."""
         place = Rigid()
         for name in path:
             place = self._frames[name].at(time_ns, name).then(place)
         return place
 
     def _paths(self, target: str, source: str) -> tuple[list[str], list[str]]:
-        """The frames on the ways from target and source up to where the ways meet, that one left out."""
+        """The frames from target and from source up to their common ancestor, without it."""
         for name in (target, source):
             if not name or name.startswith("/"):
                 raise InvalidArgumentException(
@@ -251,7 +251,7 @@ class Buffer:
 
 
 class TransformListener:
-    """Fills a buffer with what ``/tf`` and ``/tf_static`` say, while the node is spun."""
+    """Fills a buffer with the transforms of ``/tf`` and ``/tf_static`` while the node is spun."""
 
     def __init__(
         self,
@@ -278,7 +278,7 @@ class TransformListener:
         )
 
     def unregister(self) -> None:
-        """Stops listening."""
+        """Destroys the subscriptions."""
         self.node.destroy_subscription(self.tf_sub)
         self.node.destroy_subscription(self.tf_static_sub)
 
@@ -292,31 +292,31 @@ class TransformListener:
 
 
 class TransformBroadcaster:
-    """Says on ``/tf`` where frames are now."""
+    """Publishes transforms on ``/tf``."""
 
     def __init__(self, node: Node, qos: QoSProfile | int = _DYNAMIC) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", qos)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - ROS's name
-        """One transform, or several at once."""
-        self.pub_tf.publish(TFMessage(transforms=_listed(transform)))
+        """Publishes one transform, or a list of them."""
+        self.pub_tf.publish(TFMessage(transforms=_as_list(transform)))
 
 
 class StaticTransformBroadcaster:
-    """Says on ``/tf_static`` where frames are for ever, also to those who come later."""
+    """Publishes transforms that hold for all times on ``/tf_static``, also to later subscriptions."""
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf_static", _STATIC if qos is None else qos)
         self.net_message = TFMessage()
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - ROS's name
-        """One transform, or several; those said before stay, unless they concern the same frame."""
-        new = _listed(transform)
+        """Publishes one transform, or a list of them; those of other frames published before stay valid."""
+        new = _as_list(transform)
         children = {entry.child_frame_id for entry in new}
         kept = [entry for entry in self.net_message.transforms if entry.child_frame_id not in children]
         self.net_message.transforms = kept + new
         self.pub_tf.publish(self.net_message)
 
 
-def _listed(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
+def _as_list(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
     return [transform] if isinstance(transform, TransformStamped) else list(transform)

@@ -1,4 +1,4 @@
-"""What stands between ``--ros-args`` and ``--`` on a command line: remappings, parameters, log levels."""
+"""Parses the ROS arguments of a command line, after ``--ros-args``: remappings, parameters, log levels."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Remapping:
     match: str
     replacement: str
     node: str | None = None
-    """The only node it holds for."""
+    """The node it applies to; None: all."""
     kind: str = ""
-    """``rostopic`` or ``rosservice``: holds for topics or services only."""
+    """``rostopic`` or ``rosservice``: applies to topics or services only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +34,10 @@ class RosArguments:
     remappings: tuple[Remapping, ...] = ()
     parameters: tuple[GivenParameters, ...] = ()
     log_levels: tuple[tuple[str, LoggingSeverity], ...] = ()
-    """By logger name; the empty name is the default."""
+    """Logger names and levels; the empty name is the default level."""
 
     def followed_by(self, other: RosArguments) -> RosArguments:
-        """These, and the others where these say nothing: the first remapping that fits wins, the last parameter."""
+        """Joins two sets of arguments; these take precedence: the first matching remapping counts, the last parameter."""
         return RosArguments(
             self.remappings + other.remappings,
             other.parameters + self.parameters,
@@ -59,7 +59,7 @@ class RosArguments:
         return self._remap(name, node_name, namespace, "rosservice")
 
     def parameters_of(self, node_name: str, namespace: str) -> dict[str, Parameter]:
-        """The values given for a node; the last one given for a name counts."""
+        """The parameter values for a node; the last one given for a name counts."""
         name = full_name(node_name, namespace)
         found: dict[str, Parameter] = {}
         for entry in self.parameters:
@@ -102,7 +102,7 @@ def split_ros_arguments(args: Iterable[str]) -> tuple[list[str], list[str]]:
 
 
 def parse_ros_arguments(args: Iterable[str]) -> RosArguments:
-    """Reads the ROS part of a command line. Raises InvalidRosArguments."""
+    """Parses the ROS part of a command line. Raises InvalidRosArguments."""
     rest = iter(split_ros_arguments(args)[1])
     remappings: list[Remapping] = []
     parameters: list[GivenParameters] = []
@@ -116,9 +116,9 @@ def parse_ros_arguments(args: Iterable[str]) -> RosArguments:
             parameters += _file(_value(rest, flag))
         elif flag == "--log-level":
             levels.append(_log_level(_value(rest, flag)))
-        elif flag in _WITH_VALUE:
+        elif flag in _IGNORED_OPTIONS:
             _value(rest, flag)
-        elif flag not in _ALONE:
+        elif flag not in _IGNORED_FLAGS:
             known = "-r/--remap, -p/--param, --params-file, --log-level"
             raise InvalidRosArguments(
                 f"unknown ROS argument '{flag}'; after --ros-args there can be: {known}"
@@ -126,10 +126,10 @@ def parse_ros_arguments(args: Iterable[str]) -> RosArguments:
     return RosArguments(tuple(remappings), tuple(parameters), tuple(levels))
 
 
-_WITH_VALUE = ("-e", "--enclave", "--log-config-file", "--log-file-name")
-"""Understood by ROS 2 and without meaning here."""
+_IGNORED_OPTIONS = ("-e", "--enclave", "--log-config-file", "--log-file-name")
+"""Options of ROS 2 that have no effect here."""
 
-_ALONE = tuple(
+_IGNORED_FLAGS = tuple(
     f"--{state}-{what}-logs"
     for state in ("enable", "disable")
     for what in ("rosout", "stdout", "external-lib")
@@ -143,8 +143,8 @@ def _value(rest: Iterator[str], flag: str) -> str:
     return value
 
 
-def _halves(text: str, flag: str, shape: str) -> tuple[str | None, str, str]:
-    """``[node:]left:=right`` in its parts."""
+def _split_rule(text: str, flag: str, shape: str) -> tuple[str | None, str, str]:
+    """Splits ``[node:]left:=right``."""
     left, separator, right = text.partition(":=")
     node, colon, name = left.rpartition(":")
     if not separator or not name or (colon and not node):
@@ -158,7 +158,7 @@ def _remapping(text: str) -> Remapping:
     for scheme in ("rostopic", "rosservice"):
         if text.startswith(f"{scheme}://"):
             kind, rest = scheme, text[len(scheme) + 3 :]
-    node, match, replacement = _halves(
+    node, match, replacement = _split_rule(
         rest, "-r", "from:=to, node:from:=to, __node:=name or __ns:=/namespace"
     )
     match = {"__name": NODE_NAME}.get(match, match)
@@ -175,7 +175,7 @@ def _remapping(text: str) -> Remapping:
 def _parameter(text: str) -> GivenParameters:
     from kit.ros.parameters.parameter_files import parse_value
 
-    node, name, value = _halves(text, "-p", "name:=value or node:name:=value")
+    node, name, value = _split_rule(text, "-p", "name:=value or node:name:=value")
     return GivenParameters(f"/**/{node}" if node else "/**", (Parameter(name, value=parse_value(value)),))
 
 
@@ -194,7 +194,7 @@ def _log_level(text: str) -> tuple[str, LoggingSeverity]:
 
 
 def _matches(pattern: str, name: str) -> bool:
-    """Whether a node pattern fits: ``*`` is one part of a name, ``**`` any number of them."""
+    """True if a node pattern matches: ``*`` is one part of a name, ``**`` any number of them."""
     return _parts_match(pattern.strip("/").split("/"), name.strip("/").split("/"))
 
 

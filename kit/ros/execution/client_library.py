@@ -1,4 +1,4 @@
-"""What ``import rclpy`` offers: starting, ending, spinning."""
+"""The functions of ``rclpy`` itself: init, shutdown, spin, create_node, loggers, wait_for_message."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ M = TypeVar("M", bound=Message)
 
 
 class SignalHandlerOptions(IntFlag):
-    """Which signals end the context."""
+    """The signals that shut the context down."""
 
     NO = 0
     SIGINT = 1
@@ -36,7 +36,7 @@ class SignalHandlerOptions(IntFlag):
 
 
 class InitContextManager:
-    """What ``init`` returns: ``with rclpy.init(): ...`` shuts down at the end."""
+    """The result of ``init``: ``with rclpy.init(): ...`` shuts down at the end."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -57,7 +57,7 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Begins: nodes can be created from here on. ``args`` None means the program's command line.
+    """Initialises a context, in which nodes can be created. ``args`` None means the program's command line.
 
     A program that stands alone also gets its signals handled: Ctrl-C raises KeyboardInterrupt as ever, SIGTERM
     makes ``spin`` raise ExternalShutdownException. Raises RuntimeError the second time, InvalidRosArguments.
@@ -73,17 +73,17 @@ def init(
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """Ends: whatever waits is woken, ``ok()`` is false. RuntimeError if the program did so before."""
+    """Shuts the context down: waits end, ``ok()`` is False. RuntimeError if the program has done so before."""
     (context or get_default_context(shutting_down=True)).shutdown()
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """As ``shutdown``, without an error if it has ended already."""
+    """Shuts the context down, without an error if it has been already."""
     (context or get_default_context(shutting_down=True)).try_shutdown()
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether the context is between init and shutdown."""
+    """True between init and shutdown."""
     return (context or get_default_context()).ok()
 
 
@@ -101,7 +101,7 @@ def create_node(
     automatically_declare_parameters_from_overrides: bool = False,
     enable_logger_service: bool = False,
 ) -> Node:
-    """A plain node."""
+    """Makes a node."""
     return Node(
         node_name,
         context=context,
@@ -118,7 +118,7 @@ def create_node(
 
 
 def get_global_executor() -> Executor:
-    """The single-threaded executor of those who name none."""
+    """The single-threaded executor that is used where none is named."""
     return _executor_of(get_default_context())
 
 
@@ -131,7 +131,7 @@ def _executor_of(context: Context) -> Executor:
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:
-    """Runs the node's callbacks until the context is shut down. What a callback raises comes out."""
+    """Runs the node's callbacks until the context is shut down. Raises what a callback raises."""
     executor = executor or _executor_of(node.context)
     try:
         executor.add_node(node)
@@ -153,7 +153,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 def spin_until_future_complete(
     node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
-    """Runs the node's callbacks until the future is done or the time is over."""
+    """Runs the node's callbacks until the future is done or the time-out is reached."""
     executor = executor or _executor_of(node.context)
     try:
         executor.add_node(node)
@@ -163,12 +163,12 @@ def spin_until_future_complete(
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """A command line without what stands between ``--ros-args`` and ``--``."""
+    """The command line without its ROS arguments."""
     return split_ros_arguments(sys.argv if args is None else args)[0]
 
 
 def install_signal_handlers(context: Context, options: SignalHandlerOptions) -> None:
-    """Has signals end the context, on top of what they did before. Only in the main thread."""
+    """Makes signals shut the context down, before their previous handlers run. Only in the main thread."""
     if threading.current_thread() is not threading.main_thread():
         return
     for flag in (SignalHandlerOptions.SIGINT, SignalHandlerOptions.SIGTERM):
@@ -205,12 +205,12 @@ def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bo
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """The level set for this very logger; UNSET if none is."""
+    """The level set for this logger itself; UNSET if none is."""
     return get_default_context().graph.log.levels.get(name, LoggingSeverity.UNSET)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """The level that holds for the logger: its own, its nearest ancestor's, or the default."""
+    """The effective level: the logger's own, its nearest ancestor's, or the default."""
     return get_logger(name).get_effective_level()
 
 

@@ -1,4 +1,4 @@
-"""Contexts: between ``rclpy.init()`` and ``rclpy.shutdown()``, in which graph."""
+"""Contexts: the state between ``rclpy.init()`` and ``rclpy.shutdown()``, and the graph it belongs to."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from kit.ros.log import LoggingSeverity, LogRecord
 
 
 class Context:
-    """The frame of a program's life in a graph. Without one, ``init`` makes a graph on the system's time."""
+    """The state of a program in a graph. Without a graph, one on the system's time is made."""
 
     def __init__(self, graph: Graph | None = None) -> None:
         self._graph = graph
@@ -24,14 +24,14 @@ class Context:
         self._initialised = False
         self._ok = False
         self.ended_from_outside = False
-        """Whether it was not the program itself that ended it."""
+        """Whether something else than the program itself shut it down."""
         self.global_executor: Any = None
         """The executor of ``rclpy.spin`` calls that name none; untyped, since executors are built on contexts."""
         self._may_shut_down_late = False
         self._domain_id = 0
         self._callbacks: list[Callable[[], object]] = []
         self.arguments = RosArguments()
-        """What ``init`` was given after ``--ros-args``; holds for every node."""
+        """The ROS arguments that ``init`` was given; they apply to every node."""
 
     @property
     def graph(self) -> Graph:
@@ -46,7 +46,7 @@ class Context:
         initialize_logging: bool = True,
         domain_id: int | None = None,
     ) -> None:
-        """Begins. ``args`` None means the program's command line. RuntimeError the second time."""
+        """Initialises it. ``args`` None means the program's command line. RuntimeError the second time."""
         with self._lock:
             if self._initialised:
                 raise RuntimeError("Context.init() must only be called once")
@@ -63,30 +63,30 @@ class Context:
                 log.level = level
 
     def ok(self) -> bool:
-        """Whether it is between init and shutdown."""
+        """True between init and shutdown."""
         return self._ok
 
     def shutdown(self) -> None:
-        """Ends: everything that waits is woken. RuntimeError if the program itself did so before."""
+        """Shuts down and ends all waits. RuntimeError if the program itself has done so before."""
         if self._may_shut_down_late:
-            # The program could not know; its own shutdown comes late, not wrong.
+            # The program could not know of the shutdown from outside; its own is late, not wrong.
             self._may_shut_down_late = False
             return
-        if not self._end():
+        if not self._shut_down():
             raise RuntimeError(
                 "Context must be initialized before it can be shutdown, and shutdown only once"
             )
 
     def try_shutdown(self) -> None:
-        """Ends if it has not ended."""
-        self._end()
+        """Shuts down unless it has been shut down."""
+        self._shut_down()
 
     def shutdown_from_outside(self) -> None:
-        """Ends on behalf of a signal or of whoever runs the program, whose own shutdown may still follow."""
-        self._end(from_outside=True)
+        """Shuts down for a signal or for the process's host; the program's own shutdown may still follow."""
+        self._shut_down(from_outside=True)
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Has ``callback()`` called when it ends."""
+        """Calls ``callback()`` at shutdown."""
         if not callable(callback):
             raise TypeError(f"callback should be a callable, got {type(callback)}")
         with self._lock:
@@ -108,7 +108,7 @@ class Context:
     ) -> None:
         self.try_shutdown()
 
-    def _end(self, *, from_outside: bool = False) -> bool:
+    def _shut_down(self, *, from_outside: bool = False) -> bool:
         with self._lock:
             if not self._ok:
                 return False
@@ -121,9 +121,9 @@ class Context:
         return True
 
 
-class _Default:
-    """The context of those who name none. There is one per program, as in ROS 2, whose API has no other place
-    for it; it is the only state this package keeps outside a graph."""
+class _DefaultContext:
+    """The context that is used where none is named. There is one per program, as in ROS 2, whose API has no other
+    place for it; it is the only state this package keeps outside a graph."""
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
@@ -136,30 +136,30 @@ class _Default:
                 self.context = Context(self.graph)
             return self.context
 
-    def drop(self) -> Context:
-        """Takes the context away: whoever asks next gets a fresh one."""
+    def detach(self) -> Context:
+        """Removes the context, so that the next ``get`` makes a new one."""
         context = self.get()
         with self.lock:
             self.context = None
         return context
 
 
-_DEFAULT = _Default()
-_HOSTED: ContextVar[Context | None] = ContextVar("hosted", default=None)
+_DEFAULT = _DefaultContext()
+_OVERRIDE: ContextVar[Context | None] = ContextVar("override", default=None)
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The context of those who name none; with ``shutting_down`` for the last time."""
-    hosted = _HOSTED.get()
-    if hosted is not None:
-        return hosted
-    return _DEFAULT.drop() if shutting_down else _DEFAULT.get()
+    """The default context; with ``shutting_down`` the next call returns a new one."""
+    override = _OVERRIDE.get()
+    if override is not None:
+        return override
+    return _DEFAULT.detach() if shutting_down else _DEFAULT.get()
 
 
 def set_default_graph(graph: Graph | None) -> None:
-    """Has every default context from now on belong to this graph; None: to a graph on the system's time.
+    """Puts every default context from now on into this graph; None: into a graph on the system's time.
 
-    For whoever runs a program written for ROS 2 in its own process: call it before the program runs.
+    Called before a program written for ROS 2 runs in this process.
     """
     with _DEFAULT.lock:
         _DEFAULT.graph = graph
@@ -186,9 +186,9 @@ def log_as_kit(text: str, *, is_warning: bool = False) -> None:
 
 @contextmanager
 def default_context(context: Context) -> Iterator[None]:
-    """Makes ``context`` the default one in this block and thread: for nodes whose constructor takes none."""
-    token = _HOSTED.set(context)
+    """Makes ``context`` the default in this block and thread, for nodes whose constructor takes none."""
+    token = _OVERRIDE.set(context)
     try:
         yield
     finally:
-        _HOSTED.reset(token)
+        _OVERRIDE.reset(token)

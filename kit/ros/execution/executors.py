@@ -1,4 +1,4 @@
-"""Executors: whose thread the callbacks of which nodes run in."""
+"""Executors: they run the callbacks of nodes in the thread that spins, or in a pool of threads."""
 
 from __future__ import annotations
 
@@ -62,17 +62,17 @@ class Executor:
     """
 
     is_exclusive = True
-    """Whether a callback that waits for another one of its executor waits for ever."""
+    """Whether callbacks run one at a time, so that a callback that waits for another one never returns."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = context or get_default_context()
         self._graph = self._context.graph
         self.ready_queue = ReadyQueue(self._graph, Task, is_exclusive=self.is_exclusive)
-        """What is to be done for its nodes."""
+        """The ready callbacks and timers of its nodes."""
         self._nodes: list[SpinnableNode] = []
         self._is_shutdown = False
-        self._awake = False
-        self._spinner: int | None = None
+        self._is_woken = False
+        self._spinning_thread: int | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -88,13 +88,13 @@ class Executor:
 
     @property
     def is_spinning(self) -> bool:
-        """Whether a thread is in one of its spin methods."""
-        return self._spinner is not None
+        """True if a thread is in one of its spin methods."""
+        return self._spinning_thread is not None
 
-    # Its nodes
+    # Nodes
 
     def add_node(self, node: SpinnableNode) -> bool:
-        """Takes on the node, also from another executor. False if it has it already."""
+        """Adds a node, and removes it from its previous executor. False if it has been added already."""
         with self._graph.lock:
             if node in self._nodes:
                 return False
@@ -108,7 +108,7 @@ class Executor:
             return True
 
     def remove_node(self, node: SpinnableNode) -> None:
-        """Lets go of the node; nothing happens if it does not have it."""
+        """Removes a node; no-op if the executor does not have it."""
         with self._graph.lock:
             if node in self._nodes:
                 self._nodes.remove(node)
@@ -117,10 +117,10 @@ class Executor:
     def get_nodes(self) -> list[SpinnableNode]:
         return list(self._nodes)
 
-    # Its work
+    # Tasks
 
     def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Task[Any]:
-        """Has a function or coroutine run by this executor; the task is its future result."""
+        """Schedules a function or coroutine in this executor; the task is its future result."""
         task: Task[Any] = Task(callback, args, kwargs, executor=self)
         self.ready_queue.put(task)
         return task
@@ -130,12 +130,12 @@ class Executor:
         return Future(executor=self)
 
     def wake(self) -> None:
-        """Has a waiting spin look again."""
-        self._awake = True
+        """Wakes a waiting spin method so that it re-checks its condition."""
+        self._is_woken = True
         self._graph.notify()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stops spinning and lets go of the nodes. True: nothing goes on behind the caller's back."""
+        """Stops spinning and removes the nodes. Returns True: no callback is running in another thread."""
         self._is_shutdown = True
         self._graph.notify()
         for node in self.get_nodes():
@@ -145,45 +145,57 @@ class Executor:
     # Spinning
 
     def spin(self) -> None:
-        """Runs callbacks until the executor or the context is shut down. What a callback raises comes out.
+        """Runs callbacks until the executor or the context is shut down. Raises what a callback raises.
 
-        Raises ExternalShutdownException if somebody else than the program ends the context.
+        Raises ExternalShutdownException if something else than the program shuts the context down.
         """
         with _Spinning(self):
             while self._context.ok() and not self._is_shutdown:
-                self._turn(None)
+                self._run_one(None)
         if self._context.ended_from_outside:
             raise ExternalShutdownException
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Waits for one callback and runs it. None or negative: as long as it takes; 0: not at all."""
+        """Waits for one callback and runs it. Time-out None or negative: waits without limit; 0: does not wait."""
         with _Spinning(self):
-            self._turn(self._deadline(timeout_sec))
+            self._run_one(self._deadline(timeout_sec))
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Runs callbacks until the future is done or the time is over."""
+        """Runs callbacks until the future is done or the time-out is reached."""
         future.call_when_done(self.wake)
         with _Spinning(self):
             deadline = self._deadline(timeout_sec)
             while self._context.ok() and not future.done() and not self._is_shutdown:
-                if not self._turn(deadline, future.done) and not future.done():
+                if not self._run_one(deadline, future.done) and not future.done():
                     return
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Runs at most one callback, unless the future is done first."""
         future.call_when_done(self.wake)
         with _Spinning(self):
-            self._turn(self._deadline(timeout_sec), future.done)
+            self._run_one(self._deadline(timeout_sec), future.done)
 
     def _deadline(self, timeout_sec: float | None) -> int | None:
         if timeout_sec is None or timeout_sec < 0:
             return None
         return self._graph.now_ns + int(timeout_sec * S_TO_NS)
 
-    def _turn(self, deadline: int | None, enough: Callable[[], bool] = lambda: False) -> bool:
-        """Waits for one piece of work and does it. False if there was none until the deadline.
+    def _run_one(self, deadline: int | None, is_done: Callable[[], bool] = lambda: False) -> bool:
+        """Waits for one callback and runs it. False if none was ready until the deadline [ns].
 
-        Also ends, with true, when ``enough()``, or when woken: the caller looks again.
+        Also returns True when ``is_done()`` or after a shutdown; the caller checks which.
+
+        Invariants of the loop:
+
+        * Work comes first: neither deadline nor ``is_done`` is checked while the ready queue has something to run. So
+          a spin with a time-out of 0 runs what is ready.
+        * ``until`` is the earlier of the deadline and the next timer. A wait that ends at the timer's time goes
+          round the loop and takes the timer; only one that ends at the deadline returns False. If both are the
+          same time, the timer is ready by then, and ``wait`` returns True.
+        * ``is_changed`` is true as soon as anything happens that the code after ``wait`` or the next round reacts
+          to: new work, a timer that was added, reset or cancelled (``next_due_ns`` differs from what ``until`` was
+          computed from), ``is_done``, ``wake()``, a shutdown of executor or context.
+        * ``_is_woken`` is reset only here, after ``wait``: a ``wake()`` before the wait ends it at once.
         """
         graph, ready_queue, context = self._graph, self.ready_queue, self._context
         while True:
@@ -192,27 +204,25 @@ class Executor:
                 self._dispatch(work)
                 return True
             next_due = ready_queue.next_due_ns
-            until = (
-                deadline if next_due is None else next_due if deadline is None else min(deadline, next_due)
-            )
+            until = min((time_ns for time_ns in (deadline, next_due) if time_ns is not None), default=None)
 
-            def changed(expected: int | None = next_due) -> bool:
+            def is_changed(expected: int | None = next_due) -> bool:
                 return (
                     self._has_work()
                     or ready_queue.next_due_ns != expected
-                    or enough()
-                    or self._awake
+                    or is_done()
+                    or self._is_woken
                     or self._is_shutdown
                     or not context.ok()
                 )
 
-            something = graph.wait(changed, until, what="spinning")
-            self._awake = False
+            was_changed = graph.wait(is_changed, until, what="spinning")
+            self._is_woken = False
             if not context.ok() and context.ended_from_outside:
                 raise ExternalShutdownException
-            if not context.ok() or self._is_shutdown or enough():
+            if not context.ok() or self._is_shutdown or is_done():
                 return True
-            if not something and deadline is not None and until == deadline:
+            if not was_changed and deadline is not None and until == deadline:
                 return False
 
     def _has_work(self) -> bool:
@@ -226,7 +236,7 @@ class Executor:
 
 
 class _Spinning:
-    """Marks an executor as spun by this thread."""
+    """Context manager that marks an executor as spun by this thread; raises if it is spinning already."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
@@ -234,8 +244,8 @@ class _Spinning:
     def __enter__(self) -> None:
         executor = self._executor
         with executor._graph.lock:
-            if executor._spinner is None:
-                executor._spinner = threading.get_ident()
+            if executor._spinning_thread is None:
+                executor._spinning_thread = threading.get_ident()
                 return
         work = executor._graph.thread_state.work
         if work is not None and work[0] is executor.ready_queue:
@@ -246,7 +256,7 @@ class _Spinning:
         raise RuntimeError("Executor is already spinning")
 
     def __exit__(self, *_: object) -> None:
-        self._executor._spinner = None
+        self._executor._spinning_thread = None
 
 
 class SingleThreadedExecutor(Executor):
@@ -262,16 +272,16 @@ class MultiThreadedExecutor(Executor):
     is_exclusive = False
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
-        from concurrent.futures import ThreadPoolExecutor  # only now: few programs need it
+        from concurrent.futures import ThreadPoolExecutor  # imported here, since few programs need it
 
         super().__init__(context=context)
         count = max(2, os.cpu_count() or 2) if num_threads is None else num_threads
         self._pool = ThreadPoolExecutor(count, thread_name_prefix="ros-callback")
-        self._problems: list[BaseException] = []
+        self._exceptions: list[BaseException] = []
         self._jobs: set[Job[None]] = set()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """As ever, and waits for the callbacks that run. False if some still do after the seconds given."""
+        """Stops spinning, removes the nodes, and waits for running callbacks. False if some still run at the time-out."""
         super().shutdown(timeout_sec)
         self._pool.shutdown(wait=False, cancel_futures=True)
         if threading.current_thread().name.startswith("ros-callback"):
@@ -285,11 +295,11 @@ class MultiThreadedExecutor(Executor):
         return True
 
     def _has_work(self) -> bool:
-        return bool(self._problems) or super()._has_work()
+        return bool(self._exceptions) or super()._has_work()
 
     def _take_next(self) -> TakenWork | None:
-        if self._problems:
-            raise self._problems.pop(0)
+        if self._exceptions:
+            raise self._exceptions.pop(0)
         return super()._take_next()
 
     def _dispatch(self, work: TakenWork) -> None:
@@ -308,7 +318,7 @@ class MultiThreadedExecutor(Executor):
         with self._graph.lock:
             self._graph.running_pool_callbacks -= 1
         if not job.cancelled():
-            problem = job.exception()
-            if problem is not None:
-                self._problems.append(problem)
+            exception = job.exception()
+            if exception is not None:
+                self._exceptions.append(exception)
         self.wake()

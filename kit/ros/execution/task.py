@@ -1,4 +1,4 @@
-"""Futures and tasks: results that come later, and coroutines that wait for them."""
+"""Futures and tasks: results that are set later, and coroutines that await them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 
 class Future(Generic[T]):
-    """A result that comes later. Can be awaited in a coroutine callback."""
+    """A result that is set later. Can be awaited in a coroutine callback."""
 
     def __init__(self, *, executor: QueueOwner | None = None) -> None:
         self._executor = executor
@@ -42,14 +42,14 @@ class Future(Generic[T]):
         return self.result()
 
     def done(self) -> bool:
-        """Whether there is a result or an exception, or it was cancelled."""
+        """True if there is a result or an exception, or it was cancelled."""
         return self._done or self._cancelled
 
     def cancelled(self) -> bool:
         return self._cancelled
 
     def result(self) -> T | None:
-        """The result; None while there is none. Raises what was set by ``set_exception``."""
+        """The result; None while there is none. Raises the exception if one was set."""
         if self._exception is not None:
             raise self._exception
         return self._result
@@ -66,13 +66,13 @@ class Future(Generic[T]):
         self._finish()
 
     def cancel(self) -> None:
-        """Gives up waiting; done callbacks run. Nothing happens if it is done."""
+        """Cancels it and runs the done callbacks; no-op if it is done."""
         if not self._done:
             self._cancelled = True
             self._finish()
 
     def add_done_callback(self, callback: Callable[[Future[T]], Any]) -> None:
-        """Has ``callback(future)`` called when it is done: by its executor, or at once if it has none."""
+        """Calls ``callback(future)`` when it is done: in its executor, or at once if it has none."""
         with self._lock:
             if not self.done():
                 self._callbacks.append(callback)
@@ -80,14 +80,14 @@ class Future(Generic[T]):
         self._call(callback)
 
     def remove_done_callback(self, callback: Callable[[Future[T]], Any]) -> bool:
-        """Whether the callback was there to be removed."""
+        """Removes a done callback; True if it was registered."""
         with self._lock:
             found = callback in self._callbacks
             self._callbacks = [other for other in self._callbacks if other != callback]
         return found
 
     def call_when_done(self, waker: Callable[[], None]) -> None:
-        """Has ``waker()`` called as soon as it is done, in whatever thread that happens."""
+        """Calls ``waker()`` as soon as it is done, in the thread that sets the result."""
         with self._lock:
             if not self.done():
                 self._wakers.append(waker)
@@ -95,7 +95,7 @@ class Future(Generic[T]):
         waker()
 
     def set_owner(self, handle: ItemOwner) -> None:
-        """Has the done callbacks run where the node's callbacks run."""
+        """Runs the done callbacks where the callbacks of this node run."""
         self._handle = handle
 
     @property
@@ -125,7 +125,7 @@ class Future(Generic[T]):
 
 
 class Task(Future[T]):
-    """A function or coroutine on an ready_queue; its future result. ``executor.create_task`` makes one."""
+    """A function or coroutine in a ready queue, and its future result. ``executor.create_task`` makes one."""
 
     callback_group: CallbackGroup | None = None
 
@@ -149,7 +149,7 @@ class Task(Future[T]):
         return self._handle
 
     def continue_for(self, source: ReadyItem, ready_queue: ReadyQueue) -> None:
-        """Makes this task the rest of ``source``'s turn: that turn ends when the task is done."""
+        """Makes this task the continuation of ``source``: the turn of ``source`` ends when the task is done."""
         self._source, self._handle, self._home_queue = source, source.handle, ready_queue
 
     def take(self) -> Any:
@@ -159,7 +159,7 @@ class Task(Future[T]):
         self()
 
     def __call__(self) -> None:
-        """Runs until the end, or to the next ``await`` of something that is not done."""
+        """Runs to the end, or to the next ``await`` of something that is not done."""
         if self.done():
             return
         try:
@@ -185,7 +185,7 @@ class Task(Future[T]):
                 self._resume()
 
     def cancel(self) -> None:
-        """Stops the task where it waits; a coroutine is closed."""
+        """Cancels the task; a waiting coroutine is closed."""
         if self._coroutine is not None and not self.done():
             self._coroutine.close()
             self._finish_source_turn()
@@ -197,7 +197,7 @@ class Task(Future[T]):
             ready_queue.put(self)
 
     def _finish_source_turn(self) -> None:
-        """Ends the turn whose rest this task was."""
+        """Ends the turn that this task continues."""
         source, self._source = self._source, None
         if source is not None and self._home_queue is not None:
             self._home_queue.finish(source)

@@ -1,18 +1,18 @@
-"""The graph: all nodes of a run, the messages between them, and the time they live in.
+"""The graph: all nodes of a run, the messages between them, and their clock.
 
 A graph is driven in one of two ways.
 
-*Lock-step*: ``advance(time_ns)``, then ``run_due()``. Everything that is due on nodes that no executor spins is
-done in the calling thread, in the order in which it became ready, until nothing is left: a key that causes a
-command that causes a motion does so within one tick. Time stands still meanwhile, so a callback that waits for
-something later would wait for ever; it gets an explanation (``WouldDeadlock``) instead.
+*Lock-step*: ``advance(time_ns)``, then ``run_due()``. All due callbacks of nodes that no executor spins run in the
+calling thread, in the order in which they became ready, until none is left: a key press that causes a command that
+causes a motion does so within one tick. Time does not advance meanwhile, so a callback that waits for something later
+would never return; it gets an explanation (``WouldDeadlock``) instead.
 
 *Free-running*: executors spin in threads of their own. Every wait in the library is ``Graph.wait``. How it waits
-is the ``Waiter``'s business: without one, on a condition variable, for the system's clock or for somebody else's
-``advance``; with one, whichever thread waits first pumps, and the others wait for it.
+is up to the ``Waiter``: without one, on a condition variable, for the system's clock or for another thread's
+``advance``; with one, the first thread that waits calls the waiter, and the others wait for that thread.
 
 Messages are copied, as a network would: a publisher may change its message after ``publish``, and no subscription
-sees what another does with its copy. ``Publisher.publish_without_copy`` saves one of the copies.
+is affected by what another does with its copy. ``Publisher.publish_without_copy`` saves one of the copies.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from kit.ros.graph.ready_queue import ReadyQueue, ThreadState
 from kit.ros.log import Log, LogSink, log_to_stderr
 
 MAX_ROUNDS = 100
-"""In one ``run_due``: how often a message may lead to the next one before the rest waits for the next tick."""
+"""Rounds of callbacks in one ``run_due``; messages that are left then wait for the next tick."""
 
 MAX_CALLBACKS = 10_000
-"""In one ``run_due``, likewise."""
+"""Callbacks in one ``run_due``, likewise."""
 
 
 MAX_POLLS = 100
-"""How often a program may look, without waiting, whether there is something to do, before it waits all the same:
-``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from ever going on."""
+"""How often a program may poll without waiting at one instant before it must wait all the same: otherwise
+``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from advancing."""
 
 
 class Waiter(Protocol):
-    """How a program waits when its time and messages come from somewhere else."""
+    """Waits for a program whose time and messages come from another process."""
 
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Returns when something may have changed: time was advanced, messages were published, a shutdown.
 
-        Called in the thread that waits, without the graph's lock. ``until_ns``: when that thread wants to go
-        on at the latest; others may wait for an earlier time, so it is a hint.
+        Called in the waiting thread, without the graph's lock. ``until_ns``: the time-out of that thread; others may
+        have an earlier one, so it is a hint.
         """
 
 
@@ -80,7 +80,7 @@ class Graph:
         self.lock = threading.RLock()
         self.waiter = waiter
         self.on_failure: Callable[[NodeFailure], None] | None = None
-        """Told of failing callbacks in lock-step; without it, ``run_due`` raises."""
+        """Called when a callback fails in lock-step; without it, ``run_due`` raises."""
         self.message_listeners: tuple[MessageListener, ...] = ()
         self.thread_state = ThreadState()
         self.log = Log(lambda: self.now_ns, log_sink)
@@ -89,17 +89,17 @@ class Graph:
         self.shared_context: Any = None
         """Set by ``execution.context.context_of``; untyped, since contexts are built on graphs."""
         self.ready_queue = ReadyQueue(self, Task)
-        """The lock-step nodes'."""
+        """The callbacks of the nodes that no executor spins."""
         self._simulated_ns = start_ns
         self._system_offset_ns = time.time_ns() - time.monotonic_ns()
         self.change_count = 0
-        """Counts what may have given a waiting thread something to do."""
+        """The number of calls of ``notify``: of changes that may end a wait."""
         self.waiting_threads: dict[int, WaitingThread] = {}
-        """The waiting threads."""
+        """The threads in ``wait``, by their identifiers."""
         self.running_pool_callbacks = 0
-        """Callbacks in threads of their own."""
+        """The number of callbacks that run in the pools of MultiThreadedExecutors."""
         self.wait_started = threading.Condition(self.lock)
-        """Notified when another thread waits: for a waiter."""
+        """Notified when a further thread begins to wait; waiters use it."""
         self._changed = threading.Condition(self.lock)
         self._is_waiter_running = False
         self._time_jump_count = 0
@@ -116,12 +116,12 @@ class Graph:
 
     @property
     def now_ns(self) -> int:
-        """Now, in nanoseconds: simulated, or the system's time without its leaps."""
+        """The time now [ns]: simulated, or the system's time made monotonic."""
         now = self._simulated_ns
         return time.monotonic_ns() + self._system_offset_ns if now is None else now
 
     def advance(self, time_ns: int) -> None:
-        """Sets the simulated time. Backwards: every timer and rate starts its period anew."""
+        """Sets the simulated time. If it goes back, every timer and rate starts a new period."""
         before = self._simulated_ns
         if before is None:
             raise RuntimeError("this graph follows the system's clock; only a simulated one can be advanced")
@@ -136,10 +136,10 @@ class Graph:
     # Lock-step
 
     def run_due(self) -> int:
-        """Does everything due on nodes that no executor spins, until quiet. Returns the number of callbacks.
+        """Runs all due callbacks of nodes that no executor spins, until none is left. Returns their number.
 
-        Raises NodeFailure if a callback fails and ``on_failure`` is not set; what is left waits for the next
-        call. So does the rest of a conversation that never comes to an end, after a warning.
+        Raises NodeFailure if a callback fails and ``on_failure`` is not set; the others wait for the next call. So
+        do, after a warning, the messages of nodes that answer each other without end.
         """
         ready_queue = self.ready_queue
         self._driver_thread = threading.get_ident()
@@ -183,7 +183,7 @@ class Graph:
             )
 
     def discard_messages(self) -> None:
-        """Forgets every message, request and response that is on its way. Timers stay as they are."""
+        """Drops every queued message, request and response. Timers are not affected."""
         with self.lock:
             for handle in self.directory.nodes:
                 handle.discard_queues()
@@ -193,10 +193,10 @@ class Graph:
     def wait(
         self, ready: Callable[[], bool], until_ns: int | None = None, *, what: str = "this call"
     ) -> bool:
-        """Waits until ``ready()``; false if ``until_ns`` comes first, or if time jumps back meanwhile.
+        """Waits until ``ready()``; False if ``until_ns`` is reached first or time jumps back meanwhile.
 
         ``ready`` is called with the lock held. Raises WouldDeadlock, naming ``what``, if time and messages
-        cannot move on while the calling thread waits.
+        cannot advance while the calling thread waits.
         """
         with self.lock:
             jumps = self._time_jump_count
@@ -210,7 +210,7 @@ class Graph:
             return True
 
     def notify(self) -> None:
-        """Has everybody who waits look again."""
+        """Wakes all waiting threads so that they re-check their condition."""
         with self.lock:
             self.change_count += 1
             if self.waiting_threads:
@@ -237,7 +237,7 @@ class Graph:
             del self.waiting_threads[me]
 
     def _is_polling_too_often(self) -> bool:
-        """Whether a pumped program has looked so often at this instant that only a later one can bring anything."""
+        """True if a program with a waiter has polled so often at this instant that time must advance first."""
         now = self.now_ns
         instant, count = self._polls
         self._polls = (now, count + 1 if instant == now else 1)
@@ -258,7 +258,7 @@ class Graph:
                 f"{what} would wait for ever: this very thread is the one that advances the time"
             )
 
-    # Everybody in it
+    # Nodes and listeners
 
     @property
     def nodes(self) -> tuple[GraphNode, ...]:
@@ -266,12 +266,12 @@ class Graph:
         return tuple(handle.node for handle in self.directory.nodes)
 
     def subscription_count(self, topic: str) -> int:
-        """How many subscriptions a topic has, by its absolute name."""
+        """The number of subscriptions of a topic, by its absolute name."""
         found = self.directory.topics.get(topic)
         return len(found.subscriptions) if found is not None else 0
 
     def add_message_listener(self, listener: MessageListener) -> Callable[[], None]:
-        """Shows ``listener`` everything that is said, until the returned function is called."""
+        """Calls ``listener`` for every message, until the returned function is called."""
         with self.lock:
             self.message_listeners = (*self.message_listeners, listener)
 
@@ -284,12 +284,12 @@ class Graph:
         return stop
 
     def notify_message_listeners(self, node: GraphNode, topic: str, message: Any) -> None:
-        """Shows the watchers what ``node`` says. With the lock held."""
+        """Calls the listeners for a message of ``node``. With the lock held."""
         for listener in self.message_listeners:
             listener(self.now_ns, node, topic, message)
 
     def next_number(self) -> int:
-        """Consecutive numbers for whatever needs an order of creation."""
+        """The next of a series of numbers, which order entities by their creation."""
         with self.lock:
             self._last_number += 1
             return self._last_number

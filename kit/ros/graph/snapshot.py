@@ -1,4 +1,4 @@
-"""Who is in a graph at one instant, as plain frozen data: to draw, to list, to send elsewhere."""
+"""The state of a graph at one instant as frozen records, to draw, list or send."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ INFRASTRUCTURE_SERVICES: Final = frozenset(
         "set_parameters_atomically",
     }
 )
-"""Under its own name every node has these."""
+"""The parameter services, which every node has under its own name."""
 
 
 @dataclass(frozen=True, slots=True)
 class EndpointState:
-    """A publisher or a subscription: whose, and on what terms."""
+    """A publisher or a subscription: its node, type and quality of service."""
 
     node: str
     """The full name."""
@@ -39,7 +39,7 @@ class EndpointState:
 
 @dataclass(frozen=True, slots=True)
 class EndpointMismatch:
-    """A publisher and a subscription of one topic that do not talk."""
+    """A publisher and a subscription of one topic between which no message passes."""
 
     publisher: str
     subscription: str
@@ -57,7 +57,7 @@ class TopicState:
 
     @property
     def is_infrastructure(self) -> bool:
-        """Whether ROS needs it rather than the program."""
+        """True for topics that ROS itself uses."""
         return self.name in INFRASTRUCTURE_TOPICS
 
 
@@ -80,15 +80,15 @@ class GraphState:
     """All nodes in the order of their creation; topics and services by name."""
 
     version: int
-    """``Directory.version``: as long as it is the same, so is everything here."""
+    """``Directory.version``: two states with the same version are equal."""
     nodes: tuple[str, ...]
-    """Full names; nodes of the same name count once, as they do for everybody who asks by name."""
+    """Full names; nodes of the same name count once."""
     topics: tuple[TopicState, ...]
     services: tuple[ServiceState, ...]
 
 
 def snapshot(graph: Graph) -> GraphState:
-    """The graph as it is now; from any thread."""
+    """Takes a snapshot of the graph, from any thread."""
     with graph.lock:
         directory = graph.directory
         return GraphState(
@@ -98,8 +98,8 @@ def snapshot(graph: Graph) -> GraphState:
                 TopicState(
                     name,
                     tuple(topic.type_names),
-                    _ends(topic.publishers),
-                    _ends(topic.subscriptions),
+                    _endpoint_states(topic.publishers),
+                    _endpoint_states(topic.subscriptions),
                     tuple(_mismatches(topic.publishers, topic.subscriptions)),
                 )
                 for name, topic in sorted(directory.topics.items())
@@ -110,7 +110,7 @@ def snapshot(graph: Graph) -> GraphState:
         )
 
 
-def _ends(ends: Iterable[TopicEndpoint]) -> tuple[EndpointState, ...]:
+def _endpoint_states(ends: Iterable[TopicEndpoint]) -> tuple[EndpointState, ...]:
     return tuple(
         EndpointState(end.handle.full_name, type_name(end.msg_type), end.qos_profile) for end in ends
     )
@@ -122,9 +122,9 @@ def _mismatches(
     subscriptions = tuple(subscriptions)
     for publisher in publishers:
         for subscription in subscriptions:
-            why = describe_mismatch(publisher, subscription)
-            if why is not None:
-                yield EndpointMismatch(publisher.handle.full_name, subscription.handle.full_name, why)
+            reason = describe_mismatch(publisher, subscription)
+            if reason is not None:
+                yield EndpointMismatch(publisher.handle.full_name, subscription.handle.full_name, reason)
 
 
 def _service(graph: Graph, name: str) -> ServiceState:

@@ -1,4 +1,4 @@
-"""What is being said in a graph: who says how much on which topic, how often, and the newest message of one topic."""
+"""Counts the messages of a graph per node and topic, with their rates, and keeps the latest message of one topic."""
 
 from __future__ import annotations
 
@@ -16,38 +16,38 @@ if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
 
 RATE_WINDOW: Final = 50
-"""Messages over which a rate is taken."""
+"""Number of messages over which a rate is averaged."""
 
 SILENT_AFTER: Final = 3.0
 """A flow is silent after this many of its own periods, or after so many seconds if that is longer."""
 
 
 class MessageFlow(NamedTuple):
-    """What one node says under one name."""
+    """The messages of one node on one topic or service."""
 
     node: str
-    """Full name."""
+    """Full name of the node."""
     name: str
-    """Of the topic or service."""
+    """Name of the topic or service."""
     is_service: bool = False
     response_to: str | None = None
-    """For a service's answers: the node that had asked."""
+    """For the responses of a service: the node that sent the request."""
 
 
 @dataclass(frozen=True, slots=True)
 class FlowStats:
-    """How much was said so far."""
+    """Number and rate of the messages of a flow."""
 
     count: int
     rate: float | None
-    """Messages per second of the graph's time; None while it is silent, or too new to tell."""
+    """Messages per second of the graph's time; None while it is silent or too new."""
 
 
 @dataclass(slots=True)
 class _FlowCounter:
     count: int = 0
     times: deque[int] = field(default_factory=lambda: deque(maxlen=RATE_WINDOW))
-    """When the last messages were sent [ns]."""
+    """Times of the last messages [ns]."""
 
     def add(self, time_ns: int) -> None:
         times = self.times
@@ -67,7 +67,7 @@ class _FlowCounter:
 
 
 class TopicStats:
-    """Listens in a graph until ``stop()``. Safe to be asked from any thread."""
+    """Counts the messages of a graph until ``stop()``. May be read from any thread."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
@@ -78,19 +78,19 @@ class TopicStats:
         self.stop = graph.add_message_listener(self._count_message)
 
     def select(self, name: str | None) -> None:
-        """The topic or service whose newest message is kept from now on."""
+        """Chooses the topic or service whose latest message is kept."""
         with self.graph.lock:
             if name != self._selected:
                 self._selected, self._latest_message = name, None
 
     @property
     def latest_message(self) -> Message | None:
-        """The last message on the chosen topic since it was chosen, the last request or answer of a service: a copy,
-        which is not to be changed."""
+        """The latest message of the selected topic, request or response of the service, since it was selected: a
+        copy, not to be changed."""
         return self._latest_message
 
     def flow_stats(self) -> Mapping[MessageFlow, FlowStats]:
-        """All that was said since the beginning."""
+        """Number and rate of all flows since the beginning."""
         with self.graph.lock:
             now = self.graph.now_ns
             return MappingProxyType(
@@ -101,7 +101,7 @@ class TopicStats:
             )
 
     def _count_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
-        """With the graph's lock held, for every message there is: quick."""
+        """Called for every message with the graph's lock held, so it must be quick."""
         flow = self._flow(node.handle.full_name, name, type_name(type(message)))
         counter = self._counters.get(flow)
         if counter is None:

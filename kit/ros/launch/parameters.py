@@ -1,4 +1,4 @@
-"""Parameters that a launch file gives to nodes, as ``--ros-args`` takes them."""
+"""Converts the parameters that a launch file gives to nodes to ``--ros-args``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from kit.ros.launch.substitutions import (
 
 
 class ParameterValue:
-    """A value whose type is said, rather than found from its text."""
+    """A value with an explicit type, which is otherwise derived from its text."""
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
         self.value, self.value_type = value, value_type
@@ -55,7 +55,7 @@ class Parameter(ParameterValue):
 
 
 def arguments(context: LaunchContext, given: Iterable[Any]) -> Iterator[str]:
-    """``-p`` and ``--params-file`` for what a node's ``parameters`` list holds. LaunchError."""
+    """Yields ``-p`` and ``--params-file`` arguments for a node's ``parameters`` list. Raises LaunchError."""
     for entry in given:
         if isinstance(entry, Mapping):
             for name, value in flatten_parameters(context, entry):
@@ -76,7 +76,7 @@ def arguments(context: LaunchContext, given: Iterable[Any]) -> Iterator[str]:
 def flatten_parameters(
     context: LaunchContext, values: Mapping[Any, Any], prefix: str = ""
 ) -> Iterator[tuple[str, str]]:
-    """Names and written values of a dict of parameters, dicts in it included."""
+    """Yields names and values, as text, of a dict of parameters; nested dicts are flattened."""
     for key, value in values.items():
         name = prefix + perform_substitutions(context, key)
         if isinstance(value, Mapping):
@@ -86,7 +86,7 @@ def flatten_parameters(
 
 
 def _evaluate(context: LaunchContext, value: Any) -> Any:
-    """The value as ROS 2 finds it: texts and substitutions are read as YAML, lists of them are joined first."""
+    """Evaluates a value as ROS 2 does: texts and substitutions are read as YAML, lists of them are joined first."""
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, (str, Path, Substitution)):
@@ -108,7 +108,7 @@ def _read(text: str) -> Any:
 
 
 def to_argument_text(value: Any) -> str:
-    """A value as it must stand on a command line to be read as the same value."""
+    """The text that is parsed to this value on a command line."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, (int, float)):

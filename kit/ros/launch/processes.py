@@ -1,4 +1,4 @@
-"""The actions that start a process: ``ExecuteProcess``, and ``Node`` for a program of a package."""
+"""Launch actions that start a process: ``ExecuteProcess``, and ``Node`` for a program of a package."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ IGNORED_ARGUMENTS = frozenset(
         "respawn_max_retries", "exec_name", "sigint_sigterm_timeout",
     }
 )  # fmt: skip
-"""Options of processes that ROS 2 has and that make no difference here."""
+"""Arguments of ROS 2's actions that have no effect here."""
 
 
 class ExecuteProcess(Action):
@@ -62,7 +62,7 @@ class ExecuteProcess(Action):
         self.respawn_delay = respawn_delay
         self.on_exit = on_exit
         self.number: int | None = None
-        """Which process it has started."""
+        """The number of the process it has started."""
 
     def sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
         return () if callable(self.on_exit) else to_entities(self.on_exit)
@@ -76,7 +76,7 @@ class ExecuteProcess(Action):
         return perform_substitutions(context, self.respawn).lower() in ("true", "1")
 
     def specification(self, context: LaunchContext) -> dict[str, Any]:
-        """What is to be started, as plain data."""
+        """The process to start, as plain data."""
         command = [perform_substitutions(context, part) for part in self.cmd]
         title = Path(command[0].split()[0]).name if command and command[0] else "process"
         return {
@@ -176,14 +176,14 @@ class Node(ExecuteProcess):
 
 
 def join_namespaces(outer: str, inner: str) -> str:
-    """A namespace within another; an absolute one stands for itself."""
+    """Joins two namespaces; an absolute inner one replaces the outer."""
     if inner.startswith("/") or not outer:
         return absolute_namespace(inner)
     return f"{outer.rstrip('/')}/{inner}".rstrip("/") or "/"
 
 
 class PushRosNamespace(Action):
-    """A namespace around the nodes that follow in the group."""
+    """Puts the following nodes of the group into a namespace."""
 
     def __init__(self, namespace: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -196,7 +196,7 @@ class PushRosNamespace(Action):
 
 
 class SetParameter(Action):
-    """A parameter for all nodes that follow in the group."""
+    """Sets a parameter for all following nodes of the group."""
 
     def __init__(self, name: SomeText, value: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -208,7 +208,7 @@ class SetParameter(Action):
 
 
 class SetRemap(Action):
-    """A remapping for all nodes that follow in the group."""
+    """Sets a remapping for all following nodes of the group."""
 
     def __init__(self, src: SomeText, dst: SomeText, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)

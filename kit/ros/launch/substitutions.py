@@ -1,4 +1,4 @@
-"""Substitutions: texts that are known only when the launch file is carried out."""
+"""Substitutions: texts that are determined when the launch runs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext
 
 KIT_COMMANDS = frozenset({"ros2"})
-"""Programs that are found wherever the kit is: it has its own."""
+"""Commands that are always found, since the kit brings them."""
 
 
 class Substitution:
-    """A text to come. Subclasses say what it is in ``perform``."""
+    """A text that is determined when the launch runs, by the ``perform`` of a subclass."""
 
     def perform(self, context: LaunchContext) -> str:
         raise NotImplementedError(f"{type(self).__name__}.perform")
@@ -33,11 +33,11 @@ class Substitution:
 
 
 SomeText = str | Path | Substitution | Iterable[str | Path | Substitution]
-"""What an action takes where a text is wanted: pieces are joined without anything between them."""
+"""A text argument of an action: pieces of an iterable are joined without separator."""
 
 
 def normalize_to_substitutions(text: Any) -> list[Substitution]:
-    """The pieces of a text. TypeError for what is none."""
+    """The text as a list of substitutions. Raises TypeError for anything else."""
     if isinstance(text, Substitution):
         return [text]
     if isinstance(text, (str, Path)):
@@ -50,7 +50,7 @@ def normalize_to_substitutions(text: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, text: SomeText) -> str:
-    """The text itself, now."""
+    """Determines the text now."""
     return "".join(piece.perform(context) for piece in normalize_to_substitutions(text))
 
 
@@ -59,7 +59,7 @@ def describe_substitutions(text: SomeText) -> str:
 
 
 class TextSubstitution(Substitution):
-    """A text that is known already."""
+    """A constant text."""
 
     def __init__(self, *, text: str) -> None:
         if not isinstance(text, str):
@@ -134,7 +134,7 @@ class EnvironmentVariable(Substitution):
 
 
 class PythonExpression(Substitution):
-    """The value of a Python expression, as a text; what ``math`` has is at hand."""
+    """The value of a Python expression, as a text; the names of ``math`` can be used."""
 
     def __init__(self, expression: SomeText) -> None:
         self.expression = normalize_to_substitutions(expression)
@@ -155,7 +155,7 @@ class PythonExpression(Substitution):
 
 
 class FindExecutable(Substitution):
-    """The path of a program, found as a shell finds it."""
+    """The path of a program on PATH."""
 
     def __init__(self, *, name: SomeText) -> None:
         self.name = normalize_to_substitutions(name)

@@ -14,17 +14,17 @@ PARAMETER_SEPARATOR_STRING = "."
 
 
 class GivenParameters(NamedTuple):
-    """Values for the nodes that a pattern fits: ``/**`` any node, ``/robot/*`` all in a namespace."""
+    """Parameter values for the nodes that match a pattern: ``/**`` any node, ``/robot/*`` all in a namespace."""
 
     node: str
     parameters: tuple[Parameter, ...]
 
 
 class Parameter:
-    """A name, a type and a value; the type is found from the value if it is not given."""
+    """A name, a type and a value; the type is derived from the value if it is not given."""
 
     class Type(Enum):
-        """What a parameter's value can be."""
+        """The types of parameter values."""
 
         NOT_SET = ParameterType.PARAMETER_NOT_SET
         BOOL = ParameterType.PARAMETER_BOOL
@@ -42,7 +42,7 @@ class Parameter:
             """The type of a Python value; an empty list is a BYTE_ARRAY, as in ROS 2. TypeError if there is none."""
             if parameter_value is None:
                 return cls.NOT_SET
-            for kind, (single, _) in _KINDS.items():
+            for kind, (single, _) in _TYPES_BY_PYTHON_TYPE.items():
                 if single is not None and isinstance(parameter_value, kind):
                     return single
             if not isinstance(parameter_value, (list, tuple, array)):
@@ -50,7 +50,7 @@ class Parameter:
                     f"The given value is not one of the allowed types '{parameter_value}': a parameter can be a bool, "
                     f"an int, a float, a str or a list of these, not {type(parameter_value).__name__}"
                 )
-            for kind, (_, many) in _KINDS.items():
+            for kind, (_, many) in _TYPES_BY_PYTHON_TYPE.items():
                 if all(isinstance(entry, kind) for entry in parameter_value):
                     return many
             found = ", ".join(sorted({type(entry).__name__ for entry in parameter_value}))
@@ -59,7 +59,7 @@ class Parameter:
             )
 
         def check(self, parameter_value: Any) -> bool:
-            """Whether the value is of this type."""
+            """True if the value is of this type."""
             if self is Parameter.Type.NOT_SET:
                 return parameter_value is None
             if isinstance(parameter_value, (list, tuple)) and not parameter_value:
@@ -111,7 +111,7 @@ class Parameter:
             return ParameterValue(type=self._type.value)
         value = list(self._value) if isinstance(self._value, (tuple, array)) else self._value
         message = ParameterValue(type=self._type.value)
-        setattr(message, _FIELDS[self._type], value)
+        setattr(message, _MESSAGE_FIELDS[self._type], value)
         return message
 
     def to_parameter_msg(self) -> ParameterMessage:
@@ -124,16 +124,16 @@ class Parameter:
         )
 
 
-_KINDS: dict[type, tuple[Parameter.Type | None, Parameter.Type]] = {
+_TYPES_BY_PYTHON_TYPE: dict[type, tuple[Parameter.Type | None, Parameter.Type]] = {
     bytes: (None, Parameter.Type.BYTE_ARRAY),
     bool: (Parameter.Type.BOOL, Parameter.Type.BOOL_ARRAY),
     int: (Parameter.Type.INTEGER, Parameter.Type.INTEGER_ARRAY),
     float: (Parameter.Type.DOUBLE, Parameter.Type.DOUBLE_ARRAY),
     str: (Parameter.Type.STRING, Parameter.Type.STRING_ARRAY),
 }
-"""The types of one value and of a list of values, by Python type; the first that fits counts."""
+"""The types of one value and of a list of values, by Python type; the first match counts."""
 
-_FIELDS = {
+_MESSAGE_FIELDS = {
     Parameter.Type.BOOL: "bool_value",
     Parameter.Type.INTEGER: "integer_value",
     Parameter.Type.DOUBLE: "double_value",
@@ -144,7 +144,7 @@ _FIELDS = {
     Parameter.Type.DOUBLE_ARRAY: "double_array_value",
     Parameter.Type.STRING_ARRAY: "string_array_value",
 }
-"""Which field of a ParameterValue message holds a value of the type."""
+"""The field of a ParameterValue message that holds a value of each type."""
 
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
@@ -155,5 +155,5 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
         raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
     if type_ is Parameter.Type.NOT_SET:
         return None
-    value = getattr(parameter_value, _FIELDS[type_])
+    value = getattr(parameter_value, _MESSAGE_FIELDS[type_])
     return list(value) if isinstance(value, Iterable) and not isinstance(value, str) else value

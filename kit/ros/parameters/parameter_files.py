@@ -1,4 +1,4 @@
-"""Parameter values as text: on a command line, and in the YAML files that ``--params-file`` names.
+"""Parses parameter values: on a command line, and in the YAML files of ``--params-file``.
 
 Text is read as ROS 2 reads it: ``yes`` and ``on`` are truth values, ``1e-3`` is a number, quotes make a text.
 """
@@ -30,8 +30,8 @@ _SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -mat
 
 
 @dataclass(frozen=True, slots=True)
-class _Source:
-    """Where a text comes from, for messages."""
+class _TextSource:
+    """The origin of a text, for messages."""
 
     name: str
     is_file: bool = True
@@ -42,17 +42,17 @@ class _Source:
 
 
 def parse_value(text: str) -> Any:
-    """The value that a text means on a command line: ``1`` an int, ``[1.0, 2.0]`` a list, ``x`` itself.
+    """Parses a value on a command line: ``1`` an int, ``[1.0, 2.0]`` a list, ``x`` itself.
 
     Raises InvalidRosArguments for broken YAML and for what no parameter can hold.
     """
-    source = _Source(f"parameter value '{text}'", is_file=False)
+    source = _TextSource(f"parameter value '{text}'", is_file=False)
     node = _compose(text, source)
     return "" if node is None else _value(node, source)
 
 
 def read_parameter_file(path: str) -> list[GivenParameters]:
-    """The values in a YAML file, in its order: ``node: {ros__parameters: {name: value}}``, also with namespaces.
+    """Reads the values of a YAML file, in its order: ``node: {ros__parameters: {name: value}}``, also with namespaces.
 
     Raises InvalidRosArguments, naming file and line.
     """
@@ -61,12 +61,12 @@ def read_parameter_file(path: str) -> list[GivenParameters]:
     except (OSError, UnicodeDecodeError) as problem:
         reason = problem.strerror if isinstance(problem, OSError) else "it is not UTF-8 text"
         raise InvalidRosArguments(f"--params-file '{path}': {reason}") from None
-    source = _Source(path)
+    source = _TextSource(path)
     root = _compose(text, source)
     return [] if root is None else list(_nodes(root, "", source))
 
 
-def _compose(text: str, source: _Source) -> YamlNode | None:
+def _compose(text: str, source: _TextSource) -> YamlNode | None:
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as problem:
@@ -75,7 +75,7 @@ def _compose(text: str, source: _Source) -> YamlNode | None:
         raise source.error(str(problem), None) from None
 
 
-def _nodes(node: YamlNode, path: str, source: _Source) -> Iterator[GivenParameters]:
+def _nodes(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenParameters]:
     for key, value in _entries(node, source):
         if key == PARAMETERS_KEY:
             if not path:
@@ -86,7 +86,7 @@ def _nodes(node: YamlNode, path: str, source: _Source) -> Iterator[GivenParamete
             yield from _nodes(value, f"{path}/{key.strip('/')}", source)
 
 
-def _parameters(node: YamlNode, prefix: str, source: _Source) -> Iterator[Parameter]:
+def _parameters(node: YamlNode, prefix: str, source: _TextSource) -> Iterator[Parameter]:
     for key, value in _entries(node, source):
         name = prefix + key
         if isinstance(value, MappingNode):
@@ -95,7 +95,7 @@ def _parameters(node: YamlNode, prefix: str, source: _Source) -> Iterator[Parame
             yield Parameter(name, value=_value(value, source))
 
 
-def _entries(node: YamlNode, source: _Source) -> Iterator[tuple[str, YamlNode]]:
+def _entries(node: YamlNode, source: _TextSource) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node, MappingNode):
         message = f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
         raise source.error(message, node.start_mark)
@@ -105,9 +105,9 @@ def _entries(node: YamlNode, source: _Source) -> Iterator[tuple[str, YamlNode]]:
         yield key.value, value
 
 
-def _value(node: YamlNode, source: _Source) -> Any:
+def _value(node: YamlNode, source: _TextSource) -> Any:
     if isinstance(node, ScalarNode):
-        return node.value if node.style in ("'", '"', "|", ">") else _plain(node.value)
+        return node.value if node.style in ("'", '"', "|", ">") else _parse_scalar(node.value)
     if not isinstance(node, SequenceNode):
         raise source.error("a parameter cannot hold a mapping", node.start_mark)
     values = [_value(entry, source) for entry in node.value]
@@ -120,7 +120,7 @@ def _value(node: YamlNode, source: _Source) -> Any:
     return values
 
 
-def _plain(text: str) -> Any:
+def _parse_scalar(text: str) -> Any:
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
     if _INTEGER.fullmatch(text):
@@ -131,7 +131,7 @@ def _plain(text: str) -> Any:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """What a text means as a parameter, as a message; itself, if it is nothing else."""
+    """Parses a text to a parameter message; a text that is no other value stays a string."""
     try:
         value = parse_value(string_value)
     except InvalidRosArguments:

@@ -78,5 +78,5 @@ class ParameterServices:
         return response
 
     def _value(self, name: str) -> ParameterValue:
-        """A parameter nobody declared, or without a value, is NOT_SET."""
+        """The value as a message; NOT_SET for an undeclared parameter or one without a value."""
         return self._node.get_parameter_or(name).get_parameter_value()

@@ -1,4 +1,4 @@
-"""What a node's parameters are: values, descriptions, and the rules for changing them."""
+"""Stores the parameters of a node: values and descriptors, and the rules for changing them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ParameterStore:
 
     def __init__(self, overrides: dict[str, Parameter], *, allow_undeclared: bool) -> None:
         self.overrides = overrides
-        """What takes the place of defaults when parameters are declared."""
+        """Values that replace the defaults when parameters are declared."""
         self.allow_undeclared = allow_undeclared
         self.values: dict[str, Parameter] = {}
         self.descriptors: dict[str, ParameterDescriptor] = {}
@@ -36,12 +36,12 @@ class ParameterStore:
         self.on_set: list[OnSet] = []
         self.post_set: list[PostSet] = []
         self.publish_event: Callable[[ParameterEvent], None] = lambda event: None
-        """Told of every change."""
+        """Called with every change."""
 
     def declare(
         self, name: str, default: Any, given: ParameterDescriptor | None, ignore_override: bool
     ) -> Parameter:
-        """As ``Node.declare_parameter``, which says what it raises."""
+        """Declares a parameter; raises as ``Node.declare_parameter`` does."""
         if name in self.values:
             raise ParameterAlreadyDeclaredException(name)
         if given is not None and not isinstance(given, ParameterDescriptor):
@@ -77,7 +77,7 @@ class ParameterStore:
         return self.values[name]
 
     def check_known(self, parameters: list[Parameter]) -> None:
-        """Raises ParameterNotDeclaredException, and TypeError for what is no parameter."""
+        """Checks that all are Parameters and declared. Raises TypeError, ParameterNotDeclaredException."""
         for parameter in parameters:
             if not isinstance(parameter, Parameter):
                 raise TypeError(
@@ -89,9 +89,9 @@ class ParameterStore:
                 self.must_be_declared(*undeclared)
 
     def set(self, parameters: list[Parameter], *, declaring: bool = False) -> SetParametersResult:
-        """All or none: by the descriptors first, then by the callbacks; then the event."""
+        """Sets all or none: checks descriptors, then callbacks; then publishes the event."""
         for parameter in parameters:
-            reason = self._objection(parameter, declaring=declaring)
+            reason = self._descriptor_error(parameter, declaring=declaring)
             if reason:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in self.on_set:
@@ -123,8 +123,8 @@ class ParameterStore:
         if self.descriptors[name].dynamic_typing:
             self.descriptors[name].type = parameter.type_.value
 
-    def _objection(self, parameter: Parameter, *, declaring: bool) -> str:
-        """Why the descriptor does not allow this value; empty if it does."""
+    def _descriptor_error(self, parameter: Parameter, *, declaring: bool) -> str:
+        """The reason why the descriptor forbids this value; empty if it allows it."""
         descriptor = self.descriptors.get(parameter.name)
         if descriptor is None:
             return ""
@@ -139,22 +139,22 @@ class ParameterStore:
             return f"{_WRONG_TYPE}, expected '{expected.name}' got '{parameter.type_.name}'"
         if expected is Parameter.Type.INTEGER and descriptor.integer_range:
             limits = descriptor.integer_range[0]
-            return _outside(parameter.value, limits.from_value, limits.to_value, limits.step)
+            return _range_error(parameter.value, limits.from_value, limits.to_value, limits.step)
         if expected is Parameter.Type.DOUBLE and descriptor.floating_point_range:
             bounds = descriptor.floating_point_range[0]
-            return _outside(parameter.value, bounds.from_value, bounds.to_value, bounds.step)
+            return _range_error(parameter.value, bounds.from_value, bounds.to_value, bounds.step)
         return ""
 
     def must_be_declared(self, *names: str) -> None:
-        """Raises ParameterNotDeclaredException, naming the nearest one."""
+        """Raises ParameterNotDeclaredException for undeclared names, with the most similar declared one."""
         missing = [name for name in names if name not in self.values]
         if missing:
             near = nearest_name(missing[0], self.values)
             raise ParameterNotDeclaredException(missing, near or "")
 
 
-def _outside(value: float, low: float, high: float, step: float) -> str:
-    """Why a number is out of a range; empty if it is not. Both ends belong to it, whatever the step."""
+def _range_error(value: float, low: float, high: float, step: float) -> str:
+    """The reason why a number is outside a range; empty if it is inside. Both ends are inside, whatever the step."""
     if value in (low, high):
         return ""
     if not low <= value <= high:
