@@ -1,4 +1,4 @@
-"""Where the user's own files live: one folder, made by the first start, and nothing written outside it but caches."""
+"""The workspace: one folder for the user's own files. Nothing is written outside it but caches."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class WorkspaceError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Workspace:
-    """The user's folder and what stands where in it."""
+    """The user's folder and the paths in it."""
 
     folder: Path
 
@@ -49,15 +49,15 @@ class Workspace:
 
 
 def expand_home(name: str | Path) -> Path:
-    """A path with ``~`` and ``~user`` written out, where such a home is known."""
-    return Path(os.path.expanduser(name))  # noqa: PTH111 - the method raises where there is no such home
+    """Expands ``~`` and ``~user`` in a path, where such a home folder is known."""
+    return Path(os.path.expanduser(name))  # noqa: PTH111  # the method raises where there is no such home
 
 
 def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspace:
-    """The workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
+    """Opens the workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
 
     Makes the folder and its parts where they are missing, unless ``make`` is false. Raises WorkspaceError
-    when the place is a file or may not be written, or is in a home folder that nobody has.
+    if the path is a file or not writable, or in a home folder that does not exist.
     """
     if folder is None:
         folder = Path(os.environ.get("KIT_WORKSPACE") or "~/robot-kit")
@@ -83,7 +83,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
 
 
 def unusable_workspace_error(folder: Path, error: OSError) -> WorkspaceError:
-    """What to say of a workspace in which something could not be made."""
+    """The error for a workspace in which a folder or file could not be made."""
     return WorkspaceError(
         f"{folder}: cannot be used as the workspace ({error.strerror}). "
         "Name another folder with --workspace FOLDER."
@@ -91,7 +91,7 @@ def unusable_workspace_error(folder: Path, error: OSError) -> WorkspaceError:
 
 
 def check_writable(path: Path) -> None:
-    """To be asked before long work: raises OSError where ``path`` cannot be written. Writes nothing."""
+    """Raises OSError if ``path`` cannot be written, without writing it. Call it before long work."""
     with _errors_name_file(path):
         if path.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
@@ -121,7 +121,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 @contextmanager
 def _errors_name_file(path: Path) -> Iterator[None]:
-    """What goes wrong names this file, not the one that stands in for it meanwhile."""
+    """Makes errors name this file, not the temporary one."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Answers as the journal keeps them: what was chosen, how sure one was, on which occasion."""
+"""Quiz answers and their events in the journal: chosen option, confidence and occasion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Occasion(StrEnum):
 
 
 class AnswerOutcome(Enum):
-    """What came of it. Blank, not sure and wrong are three things: they call for three remedies."""
+    """The outcome of an answer. Blank, not sure and wrong are kept apart, since they call for different help."""
 
     RIGHT = "right"
     WRONG = "wrong"
@@ -31,7 +31,7 @@ class AnswerOutcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class AnswerChoice:
-    """One of the options, from 0; or none, with a word why."""
+    """The chosen option, from 0; or None, with or without "not sure"."""
 
     option: int | None
     not_sure: bool = False
@@ -51,12 +51,12 @@ CONFIDENCE_LABELS: Final[Mapping[int, str]] = {
     3: "fairly sure",
     4: "certain",
 }
-"""The answers to "how sure are you?"."""
+"""Labels of the confidence levels, the answers to "how sure are you?"."""
 
 
 @dataclass(frozen=True, slots=True)
 class QuizAnswer:
-    """One answer of the journal."""
+    """One answer, read from the journal."""
 
     item: str
     time: datetime
@@ -68,7 +68,7 @@ class QuizAnswer:
 def event_content(
     item: QuizItem, choice: AnswerChoice, confidence: int | None, occasion: Occasion
 ) -> dict[str, Any]:
-    """What the journal keeps of an answer. Who chose nothing is not sure of anything."""
+    """The content of an answer's event. Without a chosen option no confidence is kept."""
     return {
         "chosen": choice.option,
         "not_sure": choice.not_sure,
@@ -80,7 +80,7 @@ def event_content(
 
 
 def answer_from_event(event: ProgressEvent) -> QuizAnswer | None:
-    """The answer that an event tells of; None if it is another kind of event, or cannot be understood."""
+    """The answer in an event; None for another kind of event, or malformed content."""
     if event.kind is not EventKind.ANSWER:
         return None
     content = event.content
@@ -105,5 +105,5 @@ def answer_from_event(event: ProgressEvent) -> QuizAnswer | None:
 
 
 def answers_from_events(events: Iterable[ProgressEvent]) -> list[QuizAnswer]:
-    """All that can be understood, in the order of their time."""
+    """The answers in the events, without malformed ones, in the order of the events."""
     return [answer for event in events if (answer := answer_from_event(event)) is not None]

@@ -1,4 +1,4 @@
-"""A quiz item: one question, three options of which one is right, and what to say to whoever chooses each."""
+"""The records of the quiz: items with one question, three options of which one is right, and feedback for each."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from kit.plain_text import quoted, suggestion
 from kit.world.records import SourceLocation
 
 OPTION_COUNT: Final = 3
-"""As many as there are observed misconceptions for; more would be fillers (Rodriguez 2005)."""
+"""Options per item: as many as there are observed misconceptions for; more would be fillers (Rodriguez 2005)."""
 
 IDEA_COUNT: Final = 12
-"""Of the quiz; every one has exactly one item."""
+"""Number of ideas in the quiz; each has exactly one item."""
 
 
 class QuizTopic(StrEnum):
-    """What an item is about: what is scored, and what comes back."""
+    """The topic of an item: the unit of scores and of the schedule."""
 
     DRIVING = "driving"
     ROS2 = "ros2"
@@ -29,7 +29,7 @@ class QuizTopic(StrEnum):
 
     @property
     def label(self) -> str:
-        """What it is called on screen."""
+        """The topic's name on screen."""
         return _LABELS[self]
 
 
@@ -45,11 +45,11 @@ _LABELS: Final[Mapping[QuizTopic, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class AnswerOption:
-    """One of the three."""
+    """One option of an item."""
 
     text: str
     feedback: str
-    """For who chose it: where it is wrong, the misconception by name; where it is right, why."""
+    """Feedback for choosing it: the name of the misconception, or why it is right."""
     is_right: bool
 
 
@@ -59,30 +59,30 @@ class QuizItem:
 
     id: str
     lesson: str
-    """Whose folder it lies in."""
+    """The lesson whose folder holds it."""
     topic: QuizTopic
     idea: int | None
     """1 to 12 for the items of the quiz."""
     question: str
     picture: tuple[str, ...]
-    """Rows of ASCII; none: no picture."""
+    """Rows of ASCII characters; empty: no picture."""
     options: tuple[AnswerOption, ...]
     see: str
-    """The lesson, or LESSON/STEP, to go back to."""
+    """The lesson, or LESSON/STEP, to repeat."""
     attempt: str
-    """A command that lets one see it; may be empty."""
+    """A command that demonstrates the answer; may be empty."""
     derived: str
-    """By which derivation of the tests its answer is found anew; empty: it cannot be derived."""
+    """Name of the tests' derivation that computes its answer; empty: it cannot be derived."""
     location: SourceLocation
 
     @property
     def right_option(self) -> int:
-        """The right option's place, from 0."""
+        """Index of the right option, from 0."""
         return next(index for index, option in enumerate(self.options) if option.is_right)
 
 
 class UnknownLesson(LookupError):
-    """No lesson is called so; the message offers the nearest one."""
+    """No lesson has that name; the message offers the nearest one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ class QuestionBank:
         return tuple(item for item in self.items if item.topic is topic)
 
     def find_lesson(self, name: str) -> str:
-        """The lesson meant by its name, its number, or its name without the number. Raises UnknownLesson."""
+        """Finds a lesson by its name, its number, or its name without the number. Raises UnknownLesson."""
         for lesson in self.lessons:
             number, _, name = lesson.partition("-")
             if name in (lesson, number, number.lstrip("0"), name):
@@ -119,7 +119,7 @@ class QuestionBank:
 
 
 def lesson_title(lesson: str) -> str:
-    """A lesson as one speaks of it: ``02-nodes-and-topics/3`` is "lesson 2, nodes and topics, step 3"."""
+    """A lesson's title in a sentence: ``02-nodes-and-topics/3`` is "lesson 2, nodes and topics, step 3"."""
     folder, _, step = lesson.partition("/")
     number, _, name = folder.partition("-")
     words = f"lesson {number.lstrip('0')}, {name.replace('-', ' ')}"
@@ -127,7 +127,7 @@ def lesson_title(lesson: str) -> str:
 
 
 def lesson_command(lesson: str) -> str:
-    """What opens it."""
+    """The command that opens a lesson."""
     return f"kit lesson {lesson.partition('-')[0].lstrip('0')}"
 
 

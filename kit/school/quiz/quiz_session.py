@@ -1,4 +1,4 @@
-"""A sitting: questions one after the other, each answer in the journal before anything is said of it."""
+"""A quiz session: asks one question after the other, and records each answer before any feedback is shown."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from kit.school.quiz.items import QuestionBank, QuizItem, lesson_title
 from kit.school.quiz.schedule import PracticeSchedule, RoundHistory, build_schedule, round_history
 
 SEED_SUBJECT: Final = "quiz-seed"
-"""What the journal calls the student's own seed, by which questions are put in order."""
+"""The journal's subject for the student's own seed, by which questions are shuffled."""
 
 
 class QuestionPlan(Protocol):
-    """Which questions a sitting asks."""
+    """The questions of a quiz session."""
 
     @property
     def title(self) -> str: ...
 
     @property
     def command(self) -> str:
-        """What goes on with it."""
+        """The command that continues the plan."""
 
     @property
     def occasion(self) -> Occasion: ...
@@ -40,12 +40,12 @@ class QuestionPlan(Protocol):
     def remaining(
         self, events: Sequence[ProgressEvent], now: datetime, seed: int, *, restart: bool
     ) -> tuple[int, list[QuizItem]]:
-        """How many are done, and what is still to be asked. ``anew``: a finished round begins again."""
+        """Returns the number of answered questions and the remaining items. ``restart``: a finished round starts again."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoundPlan:
-    """A set of items, gone through round by round."""
+    """A set of items, asked round by round."""
 
     title: str
     command: str
@@ -66,7 +66,7 @@ class RoundPlan:
 
 @dataclass(frozen=True, slots=True)
 class PracticePlan:
-    """What the schedule has for today."""
+    """The questions that the schedule has for today."""
 
     bank: QuestionBank
     title: str = "Due today"
@@ -81,12 +81,12 @@ class PracticePlan:
 
 
 def quiz_plan(bank: QuestionBank) -> RoundPlan:
-    """The quiz."""
+    """The plan of the quiz."""
     return RoundPlan("The quiz", "kit quiz", Occasion.QUIZ, bank.quiz_items)
 
 
 def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
-    """A lesson's questions."""
+    """The plan of a lesson's questions."""
     title = lesson_title(lesson)
     number = lesson.partition("-")[0].lstrip("0")
     return RoundPlan(
@@ -95,12 +95,12 @@ def lesson_plan(bank: QuestionBank, lesson: str) -> RoundPlan:
 
 
 def local_now() -> datetime:
-    """Now, in the time zone of this machine."""
+    """The current time, in the time zone of this machine."""
     return datetime.now().astimezone()
 
 
 def student_seed(journal: ProgressJournal) -> int:
-    """The student's own seed, drawn once and kept in the journal. Raises ProgressError."""
+    """The student's own seed, drawn once and stored in the journal. Raises ProgressError."""
     for event in journal.events(EventKind.ABOUT, SEED_SUBJECT):
         value = event.content.get("value")
         if isinstance(value, int):
@@ -111,7 +111,7 @@ def student_seed(journal: ProgressJournal) -> int:
 
 
 class QuizSession:
-    """Asks what a plan has ahead. ``anew``: also where its round is finished."""
+    """Asks the remaining questions of a plan. ``restart``: starts a new round where the last one is finished."""
 
     def __init__(
         self,
@@ -131,17 +131,17 @@ class QuizSession:
         self._clock = clock
         self._events = journal.events()
         self.session_answers: list[QuizAnswer] = []
-        """The answers of this sitting."""
+        """The answers given in this session."""
         self._update_remaining()
 
     @property
     def item(self) -> QuizItem | None:
-        """What is asked now; None: there is nothing more."""
+        """The current question; None: there is none left."""
         return self._remaining[0] if self._remaining else None
 
     @property
     def question_number(self) -> int:
-        """Of the question that is asked now, from 1."""
+        """Number of the current question, from 1."""
         return self._done_count + 1
 
     @property
@@ -149,7 +149,7 @@ class QuizSession:
         return self._done_count + len(self._remaining)
 
     def answer(self, choice: AnswerChoice, confidence: int | None = None) -> AnswerOutcome:
-        """Notes the answer to ``item`` and goes on. When this returns it is on the disk. Raises ProgressError."""
+        """Records the answer to ``item`` and moves on. It is on the disk when this returns. Raises ProgressError."""
         item = self.item
         assert item is not None
         content = event_content(item, choice, confidence, self.plan.occasion)
@@ -161,7 +161,7 @@ class QuizSession:
         return choice.outcome(item)
 
     def all_answers(self) -> list[QuizAnswer]:
-        """All answers there are, of every occasion."""
+        """All answers in the journal, of every occasion."""
         return answers_from_events(self._events)
 
     def schedule(self) -> PracticeSchedule:

@@ -1,4 +1,4 @@
-"""What both faces say of answers, scores and the schedule: lines of plain text, no wider than asked."""
+"""Formats feedback, scores and the schedule as lines of plain text, for the screens and the line mode."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from kit.school.quiz.scores import (
 )
 
 BAR: Final = 20
-"""Columns of a bar."""
+"""Width of a bar in columns."""
 
 VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
     AnswerOutcome.RIGHT: "Right.",
@@ -38,17 +38,17 @@ CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
 
 
 def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
-    """Right or not, and which is."""
+    """States whether the choice is right, and which option is."""
     return VERDICTS[choice.outcome(item)].format(item.right_option + 1)
 
 
 def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
-    """What to say to the choice; to none, what is said to the right one."""
+    """Feedback for the chosen option; for no choice, that of the right option."""
     return item.options[item.right_option if choice.option is None else choice.option].feedback
 
 
 def follow_up_lines(item: QuizItem, width: int) -> list[str]:
-    """Where to go from here, the lesson and what to type: in one line where both fit."""
+    """The lesson to repeat and the command to try: in one line where both fit."""
     parts = [f"See {lesson_title(item.see)}: {lesson_command(item.see)}"]
     parts += [f"Try: {item.attempt}"] if item.attempt else []
     line = "   ".join(parts)
@@ -56,13 +56,13 @@ def follow_up_lines(item: QuizItem, width: int) -> list[str]:
 
 
 def days_text(day: date, today: date) -> str:
-    """When that is."""
+    """A day relative to today: ``today``, ``tomorrow``, ``in 3 days``."""
     days = (day - today).days
     return "today" if days <= 0 else "tomorrow" if days == 1 else f"in {days} days"
 
 
 def schedule_lines(schedule: PracticeSchedule) -> list[str]:
-    """The visible schedule: every topic, how many questions today, or when next."""
+    """The schedule: for every topic the number of questions today, or the next day."""
     if not schedule.topics:
         return ["Nothing is scheduled yet: a topic comes back from the day after its first question on."]
     widest = max(len(each.topic.label) for each in schedule.topics)
@@ -78,7 +78,7 @@ def schedule_lines(schedule: PracticeSchedule) -> list[str]:
 
 
 def today_line(schedule: PracticeSchedule) -> str:
-    """What is due, in one line."""
+    """The questions due today, in one line."""
     due = [
         (each.topic.label, left) for each in schedule.topics if (left := each.questions_left(schedule.today))
     ]
@@ -90,7 +90,7 @@ def today_line(schedule: PracticeSchedule) -> str:
 
 
 def tally_line(counts: OutcomeCounts) -> str:
-    """A result in words: what did not happen is left out."""
+    """Counts of outcomes in words, without those that are zero."""
     parts = [f"{counts.right} of {counts.total} right"]
     for count, words in (
         (counts.wrong, "wrong"),
@@ -104,7 +104,7 @@ def tally_line(counts: OutcomeCounts) -> str:
 
 
 def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> list[str]:
-    """One row a topic."""
+    """A table with one row per topic."""
     head = f"{'':<16} {'items':>5} {'right':>6} {'wrong':>6} {'not sure':>9} {'blank':>6} {'not asked':>10}"
     return [
         head,
@@ -116,7 +116,7 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> list[str]:
 
 
 def calibration_lines(calibration: Calibration) -> list[str]:
-    """How sure, and how often right."""
+    """Confidence against the share of right answers, one line per level."""
     if not calibration.answers:
         return ["No answer says yet how sure you were."]
     lines = []
@@ -141,7 +141,7 @@ def _calibration_summary(calibration: Calibration) -> str:
 
 
 def round_lines(history: RoundHistory) -> list[str]:
-    """How the last round came out, and the one before all others."""
+    """The result of the last round, and of the first one."""
     lines = [tally_line(count_outcomes(history.items, history.last))]
     if len(history.finished) > 1:
         lines.append(f"The first time: {tally_line(count_outcomes(history.items, history.finished[0]))}.")
@@ -149,7 +149,7 @@ def round_lines(history: RoundHistory) -> list[str]:
 
 
 def closing_lines(session: QuizSession) -> list[str]:
-    """What is said at the end of a sitting: its result by topic, how sure one was, what comes next."""
+    """The end of a session: results by topic, calibration, and what comes next."""
     plan = session.plan
     answers = session.all_answers()
     lines: list[str] = []
@@ -175,14 +175,14 @@ def closing_lines(session: QuizSession) -> list[str]:
 
 
 def restart_line(plan: RoundPlan) -> str:
-    """How to go through a finished round once more."""
-    return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} anew."
+    """How to repeat a finished round."""
+    return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} again."
 
 
 def scores_lines(
     bank: QuestionBank, answers: Sequence[QuizAnswer], schedule: PracticeSchedule
 ) -> Iterator[str]:
-    """Everything there is to know of the answers so far."""
+    """All scores of the answers so far."""
     quiz = quiz_plan(bank).history(answers)
     yield "The quiz of twelve"
     if quiz.last:
@@ -202,7 +202,7 @@ def scores_lines(
 
 
 def wrap_text(text: str, width: int, indent: str = "") -> list[str]:
-    """The text in lines, each after the indent."""
+    """Wraps text to lines, each with the indent."""
     return textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent) or [indent]
 
 

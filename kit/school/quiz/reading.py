@@ -1,4 +1,4 @@
-"""``lessons/NN-name/quiz.yaml`` becomes records; every mistake of all files is told with its file, line and column."""
+"""Reads ``lessons/NN-name/quiz.yaml`` into records; reports all mistakes of all files with file, line and column."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from kit.world.yaml_section import Section
 
 QUIZ_FILE: Final = "quiz.yaml"
 MAX_PICTURE_WIDTH: Final = 74
-"""Columns of a picture, which are shown as they are."""
+"""Columns of a picture; pictures are not wrapped."""
 MAX_PICTURE_HEIGHT: Final = 8
-"""Rows of a picture: question, options and feedback share the screen with it."""
+"""Rows of a picture, which shares the screen with question, options and feedback."""
 
 _ID: Final = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
 def read_bank(folder: Path | None = None) -> QuestionBank:
-    """Every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
+    """Reads every item of every lesson in ``folder`` (by default the kit's own). Raises WorldError with all mistakes."""
     folder = lessons_folder() if folder is None else folder
     files = sorted(folder.glob(f"[0-9]*-*/{QUIZ_FILE}"))
     lessons = [file.parent.name for file in files]

@@ -22,60 +22,60 @@ from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 GAP_DAYS: Final = (1, 3, 7, 21)
 """Days from one practice to the next."""
 PRACTICE_SIZE: Final = 4
-"""Questions of one practice; fewer where fewer have been met."""
+"""Questions of one practice; fewer where the topic has fewer known items."""
 PASSING_SHARE: Final = 0.75
-"""The share of right answers from which on the next gap is a longer one."""
+"""The share of right answers from which the next gap is longer."""
 
 
 @dataclass(frozen=True, slots=True)
 class TopicSchedule:
-    """Where a topic stands."""
+    """The schedule of one topic."""
 
     topic: QuizTopic
     due: date
     gap_days: int
     """Days between the last practice, or the first answer, and ``due``."""
     asked_items: tuple[str, ...]
-    """Items of the practice under way."""
+    """Items asked in the current practice."""
     practice_size: int
     """Questions of one practice."""
 
     def questions_left(self, today: date) -> int:
-        """Questions to be asked today."""
+        """Number of questions to ask today."""
         return max(0, self.practice_size - len(self.asked_items)) if self.due <= today else 0
 
 
 @dataclass(frozen=True, slots=True)
 class PracticeSchedule:
-    """All topics that have begun, the one due first in front."""
+    """The schedule of all started topics, sorted by due day."""
 
     today: date
     topics: tuple[TopicSchedule, ...]
     queue: tuple[QuizItem, ...]
-    """What is to be asked today, in this order: topics take turns."""
+    """Items to ask today, in order, with topics interleaved."""
     done_today: int
-    """Questions of the schedule answered today."""
+    """Scheduled questions answered today."""
     practice_days: tuple[date, ...]
-    """Days on which a practice was finished: each counts once, however much was done."""
+    """Days on which a practice was finished, each once."""
 
     @property
     def next_due(self) -> date | None:
-        """When something is due again, after today."""
+        """The next due day after today; None if there is none."""
         return min((each.due for each in self.topics if each.due > self.today), default=None)
 
 
 @dataclass
 class _TopicState:
-    """A topic while the journal is gone through."""
+    """The state of a topic while the journal is read."""
 
     due: date
     step: int = 0
     asked: dict[str, bool] = field(default_factory=dict)
-    """Items of the practice under way, and which were right."""
+    """Items asked in the current practice, and whether they were answered rightly."""
 
 
 class _ScheduleBuilder:
-    """Goes through the journal once."""
+    """Computes the state of all topics in one pass over the journal."""
 
     def __init__(self, bank: QuestionBank, now: datetime) -> None:
         self._bank = bank
@@ -114,7 +114,7 @@ class _ScheduleBuilder:
         self.practice_days.add(day)
 
     def known_items(self, topic: QuizTopic) -> list[QuizItem]:
-        """What may be asked."""
+        """Items of topics the student has reached: answered before, or of a started lesson."""
         return [
             item
             for item in self._bank.topic_items(topic)
@@ -128,7 +128,7 @@ class _ScheduleBuilder:
 def build_schedule(
     bank: QuestionBank, events: Iterable[ProgressEvent], now: datetime, seed: int = 0
 ) -> PracticeSchedule:
-    """The schedule that the journal makes, as of ``now`` (with its time zone). ``seed``: the student's."""
+    """Computes the schedule from the journal as of ``now`` (with its time zone). ``seed``: the student's seed."""
     builder = _ScheduleBuilder(bank, now)
     for event in events:
         builder.add_event(event)
@@ -149,14 +149,14 @@ def build_schedule(
 
 
 def shuffled(items: Sequence[QuizItem], seed: int, *circumstances: object) -> list[QuizItem]:
-    """The items in an order that is the same for the same student and circumstances, whichever others there are."""
+    """Shuffles items so that their order depends only on the student's seed and the circumstances, not on other items."""
     return sorted(items, key=lambda item: random.Random(f"{seed} {circumstances} {item.id}").random())
 
 
 def _queue(
     builder: _ScheduleBuilder, schedules: Sequence[TopicSchedule], today: date, seed: int
 ) -> list[QuizItem]:
-    """Interleaved: always of the topic of which the fewest have been asked in its practice."""
+    """Interleaves topics: the next item is of the topic with the fewest items asked in its practice."""
     waiting = {
         each.topic: _ordered_items(builder, each, seed)[: each.questions_left(today)]
         for each in schedules
@@ -172,7 +172,7 @@ def _queue(
 
 
 def _ordered_items(builder: _ScheduleBuilder, schedule: TopicSchedule, seed: int) -> list[QuizItem]:
-    """First what was not known the last time, then what was never asked, then what was asked longest ago."""
+    """Orders a topic's items: last answered wrongly first, then never asked, then the one asked longest ago."""
     items = [item for item in builder.known_items(schedule.topic) if item.id not in schedule.asked_items]
 
     def urgency(item: QuizItem) -> tuple[int, float]:
@@ -185,25 +185,25 @@ def _ordered_items(builder: _ScheduleBuilder, schedule: TopicSchedule, seed: int
 
 
 Round = dict[str, QuizAnswer]
-"""The first answer to each item."""
+"""Item id -> first answer to it in this round."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoundHistory:
-    """How often a set of items was gone through, and how far one is."""
+    """The finished rounds of a set of items, and the current one."""
 
     items: tuple[QuizItem, ...]
     finished: tuple[Round, ...]
     current: Round
-    """Empty: none is."""
+    """Empty: no round has been started."""
 
     @property
     def last(self) -> Round:
-        """The one under way, else the last one finished."""
+        """The current round, else the last finished one."""
         return self.current or (self.finished[-1] if self.finished else {})
 
     def remaining(self, seed: int) -> list[QuizItem]:
-        """What the round under way, or a new one, has still to ask, in its order."""
+        """The remaining items of the current round, or of a new one, in order."""
         order = shuffled(self.items, seed, len(self.finished))
         return [item for item in order if item.id not in self.current]
 
@@ -211,7 +211,7 @@ class RoundHistory:
 def round_history(
     items: Sequence[QuizItem], answers: Iterable[QuizAnswer], occasion: Occasion
 ) -> RoundHistory:
-    """What the answers given on that occasion make of these items."""
+    """Computes the rounds of these items from the answers of one occasion."""
     item_ids = {item.id for item in items}
     finished: list[Round] = []
     current: Round = {}

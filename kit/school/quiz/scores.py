@@ -1,4 +1,4 @@
-"""What the answers say: by topic, with blank apart from wrong and from not sure; and how sure against how often right."""
+"""Scores answers by topic, with blank, wrong and not sure kept apart; and measures calibration of confidence."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import OPTION_COUNT, QuizItem, QuizTopic
 
 EXPECTED_SHARES: Final[Mapping[int, float]] = {1: 1 / OPTION_COUNT, 2: 0.5, 3: 0.75, 4: 0.95}
-"""How often one should be right who is so sure; a guess among three is right one time in three."""
+"""Confidence -> share of right answers that it claims; a guess among three options is right one time in three."""
 MIN_ANSWERS: Final = 8
-"""Answers with a confidence, below which nothing is said of how well it was judged."""
+"""Answers with a confidence below which calibration is not reported."""
 CALIBRATED_GAP: Final = 0.1
-"""Claimed and reached shares nearer than this are called the same."""
+"""Largest difference of expected and actual share that counts as calibrated."""
 
 
 @dataclass(frozen=True, slots=True)
 class OutcomeCounts:
-    """How many items came out how."""
+    """Number of items by outcome."""
 
     right: int = 0
     wrong: int = 0
@@ -35,7 +35,7 @@ class OutcomeCounts:
 
 @dataclass(frozen=True, slots=True)
 class ConfidenceLevel:
-    """The answers given with one confidence."""
+    """The answers given with one confidence level."""
 
     confidence: int
     answers: int
@@ -44,10 +44,10 @@ class ConfidenceLevel:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """How sure, and how often right."""
+    """Confidence against the share of right answers."""
 
     levels: tuple[ConfidenceLevel, ...]
-    """From the least sure to the surest; levels nobody used have no answers."""
+    """From the least to the most sure; unused levels have no answers."""
 
     @property
     def answers(self) -> int:
@@ -55,23 +55,23 @@ class Calibration:
 
     @property
     def expected_share(self) -> float:
-        """The share of right answers that the confidences claim; 0 without any."""
+        """The share of right answers that the confidences claim; 0 without answers."""
         claims = sum(EXPECTED_SHARES[level.confidence] * level.answers for level in self.levels)
         return claims / self.answers if self.answers else 0.0
 
     @property
     def actual_share(self) -> float:
-        """The share that was right."""
+        """The share of right answers; 0 without answers."""
         return sum(level.right for level in self.levels) / self.answers if self.answers else 0.0
 
 
 def latest_answers(answers: Iterable[QuizAnswer]) -> dict[str, QuizAnswer]:
-    """The last answer to each item."""
+    """Item id -> last answer to it."""
     return {answer.item: answer for answer in answers}
 
 
 def count_outcomes(items: Iterable[QuizItem], by_item: Mapping[str, QuizAnswer]) -> OutcomeCounts:
-    """How these items came out."""
+    """Counts items by outcome."""
     counts = Counter(by_item[item.id].outcome if item.id in by_item else None for item in items)
     return OutcomeCounts(
         counts[AnswerOutcome.RIGHT],
@@ -85,7 +85,7 @@ def count_outcomes(items: Iterable[QuizItem], by_item: Mapping[str, QuizAnswer])
 def count_by_topic(
     items: Iterable[QuizItem], by_item: Mapping[str, QuizAnswer]
 ) -> dict[QuizTopic, OutcomeCounts]:
-    """The same for each topic that has any of the items."""
+    """Counts items by outcome for each topic that has any."""
     of_topic: dict[QuizTopic, list[QuizItem]] = {}
     for item in items:
         of_topic.setdefault(item.topic, []).append(item)
@@ -93,7 +93,7 @@ def count_by_topic(
 
 
 def measure_calibration(answers: Iterable[QuizAnswer]) -> Calibration:
-    """Over all answers that say how sure one was."""
+    """Measures calibration over all answers with a confidence."""
     counts: Counter[int] = Counter()
     right: Counter[int] = Counter()
     for answer in answers:

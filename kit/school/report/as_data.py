@@ -25,7 +25,7 @@ from kit.school.report.document import (
 )
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""With these a spreadsheet takes a text for something to compute, which a student's name must not become."""
+"""First characters by which a spreadsheet takes a text for a formula, which a student's name must not become."""
 
 
 def table_to_csv(table: ReportTable) -> str:
@@ -63,7 +63,7 @@ def _plain(cell: str | float | None) -> str:
 
 
 def report_to_json(report: ClassReport) -> str:
-    """Everything, with null where nothing can be said."""
+    """The whole report as JSON, with null where there is no value."""
     content = {
         "title": report.title,
         "chapters": [

@@ -12,7 +12,7 @@ from kit.school.report.document import BarChart, Histogram, ReportPlot, ScatterP
 WIDTH: Final = 640
 MARGIN: Final = 16
 LINE: Final = 18
-"""Of text."""
+"""Height of a line of text."""
 LABEL: Final = 34
 """Characters of one line of a bar's label."""
 

@@ -38,10 +38,10 @@ SCATTER_SIZE: Final = (56, 15)
 
 @dataclass(frozen=True, slots=True)
 class PlotGlyphs:
-    """What plots are drawn with."""
+    """Characters that plots are drawn with."""
 
     bars: tuple[str, ...]
-    """Of the first group, the second, the third: told apart by shape."""
+    """Bars of the first, second and third group, distinct in shape."""
     point: str
     line: str
 
@@ -65,7 +65,7 @@ def report_lines(report: ClassReport, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iter
 
 
 def block_lines(block: ReportBlock, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
-    """One table, plot, text, warning or word of a student."""
+    """The lines of one table, plot, text, warning or quote."""
     match block:
         case ReportTable():
             yield from table_lines(block)
@@ -113,7 +113,7 @@ def table_lines(table: ReportTable) -> Iterator[str]:
 
 
 def _short(text: str) -> str:
-    """What fits a cell: nobody's text may push the rest off the screen."""
+    """Shortens a cell's text, so that it does not push other columns off the screen."""
     return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
 

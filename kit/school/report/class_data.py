@@ -1,4 +1,4 @@
-"""A roll of students becomes the numbers of a class: ratings, the answer sheet of the quiz, the work of each."""
+"""Turns a roster of students into the data of a class: ratings, the quiz's answer sheet, work in the lessons."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from kit.school.survey.questions import AnswerShape, SurveyForm, SurveyPhase, Su
 
 @dataclass(frozen=True, slots=True)
 class FreeTextAnswer:
-    """What somebody wrote."""
+    """One student's answer in free text."""
 
     question: SurveyQuestion
     student: str
@@ -28,27 +28,27 @@ class FreeTextAnswer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassData:
-    """A class as numbers. All arrays are in the order of ``names``."""
+    """The data of a class. All arrays are in the order of ``names``."""
 
     names: tuple[str, ...]
     ratings: ClassRatings
     quiz: AnswerSheet
-    """First answers of who took the quiz."""
+    """First answers of the students who took the quiz."""
     later_quiz: AnswerSheet
-    """The newest answers to the same items, from any occasion; None where there is none but the first."""
+    """The newest answers to the same items, on any occasion; None where there is only the first one."""
     bank: AnswerSheet
-    """First answers to the items that only lessons and repetition ask; None where one was not asked."""
+    """First answers to items that only lessons and practice ask; None where an item was not asked."""
     work: tuple[StudentWork, ...]
     free_text_answers: tuple[FreeTextAnswer, ...]
     option_counts: tuple[tuple[SurveyQuestion, SurveyPhase, Mapping[str, int]], ...]
-    """Questions of yes or no and of choice: how often each answer came."""
+    """Yes-or-no and choice questions: number of students per answer."""
     warnings: tuple[str, ...]
 
 
 def build_class_data(
     roster: ClassRoster, form: SurveyForm, known_items: Mapping[str, ReportItem] | None = None
 ) -> ClassData:
-    """``known``: items of the quiz with their texts, in the order in which they are to be shown."""
+    """Builds the data of a class. ``known_items``: items of the quiz with their texts, in the order of the report."""
     known_items = known_items or {}
     names = tuple(each.label for each in roster.students)
     answers = [FormAnswers.from_events(form, each.events) for each in roster.students]
@@ -116,7 +116,7 @@ def _option_counts(
 
 
 class _StudentAnswers:
-    """One student's answers, sorted: in the quiz, first of all, and the newest of those given after the quiz."""
+    """One student's replies by item: those in the quiz, the first ones, and the newest ones given after the quiz."""
 
     def __init__(self, events: Sequence[ProgressEvent]) -> None:
         self.quiz_replies: dict[str, ItemReply] = {}
@@ -126,7 +126,7 @@ class _StudentAnswers:
         for event in events:
             try:
                 answer = answer_from_event(event)
-            except TypeError:  # a list, say, where a number belongs
+            except TypeError:  # malformed content, such as a list in place of a number
                 answer = None
             if answer is None:
                 continue
@@ -142,7 +142,7 @@ class _StudentAnswers:
 
 
 def _invalid_answer_warnings(students: Sequence[Student], answers: Sequence[FormAnswers]) -> Iterator[str]:
-    """Answers of the form that cannot be. By file, so that nobody learns which student is which."""
+    """Warnings about invalid form answers, sorted by file so that they do not identify students."""
     for file, odd in sorted(
         (each.files[0], given.invalid_questions) for each, given in zip(students, answers, strict=True)
     ):
@@ -158,7 +158,7 @@ def _unknown_item_warnings(
     student_answers: Sequence[_StudentAnswers],
     known_items: Mapping[str, ReportItem],
 ) -> Iterator[str]:
-    """Answers to questions that this kit does not have, so that nobody else could give any."""
+    """Warnings about answers to questions that this kit does not have."""
     if not known_items:
         return
     found = [
@@ -178,7 +178,7 @@ def _unknown_item_warnings(
 def _answer_sheets(
     student_answers: Sequence[_StudentAnswers], known_items: Mapping[str, ReportItem]
 ) -> tuple[AnswerSheet, AnswerSheet, AnswerSheet]:
-    """The quiz by first answers, the same items by newest ones, and the rest of the bank."""
+    """Answer sheets: the quiz by first answers, the same items by newest ones, and the other items."""
     topics = {name: topic for sheet in student_answers for name, topic in sheet.topics.items()}
     answered = {name for sheet in student_answers for name in sheet.quiz_replies}
     if known_items:
@@ -191,7 +191,7 @@ def _answer_sheets(
         asked = tuple(item for item in items if item.id in answered)
     rest = tuple(item for item in items if item not in asked)
     return (
-        # Who took the quiz at all had every item before them: what they did not reach is blank.
+        # A student who took the quiz could have answered every item: those not reached count as blank.
         AnswerSheet(
             asked,
             {

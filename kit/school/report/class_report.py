@@ -1,4 +1,4 @@
-"""The class report: all chapters in order, from a class's numbers."""
+"""Builds the class report: all chapters in order, from the data of a class."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ CHAPTER_IDS: Final = (
     "lessons",
     "words",
 )
-"""The chapters' ids, in order."""
+"""Ids of the chapters, in order."""
 
 
 def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> ReportContext:
-    """The class with its scores and groups. ``way``: one of ``WAYS``."""
+    """Computes scores and groups of a class. ``method``: one of ``DIVISION_METHODS``."""
     score = expertise_scores(
         data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE), question_topics(data)
     )
@@ -58,7 +58,7 @@ def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> R
 
 
 def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) -> tuple[ReportChapter, ...]:
-    """Those that there are numbers for, of ``wanted`` ones or all; without the one about files."""
+    """Builds the chapters that there is data for, all or those with the ids given; without the one about files."""
     chapters = (make(context) for make in _CHAPTER_BUILDERS)
     return tuple(
         each for each in chapters if each is not None and (not chapter_ids or each.id in chapter_ids)
@@ -66,12 +66,12 @@ def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) ->
 
 
 def build_report(context: ReportContext, file_count: int, chapter_ids: Collection[str] = ()) -> ClassReport:
-    """The whole report of a class that was read from ``files`` files."""
+    """Builds the whole report of a class that was read from ``file_count`` files."""
     first = people.class_chapter(context, file_count)
     head = (first,) if not chapter_ids or first.id in chapter_ids else ()
     return ClassReport("Class report", (*head, *build_chapters(context, chapter_ids)))
 
 
 def question_topics(data: ClassData) -> dict[str, str]:
-    """Which topic each question is about."""
+    """Question id -> topic."""
     return {each.id: each.topic for each in data.ratings.questions}

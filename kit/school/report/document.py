@@ -1,4 +1,4 @@
-"""A report before it is drawn: chapters of tables, plots, texts and warnings. Each face draws them its own way."""
+"""The records of a report, independent of the output format: chapters of tables, plots, texts and warnings."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from enum import StrEnum
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
 TableCell = str | int | float | ConfidenceInterval | None
-"""None, and a number that is not one: nothing can be said there."""
+"""None and NaN: there is no value."""
 
 
 class CellStyle(StrEnum):
-    """How a column's cells are written."""
+    """How the cells of a column are formatted."""
 
     TEXT = "text"
     NUMBER = "number"
@@ -30,31 +30,31 @@ class TableColumn:
 @dataclass(frozen=True, slots=True)
 class ReportTable:
     id: str
-    """For file names: letters, digits, hyphens."""
+    """Used in file names: letters, digits, hyphens."""
     title: str
     columns: tuple[TableColumn, ...]
     rows: tuple[tuple[TableCell, ...], ...]
     note: str = ""
-    """What a reader has to know, below the table."""
+    """Shown below the table."""
     grouped: bool = False
-    """Rows that begin alike belong together: people see what they share once, machines on every row."""
+    """Rows with the same first cell form a group: for readers it is shown once, in data formats on every row."""
 
     def shows_first_cell(self, number: int) -> bool:
-        """Whether people see the first cell of this row."""
+        """Whether the first cell of this row is shown to readers."""
         return not self.grouped or not number or self.rows[number][0] != self.rows[number - 1][0]
 
 
 @dataclass(frozen=True, slots=True)
 class BarChart:
-    """For each row one bar a group."""
+    """For each row one bar per group."""
 
     id: str
     title: str
     groups: tuple[str, ...]
     rows: tuple[tuple[str, tuple[float, ...]], ...]
-    """A label, and a value for each group; NaN: no bar."""
+    """Label, and a value per group; NaN: no bar."""
     low: float
-    """Where the bars begin."""
+    """The value at which bars begin."""
     high: float
 
 
@@ -63,7 +63,7 @@ class Histogram:
     id: str
     title: str
     edges: tuple[float, ...]
-    """One more than counts. A value on an edge belongs to the bin above it; the last bin has both its edges."""
+    """One more edge than counts. A value on an edge belongs to the bin above it; the last bin includes both edges."""
     counts: tuple[int, ...]
 
 
@@ -72,13 +72,13 @@ class ScatterPlot:
     id: str
     title: str
     x: str
-    """What is drawn to the right."""
+    """Label of the horizontal axis."""
     y: str
     points: tuple[tuple[float, float], ...]
     x_range: tuple[float, float]
     y_range: tuple[float, float]
     line: tuple[float, float] | None = None
-    """Slope and height at 0 of the trend line."""
+    """Slope and intercept of the trend line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +88,14 @@ class ReportText:
 
 @dataclass(frozen=True, slots=True)
 class ReportWarning:
-    """What a reader must not overlook."""
+    """A warning that readers must not overlook."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Quote:
-    """What people wrote, unchanged."""
+    """A student's answer in free text, unchanged."""
 
     student: str
     text: str
@@ -139,7 +139,7 @@ def p_value_text(p: float) -> str:
 
 
 def format_cell(cell: TableCell, column: TableColumn) -> str:
-    """A cell as people read it."""
+    """The text of a cell for readers."""
     if isinstance(cell, ConfidenceInterval):
         if cell.low != cell.low:
             return "-"

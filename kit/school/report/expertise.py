@@ -1,4 +1,4 @@
-"""Beginners and experts: the dissertation's Algorithm 4, what it weighs in truth, and three ways to cut a class in two."""
+"""Expertise scores by the dissertation's Algorithm 4, its effective weights, and three divisions of a class in two."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from kit.school.report.inference import non_blank
 from kit.school.report.measures import StudentGroup, StudentMeasure
 
 TOPICS: Final = ("robotics", "ros1", "ros2", "simulators", "flatland", "rl")
-"""What Algorithm 4 asks for, each rated 1 to 7 for the time before the lessons."""
+"""Topics that Algorithm 4 reads, each rated 1 to 7 for the time before the lessons."""
 
 HALF_OF_SCALE: Final = 3.5
 MIN_GAP: Final = 0.1
-"""A gap between the groups that is smaller than this is no division of people but of rounding."""
+"""A smaller gap between the groups gets a warning: it may be due to rounding."""
 MIN_GROUP_SIZE: Final = 5
-"""A group of fewer says little of anybody else."""
+"""A smaller group gets a warning: it says little about others."""
 
 
 def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str]) -> Float64Array | None:
@@ -51,7 +51,7 @@ def _expertise_score(of: Mapping[str, Float64Array]) -> Float64Array:
 
 
 def effective_weights() -> tuple[tuple[str, float], ...]:
-    """What each rating counts for in the score in all, the greatest first; they add up to 1.
+    """The total weight of each rating in the score, largest first; they add up to 1.
 
     Several means of means hide this. ``ros`` is the greater of the two ROS ratings.
     """
@@ -65,14 +65,14 @@ def effective_weights() -> tuple[tuple[str, float], ...]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassDivision:
-    """A class in two."""
+    """A class divided in two groups."""
 
     id: str
     title: str
     beginners: StudentGroup
     experts: StudentGroup
     cut_score: float
-    """Scores below it are beginners'."""
+    """Students with a lower score are beginners."""
     warnings: tuple[str, ...]
 
     @property
@@ -81,8 +81,8 @@ class ClassDivision:
 
 
 def divide_class(score: Float64Array, method: str) -> ClassDivision | None:
-    """The class divided in one of the ``WAYS``; None where fewer than two students have a score, or one group
-    would be empty."""
+    """Divides the class by one of the ``DIVISION_METHODS``; None where fewer than two students have a score, or one
+    group would be empty."""
     if len(non_blank(score)) < 2:
         return None
     title, find = DIVISION_METHODS[method]
@@ -131,7 +131,7 @@ DIVISION_METHODS: Final[Mapping[str, tuple[str, Callable[[Float64Array], tuple[f
         }
     )
 )
-"""By the word the user knows them by; the dissertation used ``mean``."""
+"""Name of the option -> title and function; the dissertation used ``mean``."""
 
 
 def _division_warnings(score: Float64Array, beginners: BoolArray, experts: BoolArray) -> list[str]:

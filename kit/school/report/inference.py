@@ -1,9 +1,9 @@
-"""What can be said from few numbers: spread, intervals and tests that are exact for small groups.
+"""Statistics for small samples: summary statistics, intervals, and permutation tests that are exact for small groups.
 
 The tests need no distribution: they compare what was seen with what every other division of the same numbers into
 groups of the same size would have shown (R. A. Fisher, The Design of Experiments, 1935; E. J. G. Pitman, Supplement to
-the Journal of the Royal Statistical Society 4, 1937). Student's t for intervals of means stands here in forty lines:
-nothing else in the kit needs scipy, and the core is to install in seconds.
+the Journal of the Royal Statistical Society 4, 1937). Student's t for intervals of means is computed here in forty
+lines: nothing else in the kit needs scipy, and the core must install in seconds.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from kit.kernels.arrays import Float64Array
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 
 SHUFFLE_COUNT: Final = 20_000
-"""How many random rearrangements stand for all of them where all are too many."""
+"""Number of random rearrangements sampled where all of them are too many."""
 MAX_SPLITS: Final = 200_000
 MAX_PERMUTED: Final = 8
-"""Numbers of which every order is looked at: 8! = 40,320."""
+"""Largest number of values of which all orders are computed: 8! = 40,320."""
 MAX_DENOMINATOR: Final = 2520
 """The least common multiple of 1 to 10: means of up to ten whole numbers are multiples of one over it."""
 MAX_COUNTED: Final = 400
@@ -38,38 +38,38 @@ _TOLERANCE: Final = 1e-9
 
 
 class SummaryStatistics(NamedTuple):
-    """A group's numbers in short; NaN where there are too few to tell."""
+    """Summary statistics of a group; NaN where there are too few values."""
 
     n: int
     mean: float
     sd: float
-    """Of the sample: divided by n - 1."""
+    """Sample standard deviation, divided by n - 1."""
     interval: ConfidenceInterval
-    """Of the mean, 95 percent, by Student's t."""
+    """95 percent interval of the mean, by Student's t."""
 
 
 class PermutationTestResult(NamedTuple):
-    """How often chance alone would show as much."""
+    """The result of a permutation test."""
 
     p_value: float
-    """Two-sided; NaN where nothing can be compared."""
+    """Two-sided p-value; NaN where nothing can be compared."""
     arrangements: int
-    """Looked at."""
+    """Number of arrangements that were computed."""
     is_exact: bool
-    """Whether those were all."""
+    """Whether those are all possible arrangements."""
 
 
 NO_TEST: Final = PermutationTestResult(math.nan, 0, is_exact=True)
 
 
 def non_blank(values: Float64Array) -> Float64Array:
-    """Without the blanks, which are NaN."""
+    """The values without NaN."""
     kept: Float64Array = values[~np.isnan(values)]
     return kept
 
 
 def summary_statistics(values: Float64Array) -> SummaryStatistics:
-    """Of the values that are there."""
+    """Summary statistics of the values that are not NaN."""
     kept = non_blank(values)
     n = len(kept)
     mean = float(kept.mean()) if n else math.nan
@@ -122,7 +122,7 @@ def _regularised_beta(x: float, a: float, b: float) -> float:
 def difference_test(
     first: Float64Array, second: Float64Array, rng: np.random.Generator, shuffles: int = SHUFFLE_COUNT
 ) -> PermutationTestResult:
-    """Whether two groups' means differ by more than a division by chance makes likely.
+    """Tests whether two groups' means differ more than random divisions of the pooled values would.
 
     Every division of the pooled values into groups of these sizes is counted: by sums where the values are multiples
     of one small fraction, as ratings and scores are; else one by one; with very many, at random from ``rng``.
@@ -152,7 +152,7 @@ def difference_test(
 
 
 def paired_test(differences: Float64Array, rng: np.random.Generator) -> PermutationTestResult:
-    """Whether differences within pairs are farther from 0 on the whole than with signs drawn by chance."""
+    """Tests whether the sum of differences within pairs is farther from 0 than with random signs."""
     there = non_blank(differences)
     if not len(there):
         return NO_TEST
@@ -177,7 +177,7 @@ def paired_test(differences: Float64Array, rng: np.random.Generator) -> Permutat
 def _shuffled_sums(
     values: Float64Array, weights: Float64Array, rng: np.random.Generator, times: int
 ) -> Float64Array:
-    """(times,) the weighted sum of the values in so many random orders."""
+    """(times,) weighted sums of the values in random orders."""
     rows = max(1, SHUFFLE_CHUNK // len(values))
     parts = [
         rng.permuted(np.tile(values, (min(rows, times - start), 1)), axis=1) @ weights
@@ -187,7 +187,7 @@ def _shuffled_sums(
 
 
 def _can_count(whole: Float64Array, k: int) -> bool:
-    """Whether the sums of all splits can be counted in a moment, within what a float holds."""
+    """Whether the sums of all splits can be counted quickly and without overflow of a float."""
     small = min(k, len(whole) - k)
     unit = max(1, int(np.gcd.reduce(whole.astype(np.int64))))
     return (
@@ -196,7 +196,7 @@ def _can_count(whole: Float64Array, k: int) -> bool:
 
 
 def _as_integers(values: Float64Array) -> Float64Array | None:
-    """The values as whole multiples of their common fraction; None if they have none of a small denominator."""
+    """The values as multiples of a common fraction; None if there is none with a small denominator."""
     fractions = [Fraction(float(value)).limit_denominator(MAX_DENOMINATOR) for value in values]
     unit = math.lcm(*(each.denominator for each in fractions))
     if unit > MAX_DENOMINATOR:
@@ -207,7 +207,7 @@ def _as_integers(values: Float64Array) -> Float64Array | None:
 
 
 def _subset_sums(whole: Float64Array, k: int) -> tuple[Float64Array, Float64Array]:
-    """Every sum that ``k`` of the numbers can have, and how many choices have it."""
+    """All sums of ``k`` of the numbers, and the number of choices with each sum."""
     small = min(k, len(whole) - k)
     numbers = whole.astype(np.int64)
     common = int(np.gcd.reduce(numbers)) or 1
@@ -235,13 +235,13 @@ def correlation(x: Float64Array, y: Float64Array) -> float:
 
 
 def rank_correlation(x: Float64Array, y: Float64Array) -> float:
-    """Spearman's rho."""
+    """Spearman's rho of the complete pairs; NaN without any."""
     x, y = _complete_pairs(x, y)
     return correlation(ranks(x), ranks(y)) if len(x) else math.nan
 
 
 def ranks(values: Float64Array) -> Float64Array:
-    """From 1; equal values share the mean of their places."""
+    """Ranks from 1; equal values get their mean rank."""
     _, place, count = np.unique(values, return_inverse=True, return_counts=True)
     last = np.cumsum(count)
     return np.asarray((last - (count - 1) / 2)[place], dtype=np.float64)
@@ -253,7 +253,7 @@ def correlation_test(
     rng: np.random.Generator,
     shuffles: int = SHUFFLE_COUNT,
 ) -> PermutationTestResult:
-    """Whether two quantities go together (Pearson's r) more than in a random order of one of them."""
+    """Tests whether two quantities correlate (Pearson's r) more than in random orders of one of them."""
     x, y = _complete_pairs(x, y)
     r = correlation(x, y)
     if math.isnan(r):
@@ -277,7 +277,7 @@ def correlation_interval(r: float, n: int) -> ConfidenceInterval:
 
 
 def fit_polynomial(x: Float64Array, y: Float64Array, degree: int = 1) -> Float64Array | None:
-    """The polynomial of least squares, highest power first; None for too few different places."""
+    """Fits a polynomial by least squares; coefficients from the highest power. None for too few distinct x."""
     x, y = _complete_pairs(x, y)
     return np.polyfit(x, y, degree) if len(np.unique(x)) > degree else None
 
@@ -288,5 +288,5 @@ def _complete_pairs(x: Float64Array, y: Float64Array) -> tuple[Float64Array, Flo
 
 
 def _sampled_result(far: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> PermutationTestResult:
-    """What was seen counts as one of the arrangements, so that no p is zero (Phipson and Smyth, 2010)."""
+    """Counts the observed value as one of the arrangements, so that no p is zero (Phipson and Smyth, 2010)."""
     return PermutationTestResult(float((far.sum() + 1) / (len(far) + 1)), len(far), is_exact=False)

@@ -1,4 +1,4 @@
-"""How good the quiz's questions are: how hard, how well each goes with the rest, and who fell for which option.
+"""Item analysis of the quiz: difficulty, correlation with the rest, and choices of each option.
 
 The measures are the classical ones: G. F. Kuder and M. W. Richardson, "The theory of the estimation of test
 reliability", Psychometrika 2 (1937), formula 20; the corrected item-total correlation.
@@ -18,33 +18,33 @@ from kit.school.report.inference import correlation, non_blank
 from kit.school.report.measures import AnswerSheet, ReportItem
 
 MIN_REST_CORRELATION: Final = 0.15
-"""An item that goes with the rest of the quiz less than this tells little of what the rest asks."""
+"""An item with a lower correlation with the rest of the quiz gets a warning."""
 MIN_DIFFICULTY: Final = 0.2
 MAX_DIFFICULTY: Final = 0.95
 
 
 @dataclass(frozen=True, slots=True)
 class ItemAnalysis:
-    """One item as this class answered it."""
+    """The analysis of one item in a class."""
 
     item: ReportItem
     n: int
-    """Who took the quiz."""
+    """Number of students who took the quiz."""
     outcomes: dict[AnswerOutcome, int]
     choice_counts: dict[int, int]
-    """How many chose each option, by its number from 0."""
+    """Option index, from 0 -> number of students who chose it."""
     right_options: frozenset[int]
-    """The options that were counted as right."""
+    """Indices of the options that were counted as right."""
     difficulty: float
-    """The share who answered rightly; NaN where nobody took it."""
+    """Share of right answers; NaN where no student took the quiz."""
     interval: ConfidenceInterval
-    """Of that share, 95 percent, by Wilson."""
+    """95 percent interval of that share, by Wilson."""
     rest_correlation: float
     """Correlation with the rest of the quiz; NaN where one of them does not vary."""
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a teacher should look at."""
+        """Properties that a teacher should check."""
         right = sum(self.choice_counts.get(key, 0) for key in self.right_options)
         lures = [
             option + 1
@@ -68,7 +68,7 @@ class ItemAnalysis:
 
 
 def analyse_item(quiz: AnswerSheet, item: ReportItem) -> ItemAnalysis:
-    """The item among the others of the quiz."""
+    """Analyses an item among the others of the quiz."""
     replies = [each for each in quiz.replies[item.id] if each is not None]
     right = quiz.correctness(item)
     rest = [other for other in quiz.items if other != item]
@@ -90,7 +90,7 @@ def analyse_item(quiz: AnswerSheet, item: ReportItem) -> ItemAnalysis:
 
 
 def kr20(quiz: AnswerSheet) -> float:
-    """How consistent the quiz is in itself, at most 1; NaN below two items or where all scored the same."""
+    """Internal consistency of the quiz, at most 1; NaN below two items or where all scores are equal."""
     columns = [non_blank(quiz.correctness(item)) for item in quiz.items]
     k = len(columns)
     if k < 2 or len(columns[0]) < 2:

@@ -1,4 +1,4 @@
-"""What was asked of a class and what it said, as numbers by student; groups of students; means by group."""
+"""A class's ratings and quiz replies as arrays by student, and groups of students."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from kit.school.survey.questions import QuestionPurpose, SurveyPhase, SurveyQues
 
 @dataclass(frozen=True, slots=True)
 class ItemReply:
-    """One student's answer to one item. Only RIGHT counts as right; wrong, not sure and blank are told apart."""
+    """One student's answer to one item. Only RIGHT counts as right; wrong, not sure and blank are kept apart."""
 
     outcome: AnswerOutcome
     chosen: int | None = None
-    """The option's number from 0."""
+    """Index of the chosen option, from 0."""
 
 
 BLANK = ItemReply(AnswerOutcome.BLANK)
@@ -32,21 +32,21 @@ class ReportItem:
     id: str
     topic: str
     options: tuple[str, ...] = ()
-    """Their texts, where they are known."""
+    """Texts of the options, where they are known."""
     in_quiz: bool = False
-    """Whether the quiz asks it; else only lessons and repetition do."""
+    """Whether the quiz asks it; else only lessons and practice do."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerSheet:
-    """Items, and each student's reply to each: the class's answer sheet."""
+    """Items with each student's reply."""
 
     items: tuple[ReportItem, ...]
     replies: Mapping[str, tuple[ItemReply | None, ...]]
-    """By item, in the order of the students; None: this student did not take the quiz."""
+    """Item id -> replies in the order of the students; None: the student did not take the quiz."""
 
     def correctness(self, item: ReportItem) -> Float64Array:
-        """(n,) 1 for right, 0 for anything else, NaN for who did not take the quiz."""
+        """(n,) 1 for right, 0 for anything else, NaN for students who did not take the quiz."""
         return np.array(
             [
                 np.nan if each is None else float(each.outcome is AnswerOutcome.RIGHT)
@@ -55,28 +55,28 @@ class AnswerSheet:
         )
 
     def share_right(self, items: Sequence[ReportItem]) -> Float64Array:
-        """(n,) of these items answered rightly."""
+        """(n,) share of these items answered rightly."""
         return row_means([self.correctness(item) for item in items])
 
     @property
     def score(self) -> Float64Array:
-        """(n,) of all items."""
+        """(n,) share of all items answered rightly."""
         return self.share_right(self.items)
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """In the order in which they first come."""
+        """Topics in the order of the items."""
         return tuple(dict.fromkeys(item.topic for item in self.items))
 
     def of_topic(self, topic: str) -> tuple[ReportItem, ...]:
         return tuple(item for item in self.items if item.topic == topic)
 
     def without_replies(self) -> AnswerSheet:
-        """The same items, taken by nobody."""
+        """The same items without any replies."""
         return AnswerSheet(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
 
     def outcome_counts(self, outcome: AnswerOutcome) -> Float64Array:
-        """(n,) items with that outcome, by student."""
+        """(n,) number of items with that outcome."""
         replies = [self.replies[item.id] for item in self.items]
         return np.array(
             [
@@ -95,7 +95,7 @@ def _has_outcome(reply: ItemReply | None, outcome: AnswerOutcome) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StudentMeasure:
-    """One quantity, of each student."""
+    """One quantity of each student."""
 
     id: str
     label: str
@@ -105,14 +105,14 @@ class StudentMeasure:
 
 @dataclass(frozen=True, slots=True)
 class ClassRatings:
-    """The answers on scales of a class."""
+    """A class's answers on scales."""
 
     questions: tuple[SurveyQuestion, ...]
     values: Mapping[tuple[SurveyPhase, str], Float64Array]
-    """By phase and question: (n,) of 1 to 7, NaN where blank."""
+    """(phase, question id) -> (n,) ratings 1 to 7, NaN where blank."""
 
     def measures(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
-        """One for each question that anybody answered then."""
+        """One measure for each question with any answer in that phase."""
         return tuple(
             StudentMeasure(each.id, each.text, values)
             for each in self.questions
@@ -122,7 +122,7 @@ class ClassRatings:
         )
 
     def by_topic(self, purpose: QuestionPurpose, phase: SurveyPhase) -> tuple[StudentMeasure, ...]:
-        """For each topic, each student's mean over its questions."""
+        """One measure per topic: each student's mean over its questions."""
         topics: dict[str, list[Float64Array]] = {}
         for measure in self.measures(purpose, phase):
             topics.setdefault(self._topic(measure), []).append(measure.values)
@@ -138,7 +138,7 @@ class ClassRatings:
 
     def overall(self, purpose: QuestionPurpose, phase: SurveyPhase) -> Float64Array | None:
         """Each student's mean over the topics' means, so that a topic of many questions counts no more than
-        another; None where nobody answered."""
+        another; None without any answer."""
         topics = self.by_topic(purpose, phase)
         return row_means([each.values for each in topics]) if topics else None
 
@@ -147,7 +147,7 @@ class ClassRatings:
 
 
 def row_means(rows: Iterable[Float64Array]) -> Float64Array:
-    """(n,) the mean of what is there of each student; NaN where nothing is."""
+    """(n,) each student's mean over the rows, without NaN; NaN where all are NaN."""
     table = np.stack(list(rows))
     there = ~np.isnan(table)
     count = there.sum(axis=0)
@@ -157,7 +157,7 @@ def row_means(rows: Iterable[Float64Array]) -> Float64Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StudentGroup:
-    """Some of the students."""
+    """A group of students."""
 
     name: str
     members: BoolArray

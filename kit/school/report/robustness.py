@@ -1,4 +1,4 @@
-"""How much of a result rests on one student: the same result without each of them in turn."""
+"""Sensitivity of a result to single students: recomputes it without each student in turn."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from kit.school.report.inference import (
 )
 
 SIGNIFICANCE_LEVEL: Final = 0.05
-"""The p value that readers take for a line, for better or worse."""
+"""The usual threshold of p values."""
 MAX_TESTED: Final = 60
-"""Students up to whom p is looked at without each of them."""
+"""Largest number of students for which p is recomputed without each of them."""
 MIN_PAIRS: Final = 4
 
 
@@ -32,7 +32,7 @@ class LeaveOneOut:
     """A result without one student."""
 
     student: int
-    """His or her place in the class, from 0."""
+    """Index of the student in the class, from 0."""
     value: float
     test: PermutationTestResult
 
@@ -55,7 +55,7 @@ class Sensitivity:
 
     @property
     def decisive(self) -> tuple[LeaveOneOut, ...]:
-        """Those without whom p is on the other side of 0.05."""
+        """The students without whom p is on the other side of 0.05."""
         return tuple(
             each
             for each in self.without
@@ -65,7 +65,7 @@ class Sensitivity:
 
 
 def difference_sensitivity(values: Float64Array, division: ClassDivision, seed: int) -> Sensitivity | None:
-    """Experts' mean minus beginners'. The groups stay as they are. None where a group has nobody to spare."""
+    """Sensitivity of experts' mean minus beginners'; the groups stay as they are. None where a group has one member."""
     first, second = division.experts.members, division.beginners.members
     counted = ~np.isnan(values)
     if min((first & counted).sum(), (second & counted).sum()) < 2:
@@ -82,7 +82,7 @@ def difference_sensitivity(values: Float64Array, division: ClassDivision, seed: 
 
 
 def correlation_sensitivity(x: Float64Array, y: Float64Array, seed: int) -> Sensitivity | None:
-    """Of Pearson's r; None below four pairs, or where one quantity does not vary."""
+    """Sensitivity of Pearson's r; None below four pairs, or where one quantity does not vary."""
     both = ~(np.isnan(x) | np.isnan(y))
     if both.sum() < MIN_PAIRS or math.isnan(correlation(x, y)):
         return None
@@ -98,7 +98,7 @@ def _leave_out(
     value: Callable[[BoolArray], float],
     test: Callable[[BoolArray, int], PermutationTestResult],
 ) -> Sensitivity:
-    # Fewer in a large class, where this is asked as often as it has students.
+    # Fewer in a large class, where the test runs once per student.
     shuffles = max(1000, 100_000 // int(members.sum()))
     without = {}
     for student in np.flatnonzero(members):
@@ -108,7 +108,7 @@ def _leave_out(
         if not math.isnan(found):
             without[int(student)] = (found, kept)
     by_value = sorted(without, key=lambda student: without[student][0])
-    # In a large class only the extremes are worth a test: nobody else can move p as far.
+    # In a large class only the extremes are tested: no other student can change p as much.
     tested = set(without) if len(without) <= MAX_TESTED else {by_value[0], by_value[-1]}
     return Sensitivity(
         value(members),

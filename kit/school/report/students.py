@@ -1,4 +1,4 @@
-"""The students of a class, from the files they exported: each once, and what could not be read said plainly."""
+"""Reads the students of a class from their exported files; merges files of one student and reports unreadable ones."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from kit.plain_text import is_printable
 from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
 
 MAX_FILE_SIZE: Final = 100_000_000
-"""Bytes of one file: a year of a student's work is a hundredth of it."""
+"""Largest file that is read [bytes]: a year of a student's work is a hundredth of it."""
 MAX_NAME_LENGTH: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
 class Student:
-    """One student, perhaps of several files."""
+    """One student, read from one or more files."""
 
     label: str
-    """What the report calls them: a number, or their name if that was asked for."""
+    """Label in the report: a number, or the name if names are wanted."""
     files: tuple[Path, ...]
     events: tuple[ProgressEvent, ...]
-    """In the order of their time."""
+    """Sorted by time."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClassRoster:
-    """A class, and what was noticed while reading it."""
+    """A class, with the warnings from reading its files."""
 
     students: tuple[Student, ...]
     file_count: int
-    """How many were found, readable or not."""
+    """Number of files found, readable or not."""
     warnings: tuple[str, ...]
 
 
 @dataclass(slots=True)
 class _StudentFiles:
-    """A student while files are being put together."""
+    """A student while files are being merged."""
 
     files: list[Path]
     events: dict[str, ProgressEvent]
@@ -47,10 +47,10 @@ class _StudentFiles:
 
 
 def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoster:
-    """Reads every file, and every ``.json`` file directly in a folder; goes on past those that cannot be read.
+    """Reads every file, and every ``.json`` file directly in a folder; skips those that cannot be read, with a warning.
 
-    ``names``: students are called by the name they gave, else by their file's; otherwise S1, S2, ... in an order
-    that tells nothing of them.
+    ``use_names``: students are labelled by the name they gave, else by their file's; otherwise S1, S2, ... in an
+    order that does not identify them.
     """
     warnings: list[str] = []
     files = list(_files(paths, warnings))
@@ -72,7 +72,7 @@ def read_roster(paths: Sequence[Path], *, use_names: bool = False) -> ClassRoste
 
 
 def _files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
-    """Each file once, by whatever name it was given."""
+    """Yields each file once, also where several paths name it."""
     seen: set[Path] = set()
     for path in paths:
         inside = sorted(path.glob("*.json")) if path.is_dir() else [path]
@@ -88,7 +88,7 @@ def _files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
 
 
 def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) -> None:
-    """Reads a file, and puts it to the student whose entries it shares, if there is one."""
+    """Reads a file, and merges it with the student with whom it shares events, if there is one."""
     try:
         if file.is_file() and file.stat().st_size > MAX_FILE_SIZE:
             raise ProgressError(
@@ -127,7 +127,7 @@ def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) ->
 
 
 def _student_name(events: Iterable[ProgressEvent]) -> str:
-    """The last name that the student gave; empty if none."""
+    """The name that the student gave last; empty if none."""
     name_events = [each for each in events if each.kind is EventKind.ABOUT and each.subject == "name"]
     last = max(name_events, key=lambda each: each.time, default=None)
     value = last.content.get("value") if last is not None else None
@@ -145,12 +145,12 @@ def _same_name_warnings(students: Sequence[_StudentFiles]) -> Iterator[str]:
             files = ", ".join(sorted(str(each.files[0]) for each in some))
             yield (
                 f"{files}: give the same name but share no entry. They count as {len(some)} students; "
-                "leave one out if it is one who began anew."
+                "leave one file out if it is one student who started over."
             )
 
 
 def _unique_labels(labels: Sequence[str]) -> Iterator[str]:
-    """The same labels, those that come again with a number."""
+    """Makes labels unique by numbering repeated ones."""
     count: dict[str, int] = {}
     for label in labels:
         count[label] = count.get(label, 0) + 1

@@ -1,4 +1,4 @@
-"""What students did in the lessons: how far they came, how often they tried, what they earned, how long it took."""
+"""Students' work in the lessons: completed steps, attempts, points and time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, Final
 from kit.school.progress import EventKind, ProgressEvent
 
 MAX_IDLE: Final = timedelta(minutes=10)
-"""Whoever does nothing for longer is taken to be away; that time is not counted."""
+"""A longer gap between two events counts as a break, not as working time."""
 
 _OF_LESSONS: Final = frozenset(
     {EventKind.STEP, EventKind.PREDICTION, EventKind.ATTEMPT, EventKind.HINT, EventKind.SOLUTION}
@@ -24,14 +24,14 @@ class ExerciseWork:
     """One exercise of one student."""
 
     attempts: int = 0
-    """Without those that broke on our side."""
+    """Number of attempts, without checks that broke."""
     points: float = 0.0
-    """The best."""
+    """Points of the best attempt."""
     max_points: float = 0.0
     is_passed: bool = False
     tries_to_pass: int | None = None
     lost_criteria: Counter[str] = field(default_factory=Counter)
-    """How often each criterion was lost."""
+    """Criterion id -> number of attempts that lost it."""
     hints: int = 0
     has_seen_solution: bool = False
 
@@ -60,7 +60,7 @@ class LessonWork:
 
     @property
     def max_points(self) -> float:
-        """Of what was tried."""
+        """Sum over the exercises that were tried."""
         return sum(each.max_points for each in self.exercises.values())
 
     @property
@@ -69,11 +69,11 @@ class LessonWork:
 
 
 StudentWork = Mapping[str, LessonWork]
-"""By lesson."""
+"""Lesson name -> work."""
 
 
 def student_work(events: Sequence[ProgressEvent]) -> StudentWork:
-    """One student's work; ``events`` in the order of their time."""
+    """Computes one student's work; ``events`` must be sorted by time."""
     lessons: dict[str, LessonWork] = {}
     before: tuple[str, ProgressEvent] | None = None
     for event in events:
@@ -107,7 +107,7 @@ def _add_event(lesson: LessonWork, kind: EventKind, rest: str, content: Mapping[
 def _add_attempt(exercise: ExerciseWork, content: Mapping[str, Any]) -> None:
     verdict = content.get("verdict")
     if verdict not in ("pass", "fail"):
-        return  # the check itself broke, or nobody knows
+        return  # the check itself broke, or the content is malformed
     exercise.attempts += 1
     most = _number(content.get("max_points"))
     exercise.max_points = max(exercise.max_points, most)
@@ -131,5 +131,5 @@ def _number(value: object) -> float:
 
 
 def started_lessons(works: Iterable[StudentWork]) -> tuple[str, ...]:
-    """Every lesson that anybody began, by name."""
+    """Names of the lessons that any student has started, sorted."""
     return tuple(sorted({name for work in works for name in work}))

@@ -1,4 +1,4 @@
-"""Answering a form: what was said, what comes next, and what a typed line means. Nothing here asks or stores."""
+"""Answers to the form: reads them from events, finds open questions and parses typed lines. No input or output."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ _YES: Final[Mapping[str, bool]] = {"y": True, "yes": True, "n": False, "no": Fal
 
 
 class InvalidAnswer(ValueError):
-    """A line that does not answer the question; the message says what would."""
+    """A line that does not answer the question; the message says which lines do."""
 
 
 @dataclass(frozen=True, slots=True)
 class FormAnswers:
-    """What one student said so far; of several answers to one question the last one counts."""
+    """One student's answers so far; of several answers to one question the last one counts."""
 
     values: Mapping[tuple[SurveyPhase, str], AnswerValue] = field(default_factory=dict)
-    """By phase and question. A blank is there as None; what was never asked is not there."""
+    """(phase, question id) -> value; None: left blank. Questions that were never asked have no entry."""
     invalid_questions: tuple[str, ...] = ()
-    """Questions whose stored answer cannot be one, which are left out."""
+    """Ids of questions with a stored value that cannot be an answer; those are left out."""
 
     @classmethod
     def from_events(cls, form: SurveyForm, events: Iterable[ProgressEvent]) -> FormAnswers:
-        """Folds a student's events; those about questions that the form does not have are passed over."""
+        """Reads the answers in a student's events; skips questions that the form does not have."""
         values: dict[tuple[SurveyPhase, str], AnswerValue] = {}
         invalid: dict[str, None] = {}
         for event in events:
@@ -57,12 +57,12 @@ class FormAnswers:
         return self.values.get((phase, question))
 
     def latest_value(self, question: str, phase: SurveyPhase) -> AnswerValue:
-        """What was said in this phase; else in the last other one in which it was."""
+        """The answer of this phase; else that of the latest other phase in which there is one."""
         where = (phase, *(each for each in reversed(SurveyPhase) if each is not phase))
         return next((self.value(question, each) for each in where if self.is_answered(question, each)), None)
 
     def is_answered(self, question: str, phase: SurveyPhase) -> bool:
-        """Whether it was answered or left blank on purpose."""
+        """Whether the question was answered or left blank on purpose."""
         return (phase, question) in self.values
 
     def has_started(self, phase: SurveyPhase) -> bool:
@@ -70,7 +70,7 @@ class FormAnswers:
 
 
 def is_asked(question: SurveyQuestion, answers: FormAnswers, phase: SurveyPhase) -> bool:
-    """Whether the question is asked of this student."""
+    """Whether this student is asked the question in this phase."""
     rule = question.only_if
     return phase in question.phases and (
         rule is None or rule.is_met(answers.latest_value(rule.question, phase))
@@ -78,17 +78,17 @@ def is_asked(question: SurveyQuestion, answers: FormAnswers, phase: SurveyPhase)
 
 
 def asked_questions(form: SurveyForm, answers: FormAnswers, phase: SurveyPhase) -> list[SurveyQuestion]:
-    """All questions of the phase that this student is asked, as things stand."""
+    """All questions of the phase that this student is asked, given the answers so far."""
     return [each for each in form.questions_in_phase(phase) if is_asked(each, answers, phase)]
 
 
 def open_questions(form: SurveyForm, answers: FormAnswers, phase: SurveyPhase) -> list[SurveyQuestion]:
-    """Those of them that were neither answered nor left blank yet."""
+    """The asked questions that were neither answered nor left blank yet."""
     return [each for each in asked_questions(form, answers, phase) if not answers.is_answered(each.id, phase)]
 
 
 def parse_answer(question: SurveyQuestion, line: str) -> AnswerValue:
-    """What a typed line answers; an empty one leaves the question blank. Raises NotAnAnswer."""
+    """Parses a typed line; an empty one leaves the question blank. Raises InvalidAnswer."""
     text = line.strip()
     return _PARSERS[question.shape](question, text) if text else None
 
@@ -114,9 +114,9 @@ def _yes_no(question: SurveyQuestion, text: str) -> bool:
 
 def _text(question: SurveyQuestion, text: str) -> str:
     if len(text) > MAX_TEXT_LENGTH:
-        raise InvalidAnswer(f"That is {len(text)} characters; {MAX_TEXT_LENGTH} fit. Say it in fewer.")
+        raise InvalidAnswer(f"That is {len(text)} characters; at most {MAX_TEXT_LENGTH} fit. Shorten it.")
     if "\ufffd" in text or not is_printable(text):
-        raise InvalidAnswer("Some of that was no text, such as a key's code. Type it again.")
+        raise InvalidAnswer("Some characters are not text, such as the code of a key. Type the answer again.")
     return text
 
 

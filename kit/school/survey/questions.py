@@ -1,4 +1,4 @@
-"""A form as data: questions on scales, with choices, yes or no, or in the student's own words, and when each is asked."""
+"""The records of the form: questions with a scale, choices, yes or no, or free text, and when each is asked."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Final, TypeGuard
 
 SCALE_MIN: Final = 1
 SCALE_MAX: Final = 7
-"""Of every scale."""
+"""Bounds of every scale."""
 
 AnswerValue = int | str | bool | None
-"""What was answered: a point of the scale, a text or an option, yes or no; None: left blank."""
+"""An answer: a point of the scale, a text or an option, yes or no; None: left blank."""
 
 
 class AnswerShape(StrEnum):
-    """How a question is answered."""
+    """The kind of answer that a question takes."""
 
     SCALE = "scale"
     CHOICE = "choice"
@@ -25,18 +25,18 @@ class AnswerShape(StrEnum):
 
 
 class SurveyPhase(StrEnum):
-    """When a question is asked."""
+    """When a question is asked, relative to the lessons and the quiz."""
 
     BEFORE = "before"
-    """The lessons."""
+    """Before the lessons."""
     AFTER = "after"
-    """The lessons."""
+    """After the lessons."""
     QUIZZED = "quizzed"
-    """After the quiz, which shows what one knows: what one says of oneself is asked once more."""
+    """After the quiz, which shows students what they know: they rate themselves once more."""
 
 
 class QuestionPurpose(StrEnum):
-    """What a question is for; the class report makes a table of each kind of rating."""
+    """The purpose of a question; the class report makes a table of each kind of rating."""
 
     BACKGROUND = "background"
     EXPERIENCE = "experience"
@@ -51,16 +51,16 @@ class QuestionPurpose(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AskCondition:
-    """A question is asked only where an earlier one was answered so."""
+    """A condition on the answer to an earlier question."""
 
     question: str
     answer: bool | None = None
-    """This answer to a question of yes or no."""
+    """The required answer to a yes-or-no question."""
     at_least: int | None = None
-    """At least so much on a scale."""
+    """The lowest required point on a scale."""
 
     def is_met(self, value: AnswerValue) -> bool:
-        """A blank never does."""
+        """Whether the value meets the condition; a blank never does."""
         if self.at_least is not None:
             return isinstance(value, int) and not isinstance(value, bool) and value >= self.at_least
         return isinstance(value, bool) and value is self.answer
@@ -72,22 +72,22 @@ class SurveyQuestion:
 
     id: str
     text: str
-    """Of the row; of the question itself where there are no rows."""
+    """Text of the row; of the question itself where there are no rows."""
     purpose: QuestionPurpose
     shape: AnswerShape = AnswerShape.SCALE
     group_text: str = ""
-    """What is asked of every row of the group; empty where there are no rows."""
+    """Question text shared by all rows of the group; empty where there are no rows."""
     topic: str = ""
-    """Such as ``ros2``; ratings are averaged by it. Those of experience name what Algorithm 4 asks for."""
+    """Topic by which ratings are averaged, such as ``ros2``. Algorithm 4 reads those of experience by it."""
     phases: tuple[SurveyPhase, ...] = (SurveyPhase.AFTER,)
     low: str = ""
-    """What the scale's lowest point means."""
+    """Meaning of the scale's lowest point."""
     high: str = ""
     options: tuple[str, ...] = ()
     only_if: AskCondition | None = None
 
     def can_be_answered_with(self, value: object) -> TypeGuard[AnswerValue]:
-        """Whether a stored value can be an answer to this question; a blank can."""
+        """Whether a stored value can be an answer to this question, a blank included."""
         if value is None:
             return True
         if isinstance(value, bool):

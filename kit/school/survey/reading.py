@@ -1,4 +1,4 @@
-"""``lessons/form.yaml`` becomes a Form. Every mistake is told with its file, line and column, all at once."""
+"""Reads ``lessons/form.yaml`` into a SurveyForm; reports all mistakes at once with file, line and column."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _PHASES: Final = {each.value: each for each in SurveyPhase}
 
 
 def form_file() -> Path:
-    """The kit's own form: inside the installed package, or in a checkout. FileNotFoundError if neither."""
+    """The kit's own form: in the installed package, or in a checkout. Raises FileNotFoundError."""
     package = Path(__file__).resolve().parents[2]
     for folder in (package / "data" / "lessons", package.parent / "lessons"):
         if (folder / FORM_FILE).is_file():
@@ -40,7 +40,7 @@ def form_file() -> Path:
 
 
 def read_form(file: Path | None = None) -> SurveyForm:
-    """The form in a file, by default the kit's. Raises WorldError with all its mistakes, and FileNotFoundError."""
+    """Reads the form in a file, by default the kit's. Raises WorldError with all its mistakes, and FileNotFoundError."""
     file = form_file() if file is None else file
     problems = ProblemCollector()
     section = WorldDocuments(AllowedRoot.containing(file), {}, problems).section(file, SourceLocation(file))
@@ -67,7 +67,7 @@ def _add_group(questions: list[SurveyQuestion], group: Section) -> None:
 
 
 def _questions(group: Section) -> Iterator[tuple[SurveyQuestion, Section]]:
-    """The questions of a group, each with the section in which its id stands."""
+    """Yields the questions of a group, each with the section that holds its id."""
     identity = group.name("id")
     shape = group.choice("shape", _SHAPES, AnswerShape.SCALE.value)
     text = group.name("text")
@@ -128,7 +128,7 @@ def _rule(section: Section | None) -> AskCondition | None:
 
 
 def _check_rule(rule: AskCondition, earlier: list[SurveyQuestion], group: Section) -> None:
-    """A rule can only speak of a question that was asked before, and of an answer that it can have."""
+    """Reports a condition on a later question, or on an answer that the question cannot have."""
     named = next((each for each in earlier if each.id == rule.question), None)
     if named is None:
         hint = suggestion(rule.question, [each.id for each in earlier])

@@ -1,4 +1,4 @@
-"""What all chapters share: the class, how it is divided, and how a table of means by group is made."""
+"""The context of all chapters (class data and division), and tables and bar charts of means by group."""
 
 from __future__ import annotations
 
@@ -38,31 +38,31 @@ TOPIC_TITLES: Final[Mapping[str, str]] = MappingProxyType(
 
 
 def topic_title(topic: str) -> str:
-    """A topic as one speaks of it."""
+    """A topic's title in the report."""
     return TOPIC_TITLES.get(topic, topic)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReportContext:
-    """What a chapter is made from."""
+    """The input of every chapter."""
 
     data: ClassData
     score: Float64Array | None
     """Expertise by Algorithm 4; None where its six ratings were not asked."""
     divisions: tuple[ClassDivision, ...]
-    """All that can be made."""
+    """All divisions that are possible."""
     division: ClassDivision | None
-    """The one the tables use."""
+    """The division that the tables use; None: the class is not divided."""
     seed: int
 
     @property
     def groups(self) -> tuple[StudentGroup, ...]:
-        """Beginners and experts where there are such; then everybody."""
+        """Beginners and experts where the class is divided; then the whole class."""
         everybody = StudentGroup("overall", np.ones(len(self.data.names), dtype=np.bool_))
         return (*(self.division.groups if self.division is not None else ()), everybody)
 
     def group_difference_test(self, values: Float64Array) -> PermutationTestResult | None:
-        """Of the difference between experts and beginners; None where the class is not divided."""
+        """Tests the difference between experts and beginners; None where the class is not divided."""
         if self.division is None:
             return None
         first, second = self.division.experts.members, self.division.beginners.members
@@ -77,7 +77,7 @@ def means_table(
     bounds: tuple[float, float] = SCALE_BOUNDS,
     note: str = "",
 ) -> ReportTable:
-    """For each measure and group: n, mean, SD, the mean's interval; and p of the groups' difference.
+    """A table with n, mean, SD and the mean's interval for each measure and group, and p of the groups' difference.
 
     An interval is cut off at ``bounds``, beyond which no mean can lie.
     """
@@ -119,7 +119,7 @@ def means_bars(
     context: ReportContext,
     bounds: tuple[float, float] = SCALE_BOUNDS,
 ) -> BarChart:
-    """The same means as bars: the groups', or everybody's where there are none."""
+    """The same means as a bar chart: of the groups, or of the whole class where there are none."""
     groups = context.groups[:-1] or context.groups
     return BarChart(
         identity,
@@ -134,7 +134,7 @@ def means_bars(
 
 
 def clip_interval(interval: ConfidenceInterval, bounds: tuple[float, float]) -> ConfidenceInterval:
-    """The part of an interval that can be."""
+    """Clips an interval to bounds; NaN stays."""
     low, high = bounds
     return ConfidenceInterval(
         max(interval.low, low) if interval.low == interval.low else interval.low,
@@ -143,12 +143,12 @@ def clip_interval(interval: ConfidenceInterval, bounds: tuple[float, float]) -> 
 
 
 def division_warnings(division: ClassDivision | None) -> tuple[ReportWarning, ...]:
-    """What is doubtful about a division."""
+    """The warnings of a division."""
     if division is None:
         return ()
     return tuple(ReportWarning(f"Division {division.title}: {text}.") for text in division.warnings)
 
 
 def slug(text: str) -> str:
-    """For a file's name."""
+    """The text in characters that suit a file name."""
     return "".join(c if c.isalnum() and c.isascii() else "-" for c in text.lower()) or "other"

@@ -1,4 +1,4 @@
-"""What was done in the lessons, by lesson, exercise and student; and what students wrote."""
+"""Chapters on work in the lessons, by lesson, exercise and student; and on free-text answers."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from kit.school.report.document import (
 from kit.school.report.work import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
 
 MAX_NAMED_CRITERIA: Final = 2
-"""Criteria named for an exercise."""
+"""Largest number of lost criteria named for an exercise."""
 
 
 def lessons_chapter(context: ReportContext) -> ReportChapter | None:
-    """Attempts, points and time."""
+    """The chapter on attempts, points and time."""
     work = context.data.work
     names = started_lessons(work)
     if not names:
@@ -38,7 +38,7 @@ def lessons_chapter(context: ReportContext) -> ReportChapter | None:
     blocks.append(
         ReportText(
             f"Time is what lies between two entries of a lesson; more than {minutes} minutes without one count as a "
-            "pause. Points are the best attempt's. Attempts that broke on our side are not counted."
+            "pause. Points are the best attempt's. Attempts whose check broke are not counted."
         )
     )
     return ReportChapter("lessons", "Lessons", tuple(blocks))
@@ -155,7 +155,7 @@ def _share(part: float, whole: float) -> float | None:
 
 
 def free_text_chapter(context: ReportContext) -> ReportChapter | None:
-    """What they wrote, question by question, unchanged."""
+    """The chapter of free-text answers, question by question, unchanged."""
     blocks: list[ReportBlock] = []
     question_id = ""
     for each in context.data.free_text_answers:

@@ -1,4 +1,4 @@
-"""Who is in the class, what they knew before, and how the class is cut into beginners and experts."""
+"""Chapters on the class: its members, their experience before, and its division into beginners and experts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BINS = tuple(float(edge) for edge in np.linspace(*SCALE_BOUNDS, 7))
 
 
 def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
-    """The roll: how many, what they filled in, what was wrong with their files."""
+    """The chapter on the class: number of students, what they filled in, warnings about their files."""
     data = context.data
     quiz = [
         name
@@ -64,11 +64,11 @@ def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
     if option_rows:
         columns = (TableColumn("", CellStyle.TEXT), TableColumn("answer", CellStyle.TEXT), TableColumn("n"))
         blocks.append(
-            ReportTable("facts", "What they said of themselves", columns, option_rows, grouped=True)
+            ReportTable("facts", "What students said about themselves", columns, option_rows, grouped=True)
         )
     blocks.append(
         ReportText(
-            "How to read: n counts who answered; blanks are left out, never taken for anything. SD is of the sample "
+            "How to read: n counts who answered; blanks are left out and never replaced. SD is of the sample "
             "(n - 1). Intervals hold the true value with 95% confidence (means by Student's t, shares by Wilson). "
             "p is the share of all divisions into groups of these sizes that differ at least as much (exact "
             "permutation test, two-sided; in a large class a sample of 20,000 of them). Of twenty such p, one is below 0.05 by chance alone."
@@ -78,13 +78,13 @@ def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
 
 
 def _rated_count(context: ReportContext, phase: SurveyPhase) -> int:
-    """Students with at least one rating of that phase."""
+    """Number of students with at least one rating of that phase."""
     rows = [values for (of, _), values in context.data.ratings.values.items() if of is phase]
     return int((~np.isnan(np.stack(rows))).any(axis=0).sum()) if rows else 0
 
 
 def experience_chapter(context: ReportContext) -> ReportChapter | None:
-    """What they knew before, Algorithm 4, and the three divisions."""
+    """The chapter on experience before the lessons, Algorithm 4 and the three divisions."""
     prior = context.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     if not prior:
         return None
@@ -186,6 +186,6 @@ def _division_table(context: ReportContext) -> ReportTable:
 def rating_histogram(
     identity: str, title: str, values: np.ndarray[tuple[int], np.dtype[np.float64]]
 ) -> Histogram:
-    """Of ratings from 1 to 7."""
+    """A histogram of ratings from 1 to 7."""
     counts, _ = np.histogram(non_blank(values), BINS)
     return Histogram(identity, title, BINS, tuple(int(count) for count in counts))

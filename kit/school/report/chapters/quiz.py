@@ -1,4 +1,4 @@
-"""What the class got right, and how good the questions are."""
+"""Chapters on the quiz: scores, and the analysis of its questions."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ RIGHT_MARK: Final = "*"
 
 
 def quiz_chapter(context: ReportContext) -> ReportChapter | None:
-    """Scores by topic and question, blanks apart from wrong answers, and what changed when asked again."""
+    """The chapter on the quiz: scores by topic and question, blanks apart from wrong answers, and gains."""
     sheet = context.data.quiz
     if not sheet.items:
         return None
@@ -67,7 +67,7 @@ def quiz_chapter(context: ReportContext) -> ReportChapter | None:
 
 
 def _outcome_table(context: ReportContext) -> ReportTable:
-    """Of all the answers: how many were what."""
+    """Number of answers by outcome."""
     sheet = context.data.quiz
     counts = {outcome: sheet.outcome_counts(outcome) for outcome in AnswerOutcome}
     rows: list[tuple[TableCell, ...]] = []
@@ -157,7 +157,7 @@ def _normality_blocks(sheet: AnswerSheet) -> Iterator[ReportBlock]:
 
 
 def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
-    """The same items, first and newest answers, of who answered them again."""
+    """The gain from first to newest answers, of students who answered items again."""
     data = context.data
     if not any(each is not None for row in data.later_quiz.replies.values() for each in row):
         yield ReportText("Nobody has answered a question of the quiz a second time yet: no gain can be told.")
@@ -206,7 +206,7 @@ def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
 
 
 def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
-    """The questions that lessons and repetition ask: each as often as it was answered."""
+    """The questions that lessons and practice ask."""
     bank = context.data.bank
     rows: list[tuple[TableCell, ...]] = []
     for item in bank.items:
@@ -243,7 +243,7 @@ def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
 
 
 def items_chapter(context: ReportContext) -> ReportChapter | None:
-    """Item analysis: difficulty, item-rest correlation, distractors, KR-20."""
+    """The chapter of item analysis: difficulty, item-rest correlation, distractors, KR-20."""
     sheet = context.data.quiz
     if not sheet.items:
         return None
@@ -320,7 +320,7 @@ def _distractor_table(analyses: list[ItemAnalysis]) -> ReportTable:
 
 
 def _option_text_blocks(each: ItemAnalysis) -> Iterator[ReportBlock]:
-    """The options in words, of items that need a look."""
+    """The texts of the options, for items with warnings."""
     if not each.warnings or not each.item.options:
         return
     rows: tuple[tuple[TableCell, ...], ...] = tuple(

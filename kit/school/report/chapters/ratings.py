@@ -1,4 +1,4 @@
-"""What students say the lessons gave them, what they found hard, and what was well explained."""
+"""Chapters on students' ratings: knowledge gained, outcomes, difficulty and explanation."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _TOPIC_RATINGS: Final = {
 
 
 def knowledge_chapter(context: ReportContext) -> ReportChapter | None:
-    """What they say they learned, and how their rating of themselves changed."""
+    """The chapter on knowledge gained, and on changes of students' ratings of themselves."""
     ratings = context.data.ratings
     blocks: list[ReportBlock] = []
     gained = ratings.measures(QuestionPurpose.GAINED, SurveyPhase.AFTER)
@@ -106,7 +106,7 @@ _OUTCOME: Final = _RepeatedRating(
 
 
 def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[ReportBlock]:
-    """The same rating at two times, of those who gave both."""
+    """The change between two times of the same rating, of students who gave both."""
     ratings = context.data.ratings
     after = {each.id: each for each in ratings.measures(rating.purpose, rating.second)}
     pairs = [
@@ -155,7 +155,7 @@ def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[
 
 
 def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
-    """How far the lessons enabled them."""
+    """The chapter on outcomes."""
     ratings = context.data.ratings
     blocks: list[ReportBlock] = []
     for topic in ratings.topics(QuestionPurpose.OUTCOME, SurveyPhase.AFTER):
@@ -173,12 +173,12 @@ def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
 
 
 def difficulty_chapter(context: ReportContext) -> ReportChapter | None:
-    """How hard each topic was."""
+    """The chapter on the difficulty of topics."""
     return _topic_chapter(context, QuestionPurpose.DIFFICULTY, "Difficulty")
 
 
 def explanation_chapter(context: ReportContext) -> ReportChapter | None:
-    """How well each topic was explained."""
+    """The chapter on how well topics were explained."""
     return _topic_chapter(context, QuestionPurpose.EXPLANATION, "Explanation")
 
 

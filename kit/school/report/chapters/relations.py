@@ -1,4 +1,4 @@
-"""What goes together, and how much of it rests on one student."""
+"""Chapters on correlations between quantities, and on their sensitivity to single students."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from kit.school.survey.questions import QuestionPurpose, SurveyPhase
 
 
 class StudentQuantity(NamedTuple):
-    """Something that is known of each student."""
+    """A quantity of each student, with its bounds."""
 
     id: str
     title: str
@@ -51,13 +51,13 @@ PAIRS: Final = (
     ("difficulty", "quiz"),
     ("gained", "quiz"),
 )
-"""What is compared with what: the dissertation's plots, and the score."""
+"""Pairs of quantities to correlate: those of the dissertation's plots, and the score."""
 
 MIN_PAIRS: Final = 4
 
 
 def quantities(context: ReportContext) -> dict[str, StudentQuantity]:
-    """Those that this class has."""
+    """The quantities that this class has data for."""
     data = context.data
     found = (
         ("score", "expertise score", context.score, SCALE_BOUNDS),
@@ -152,7 +152,7 @@ def _scatter_plot(a: StudentQuantity, b: StudentQuantity) -> ScatterPlot:
 
 
 def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[ReportBlock]:
-    """Whether a parabola has its top among the students."""
+    """States where a fitted parabola has its maximum, if it lies within the data."""
     curve = fit_polynomial(a.values, b.values, 2)
     if curve is None or curve[0] >= 0:
         return []
