@@ -227,7 +227,7 @@ def test_a_beacon_sees_robots_only_and_nothing_touches_it(name: str) -> None:
 def test_a_world_names_as_few_layers_as_can_be(name: str) -> None:
     _, plan = solve_task(open_task(str(CARDS[name].world_file), root=CARDS[name].root))
     assert plan is not None
-    assert plan.names_today == plan.size == plan.bound
+    assert plan.current_name_count == plan.size == plan.bound
 
 
 @every_map

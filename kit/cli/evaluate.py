@@ -91,8 +91,8 @@ def _show_paths(
     from kit.learning.policies.evaluation import derive_seed
     from kit.learning.policies.paths import build_paths_scene, record_paths
     from kit.render.encode import ENCODERS
-    from kit.render.image import draw, image_camera, save
-    from kit.render.world_text import plain_rows
+    from kit.render.image import draw_image, image_camera, save_image
+    from kit.render.world_text import scene_rows
 
     ways = record_paths(policy, task, count, derive_seed(seed, "paths"), greedy=greedy)
     columns, rows = shutil.get_terminal_size()
@@ -102,10 +102,10 @@ def _show_paths(
         scene = build_paths_scene(card, case, ways, task.target_radius)
         if pictures is not None:
             file = pictures / f"{case.name}.png"
-            save(file, draw(scene, image_camera(scene.bounds, 640, 640)))
+            save_image(file, draw_image(scene, image_camera(scene.bounds, 640, 640)))
             click.echo(file)
         else:
             click.echo(f"\n{case.name}")
             click.echo(
-                "\n".join(plain_rows(scene, columns - 1, max(10, rows - 4), ENCODERS["braille"](True)))
+                "\n".join(scene_rows(scene, columns - 1, max(10, rows - 4), ENCODERS["braille"](True)))
             )

@@ -239,7 +239,7 @@ def _described(place: Scenario, course: ControllerSetup) -> Iterator[str]:
     from kit.fields.controller_setup import mean_position
     from kit.fields.planner import Unreachable
     from kit.render.camera import Camera
-    from kit.render.encode import Ascii
+    from kit.render.encode import AsciiEncoder
     from kit.render.field import FieldPicture, with_field
     from kit.render.painter import Painter
     from kit.run.session import Session
@@ -251,7 +251,9 @@ def _described(place: Scenario, course: ControllerSetup) -> Iterator[str]:
         scene = ViewBuilder(session).build().scene
     camera = Camera.fit(scene.bounds, *PICTURE)
     yield from (
-        Painter(Ascii()).paint(with_field(scene, picture, camera, picture.forces, traps), camera).rows()
+        Painter(AsciiEncoder())
+        .paint(with_field(scene, picture, camera, picture.forces, traps), camera)
+        .rows()
     )
     layout = course.layout
     yield f"charges: {layout.source or 'derived from the walls'}"

@@ -17,8 +17,8 @@ from kit.cli import layers_shown as shown
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.layers.case_sources import Task
-    from kit.layers.flatland.world_patch import Patch
+    from kit.layers.case_sources import PlanningTask
+    from kit.layers.flatland.world_patch import WorldPatch
     from kit.layers.flatland.world_planning import WorldPlan
 
 BROKEN: Final = 1
@@ -39,7 +39,7 @@ class _Reading:
     never: bool
     time_limit: float
 
-    def open(self, target: str, requirements: Path | None = None) -> Task:
+    def open(self, target: str, requirements: Path | None = None) -> PlanningTask:
         """What the user named. Raises WorldError and UnknownTask."""
         from kit.layers.case_sources import open_task
 
@@ -225,7 +225,7 @@ def check(
       kit layers check my.world.yaml my.layers.yaml                    in CI
     """
     from kit.layers.case_sources import solve_task
-    from kit.layers.explain import check_in_words
+    from kit.layers.explain import check_text
     from kit.layers.plan_data import check_data
 
     with _mistakes():
@@ -234,12 +234,12 @@ def check(
             raise click.UsageError(f"{world} is no Flatland world: `kit layers plan` plans requirements.")
         _, result = solve_task(task, time_limit=reading.time_limit)
         assert result is not None  # there is a world
-        more = result.names_today > result.size
-        code = BROKEN if result.wrong_today else MORE_THAN_NEEDED if more and not lenient else 0
+        more = result.current_name_count > result.size
+        code = BROKEN if result.current_breaches else MORE_THAN_NEEDED if more and not lenient else 0
         if as_json:
             click.echo(json.dumps({**check_data(result), "exit": code}, indent=2))
         else:
-            shown.echo(check_in_words(result))
+            shown.echo(check_text(result))
         raise SystemExit(code)
 
 
@@ -273,8 +273,8 @@ def explain(
     """
     from kit.layers import explain as words
     from kit.layers.case_sources import solve_task
-    from kit.layers.drawing import draw_assignment, draw_case, plain
-    from kit.layers.greedy import greedy
+    from kit.layers.drawing import draw_assignment, draw_case, to_plain_lines
+    from kit.layers.greedy import run_greedy
 
     with _mistakes():
         task = reading.open(target)
@@ -282,19 +282,19 @@ def explain(
             from kit.cli.layers_screen import show_on_screen
 
             show_on_screen(task, Path(target).name)
-        run = greedy(task.case)
-        shown.echo(words.wrapped(task.case.title))
-        shown.echo(plain(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
+        run = run_greedy(task.case)
+        shown.echo(words.wrap(task.case.title))
+        shown.echo(to_plain_lines(draw_case(task.case, glyphs=shown.glyphs(glyphs))))
         shown.echo(["", "THE SLIDES' METHOD", ""])
         shown.echo(
-            words.greedy_in_words(run, draw=shown.pictures(run, shown.glyphs(glyphs)) if pictures else None)
+            words.greedy_text(run, draw=shown.pictures(run, shown.glyphs(glyphs)) if pictures else None)
         )
         found, _ = solve_task(task, time_limit=reading.time_limit)
         shown.echo(["", "THE FEWEST LAYERS", ""])
-        shown.echo(words.plan_in_words(found))
+        shown.echo(words.plan_text(found))
         shown.echo(["", *draw_assignment(task.case, found.assignment), ""])
-        shown.echo(words.proof_in_words(found, every_pair=len(found.certificate.apart) <= 10))
-        shown.echo(words.comparison_in_words(run, found))
+        shown.echo(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
+        shown.echo(words.comparison_text(run, found))
 
 
 @command.command()
@@ -308,7 +308,7 @@ def example(name: str | None, on_screen: bool) -> None:
       kit layers example slides-lasers --screen
     """
     from kit.layers.examples import EXAMPLES
-    from kit.layers.reading import written
+    from kit.layers.reading import requirements_text
     from kit.plain_text import table
 
     if name is None:
@@ -320,7 +320,7 @@ def example(name: str | None, on_screen: bool) -> None:
 
         show_on_screen(open_task(name), name)
     elif name in EXAMPLES:
-        click.echo(written(EXAMPLES[name]), nl=False)
+        click.echo(requirements_text(EXAMPLES[name]), nl=False)
     else:
         from kit.plain_text import quoted, suggestion
 
@@ -340,21 +340,21 @@ def _variable(text: str) -> tuple[str, str]:
 @contextmanager
 def _mistakes() -> Iterator[None]:
     """A mistake in the user's files ends in words and exit code 2."""
-    from kit.layers.case_sources import UnknownTask
+    from kit.layers.case_sources import UnknownPlanningTask
     from kit.world.problems import WorldError
 
     try:
         yield
-    except (WorldError, UnknownTask) as error:
+    except (WorldError, UnknownPlanningTask) as error:
         options.fail(str(error))
 
 
-def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> None:
-    from kit.layers.flatland.world_patch import PatchError, apply, recheck
+def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quiet: bool) -> None:
+    from kit.layers.flatland.world_patch import PatchError, apply_patch, make_recheck
 
     assert task.source is not None  # there is a patch
     try:
-        apply(patch, recheck(world_plan, task.source.read, requirements=task.requirements))
+        apply_patch(patch, make_recheck(world_plan, task.source.read, requirements=task.requirements))
     except PatchError as error:
         options.fail(f"Nothing was written: {error}.")
     if patch.files and not quiet:
@@ -364,8 +364,8 @@ def _apply(task: Task, world_plan: WorldPlan, patch: Patch, *, quiet: bool) -> N
         )
 
 
-def _patch(task: Task, world_plan: WorldPlan | None, also_shared: bool) -> Patch:
-    from kit.layers.flatland.world_patch import patch_of
+def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) -> WorldPatch:
+    from kit.layers.flatland.world_patch import build_patch
     from kit.world.records import MAX_LAYERS
 
     if world_plan is None or task.source is None:
@@ -374,4 +374,4 @@ def _patch(task: Task, world_plan: WorldPlan | None, also_shared: bool) -> Patch
         )
     if world_plan.size > MAX_LAYERS:
         options.fail(f"{world_plan.size} layers do not fit into a world file: there is nothing to patch.")
-    return patch_of(world_plan, root=task.source.root, also_shared=also_shared)
+    return build_patch(world_plan, root=task.source.root, also_shared=also_shared)

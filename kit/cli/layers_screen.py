@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NoReturn
 from kit.cli import options
 
 if TYPE_CHECKING:
-    from kit.layers.case_sources import Task
+    from kit.layers.case_sources import PlanningTask
     from kit.tui.terminal import TerminalDecision
 
 
-def show_on_screen(task: Task, title: str, terminal: TerminalDecision | None = None) -> NoReturn:
+def show_on_screen(task: PlanningTask, title: str, terminal: TerminalDecision | None = None) -> NoReturn:
     """Goes through the case on a full screen, and ends the verb when that is left."""
     terminal = options.terminal() if terminal is None else terminal
     if terminal.plain.value:

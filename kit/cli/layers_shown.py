@@ -11,59 +11,59 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from kit.layers.assignment import Assignment
-    from kit.layers.drawing import Glyphs
-    from kit.layers.flatland.world_patch import Patch
+    from kit.layers.assignment import LayerAssignment
+    from kit.layers.drawing import GlyphStyle
+    from kit.layers.flatland.world_patch import WorldPatch
     from kit.layers.flatland.world_planning import WorldPlan
     from kit.layers.greedy import GreedyRun
-    from kit.layers.planning import Plan
-    from kit.layers.relaxation import Sacrifice
-    from kit.layers.requirements import Case
+    from kit.layers.planning import LayerPlan
+    from kit.layers.relaxation import Relaxation
+    from kit.layers.requirements import LayerCase
 
 
-def show_plan(case: Case, found: Plan, world_plan: WorldPlan | None, time_limit: float) -> None:
+def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
     """The plan as tables, its proof, the slides' method beside it, and the ways out where it is too large."""
     from kit.layers import explain as words
     from kit.layers.drawing import draw_assignment
-    from kit.layers.greedy import greedy
+    from kit.layers.greedy import run_greedy
     from kit.world.records import MAX_LAYERS
 
     if world_plan is None:
-        echo(words.wrapped(case.title))
-        echo(words.plan_in_words(found))
+        echo(words.wrap(case.title))
+        echo(words.plan_text(found))
         assignment, kept = found.assignment, 0
     else:
-        echo(words.world_plan_in_words(world_plan))
-        assignment, kept = world_plan.assignment, len(world_plan.world_case.slots.kept)
+        echo(words.world_plan_text(world_plan))
+        assignment, kept = world_plan.assignment, len(world_plan.world_case.layer_lists.kept_layers)
     echo(["", *draw_assignment(case, assignment), ""])
-    echo(words.proof_in_words(found))
-    echo(words.comparison_in_words(greedy(found.case), found))
+    echo(words.proof_text(found))
+    echo(words.comparison_text(run_greedy(found.case), found))
     if found.size + kept > MAX_LAYERS:
-        echo(["", *words.too_many_in_words(found, *_ways_out(found, kept, time_limit))])
+        echo(["", *words.too_many_text(found, *_ways_out(found, kept, time_limit))])
 
 
-def _ways_out(found: Plan, kept: int, time_limit: float) -> tuple[Sacrifice | None, Sacrifice | None]:
+def _ways_out(found: LayerPlan, kept: int, time_limit: float) -> tuple[Relaxation | None, Relaxation | None]:
     """What to give up, or to tolerate, so that with the kept layers there are no more than sixteen."""
-    from kit.layers.relaxation import give_up, tolerate
+    from kit.layers.relaxation import allow_unwanted, drop_requirements
     from kit.world.records import MAX_LAYERS
 
     limit = MAX_LAYERS - kept
     return (
-        give_up(found.case, limit=limit, time_limit=time_limit),
-        tolerate(found, limit=limit, time_limit=time_limit),
+        drop_requirements(found.case, limit=limit, time_limit=time_limit),
+        allow_unwanted(found, limit=limit, time_limit=time_limit),
     )
 
 
 def plan_data(
-    found: Plan, world_plan: WorldPlan | None, patch: Patch | None, time_limit: float
+    found: LayerPlan, world_plan: WorldPlan | None, patch: WorldPatch | None, time_limit: float
 ) -> dict[str, Any]:
     """Everything ``show_plan`` says, and the patch."""
-    from kit.layers.greedy import greedy
+    from kit.layers.greedy import run_greedy
     from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
     from kit.world.records import MAX_LAYERS
 
-    facts = plan_data(found, greedy(found.case))
-    kept = 0 if world_plan is None else len(world_plan.world_case.slots.kept)
+    facts = plan_data(found, run_greedy(found.case))
+    kept = 0 if world_plan is None else len(world_plan.world_case.layer_lists.kept_layers)
     if world_plan is not None:
         facts |= world_data(world_plan)
     if found.size + kept > MAX_LAYERS:
@@ -75,45 +75,47 @@ def plan_data(
     return facts
 
 
-def show_greedy(case: Case, *, as_json: bool, graph: str | None) -> None:
+def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
     from kit.layers.drawing import draw_assignment
-    from kit.layers.explain import greedy_end_in_words
-    from kit.layers.greedy import greedy
+    from kit.layers.explain import greedy_end_text
+    from kit.layers.greedy import run_greedy
     from kit.layers.plan_data import greedy_data
 
-    run = greedy(case)
+    run = run_greedy(case)
     if as_json:
         click.echo(json.dumps(greedy_data(run), indent=2))
     elif graph:
         show_graph(case, run.assignment, graph)
     else:
-        echo([*greedy_end_in_words(run), "", *draw_assignment(case, run.assignment)])
+        echo([*greedy_end_text(run), "", *draw_assignment(case, run.assignment)])
 
 
-def show_graph(case: Case, assignment: Assignment, language: str) -> None:
-    from kit.layers.graphs import graphviz, mermaid
+def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:
+    from kit.layers.graphs import graphviz_text, mermaid_text
 
-    click.echo({"dot": graphviz, "mermaid": mermaid}[language](case, assignment), nl=False)
-
-
-def show_patch(patch: Patch) -> None:
-    from kit.layers.explain import patch_in_words
-
-    echo(["", *patch_in_words(patch)])
+    click.echo({"dot": graphviz_text, "mermaid": mermaid_text}[language](case, assignment), nl=False)
 
 
-def pictures(run: GreedyRun, glyphs: Glyphs) -> Callable[[int], list[str]]:
+def show_patch(patch: WorldPatch) -> None:
+    from kit.layers.explain import patch_text
+
+    echo(["", *patch_text(patch)])
+
+
+def pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
     """Draws the graph at a step: what is struck already, and the group just made."""
-    from kit.layers.drawing import draw_case, plain
+    from kit.layers.drawing import draw_case, to_plain_lines
 
     def draw(step: int) -> list[str]:
         members = run.collision_steps[step].layer.members
-        return plain(draw_case(run.case, struck=run.struck_before(step), group=members, glyphs=glyphs))
+        return to_plain_lines(
+            draw_case(run.case, struck=run.covered_before(step), group=members, glyphs=glyphs)
+        )
 
     return draw
 
 
-def glyphs(asked: str) -> Glyphs:
+def glyphs(asked: str) -> GlyphStyle:
     """What this terminal can show, unless the user has said."""
     if asked == "auto":
         encoding = (getattr(sys.stdout, "encoding", None) or "").lower().replace("-", "")

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from kit.layers.requirements import Case, Contact, Requirement, Sight
+from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class NamedLayer:
 
 
 @dataclass(frozen=True)
-class Assignment:
+class LayerAssignment:
     """Layers in order, and for every laser the names of those it watches."""
 
     layers: tuple[NamedLayer, ...]
@@ -29,18 +29,18 @@ class Assignment:
 
     def layers_of(self, entity: str) -> tuple[str, ...]:
         """What to write in the entity's ``layers`` list."""
-        return self._lists.get(entity, ())
+        return self._layers_by_entity.get(entity, ())
 
-    def share(self, a: str, b: str) -> bool:
+    def share_layer(self, a: str, b: str) -> bool:
         """Whether two entities share a layer; whether ``a`` is in one at all, if ``b`` is ``a``."""
         return not set(self.layers_of(a)).isdisjoint(self.layers_of(b))
 
-    def sees(self, laser: str, entity: str) -> bool:
+    def can_see(self, laser: str, entity: str) -> bool:
         """Whether the laser watches a layer of the entity."""
         return not set(self.watches.get(laser, ())).isdisjoint(self.layers_of(entity))
 
     @cached_property
-    def _lists(self) -> Mapping[str, tuple[str, ...]]:
+    def _layers_by_entity(self) -> Mapping[str, tuple[str, ...]]:
         lists: dict[str, list[str]] = {}
         for layer in self.layers:
             for member in layer.members:
@@ -49,88 +49,96 @@ class Assignment:
 
 
 @dataclass(frozen=True, slots=True)
-class Breach:
+class RequirementBreach:
     """Where an assignment does not do what a case asks."""
 
-    what: Requirement
-    wanted: bool
+    requirement: Requirement
+    is_missing: bool
     """True: it should happen and does not. False: it happens and must not."""
     layers: tuple[str, ...] = ()
     """The shared layers that make it happen."""
 
     def __str__(self) -> str:
         through = f" (layer {', '.join(self.layers)})" if self.layers else ""
-        if isinstance(self.what, Sight):
-            verb = "must see" if self.wanted else "must not see"
-            return f"{self.what.laser} {verb} {self.what.entity}, but {'does not' if self.wanted else 'does'}{through}"
-        wish = "must" if self.wanted else "must not"
-        outcome = "share no layer" if self.wanted else "share one"
-        if self.what.a == self.what.b:
-            return f"the copies of {self.what.a} {wish} collide, but {outcome}{through}"
-        return f"{self.what.a} and {self.what.b} {wish} collide, but {outcome}{through}"
+        if isinstance(self.requirement, SightRequirement):
+            verb = "must see" if self.is_missing else "must not see"
+            return f"{self.requirement.laser} {verb} {self.requirement.entity}, but {'does not' if self.is_missing else 'does'}{through}"
+        wish = "must" if self.is_missing else "must not"
+        outcome = "share no layer" if self.is_missing else "share one"
+        if self.requirement.a == self.requirement.b:
+            return f"the copies of {self.requirement.a} {wish} collide, but {outcome}{through}"
+        return f"{self.requirement.a} and {self.requirement.b} {wish} collide, but {outcome}{through}"
 
 
-def breaches(case: Case, assignment: Assignment) -> tuple[Breach, ...]:
+def find_breaches(case: LayerCase, assignment: LayerAssignment) -> tuple[RequirementBreach, ...]:
     """Everything in which the assignment differs from what the case asks; empty if it does just that."""
-    found: list[Breach] = []
+    found: list[RequirementBreach] = []
     lists = {name: set(assignment.layers_of(name)) for name in case.names}
-    for pair in (*case.pairs(), *(Contact(name, name) for name in case.names)):
+    for pair in (*case.entity_pairs(), *(ContactRequirement(name, name) for name in case.names)):
         shared = lists[pair.a] & lists[pair.b]
         relation = case.relation(pair.a, pair.b)
         if relation == "collide" and not shared:
-            found.append(Breach(pair, wanted=True))
+            found.append(RequirementBreach(pair, is_missing=True))
         elif relation == "apart" and shared:
-            found.append(Breach(pair, wanted=False, layers=tuple(sorted(shared))))
+            found.append(RequirementBreach(pair, is_missing=False, layers=tuple(sorted(shared))))
     for laser in case.lasers:
         watched = set(assignment.watches.get(laser.name, ()))
         for name in case.names:
             shared = lists[name] & watched
             sighting = laser.sighting(name)
             if sighting == "sees" and not shared:
-                found.append(Breach(Sight(laser.name, name), wanted=True))
+                found.append(RequirementBreach(SightRequirement(laser.name, name), is_missing=True))
             elif sighting == "blind" and shared:
-                found.append(Breach(Sight(laser.name, name), wanted=False, layers=tuple(sorted(shared))))
+                found.append(
+                    RequirementBreach(
+                        SightRequirement(laser.name, name), is_missing=False, layers=tuple(sorted(shared))
+                    )
+                )
     return tuple(found)
 
 
-def lean(case: Case, layers: Sequence[frozenset[str]]) -> tuple[list[frozenset[str]], dict[str, list[int]]]:
+def drop_superfluous(
+    case: LayerCase, layers: Sequence[frozenset[str]]
+) -> tuple[list[frozenset[str]], dict[str, list[int]]]:
     """Layers without the members, and lasers without the layers, that nothing rests on.
 
     Takes layers that serve every requirement of the case when each laser watches all it may. Returns the
     layers with fewer members, and for each laser the numbers of those it has to watch. What is left out can
     only take away contacts and sightings that nobody asked for.
     """
-    watches = {laser.name: _fewest_watched(case, laser.name, layers) for laser in case.lasers}
+    watches = {laser.name: _choose_watched(case, laser.name, layers) for laser in case.lasers}
     members = [set(layer) for layer in layers]
     needs = Counter(name for contact in case.collide for name in (contact.a, contact.b))
     for number, layer in enumerate(layers):
         for name in sorted(layer, key=lambda n: (needs[n], n)):
-            if _superfluous(case, name, number, members, watches):
+            if _is_superfluous(case, name, number, members, watches):
                 members[number].discard(name)
     return [frozenset(layer) for layer in members], watches
 
 
-def named(case: Case, layers: Sequence[frozenset[str]], watches: Mapping[str, Iterable[int]]) -> Assignment:
+def name_layers(
+    case: LayerCase, layers: Sequence[frozenset[str]], watches: Mapping[str, Iterable[int]]
+) -> LayerAssignment:
     """The layers with the slides' names: C1, C2, ... where some contact rests on them, L1, L2, ... for lasers alone."""
     order = {name: i for i, name in enumerate(case.names)}
-    kinds = ["L" if _contacts(case, layer) == 0 else "C" for layer in layers]
+    kinds = ["L" if _count_contacts(case, layer) == 0 else "C" for layer in layers]
     ranks = sorted(range(len(layers)), key=lambda i: (kinds[i], sorted(order[name] for name in layers[i])))
     names: dict[int, str] = {}
     for number in ranks:
         names[number] = f"{kinds[number]}{1 + sum(name.startswith(kinds[number]) for name in names.values())}"
-    return Assignment(
+    return LayerAssignment(
         tuple(NamedLayer(names[i], layers[i]) for i in ranks),
         {laser: tuple(names[i] for i in ranks if i in set(numbers)) for laser, numbers in watches.items()},
     )
 
 
-def _contacts(case: Case, layer: frozenset[str]) -> int:
+def _count_contacts(case: LayerCase, layer: frozenset[str]) -> int:
     return sum(contact.a in layer and contact.b in layer for contact in case.collide)
 
 
-def _fewest_watched(case: Case, laser: str, layers: Sequence[frozenset[str]]) -> list[int]:
+def _choose_watched(case: LayerCase, laser: str, layers: Sequence[frozenset[str]]) -> list[int]:
     """Few layers that show the laser all it must see and nothing it must not: greedily, then the superfluous dropped."""
-    sees, blind = case.laser[laser].sees, case.blind(case.laser[laser])
+    sees, blind = case.laser[laser].sees, case.blind_set(case.laser[laser])
     usable = {i: layer & sees for i, layer in enumerate(layers) if layer.isdisjoint(blind) and layer & sees}
     chosen: list[int] = []
     left = set(sees)
@@ -145,8 +153,8 @@ def _fewest_watched(case: Case, laser: str, layers: Sequence[frozenset[str]]) ->
     return sorted(chosen)
 
 
-def _superfluous(
-    case: Case, name: str, number: int, members: Sequence[set[str]], watches: Mapping[str, list[int]]
+def _is_superfluous(
+    case: LayerCase, name: str, number: int, members: Sequence[set[str]], watches: Mapping[str, list[int]]
 ) -> bool:
     """Whether the entity can leave the layer and every requirement still be met."""
     elsewhere = [i for i, layer in enumerate(members) if i != number and name in layer]

@@ -33,30 +33,36 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kit.layers.requirements import Case, Contact, Requirement, Sight, named_by
+from kit.layers.requirements import (
+    ContactRequirement,
+    LayerCase,
+    Requirement,
+    SightRequirement,
+    required_entities,
+)
 
 if TYPE_CHECKING:
     import networkx
 
-Members = frozenset[str]
+LayerMembers = frozenset[str]
 
 MAX_VISIBLE_SETS = 4096
 """More sets W_T than this are not searched: twelve lasers of quite different needs."""
 
-_LOOK_AT_CLOCK_EVERY = 256
+_CLOCK_INTERVAL = 256
 
 
 @dataclass(frozen=True, slots=True)
-class Candidates:
+class CandidateLayers:
     """The columns of the cover: ``covers[i]`` are the rows (numbers of requirements) that ``layers[i]`` serves."""
 
-    layers: tuple[Members, ...]
+    layers: tuple[LayerMembers, ...]
     covers: tuple[frozenset[int], ...]
-    complete: bool
+    is_complete: bool
     """False: the search was cut short, so a cover by these layers is a plan but its optimality proves nothing."""
 
 
-def sharing_graph(case: Case) -> networkx.Graph[str]:
+def sharing_graph(case: LayerCase) -> networkx.Graph[str]:
     """G: an edge where two entities may share a layer. Without the entities that may be in no layer at all."""
     import networkx
 
@@ -64,29 +70,19 @@ def sharing_graph(case: Case) -> networkx.Graph[str]:
     graph.add_nodes_from(name for name in case.names if case.relation(name, name) != "apart")
     graph.add_edges_from(
         (pair.a, pair.b)
-        for pair in case.pairs()
+        for pair in case.entity_pairs()
         if pair.a in graph and pair.b in graph and case.relation(pair.a, pair.b) != "apart"
     )
     return graph
 
 
-def collision_graph(case: Case) -> networkx.Graph[str]:
-    """The slides' graph: an edge where two entities must collide."""
-    import networkx
-
-    graph: networkx.Graph[str] = networkx.Graph()
-    graph.add_nodes_from(case.names)
-    graph.add_edges_from((edge.a, edge.b) for edge in case.edges())
-    return graph
-
-
-def visible_sets(case: Case) -> list[Members]:
+def visible_sets(case: LayerCase) -> list[LayerMembers]:
     """Every distinct W_T, the largest first: the set of all entities, closed under taking out a laser's blind set.
 
     More than MAX_VISIBLE_SETS are a sign that they are not all there.
     """
     everything = frozenset(case.names)
-    blind_sets = {case.blind(laser) for laser in case.lasers if laser.sees}
+    blind_sets = {case.blind_set(laser) for laser in case.lasers if laser.sees}
     found = {everything}
     # Invariant: ``found`` is closed under the blind sets looked at so far.
     for blind in sorted(blind_sets, key=lambda b: (len(b), sorted(b))):
@@ -96,18 +92,20 @@ def visible_sets(case: Case) -> list[Members]:
     return sorted((w for w in found if w), key=lambda w: (-len(w), sorted(w)))
 
 
-def find_candidates(case: Case, *, limit: int = 100_000, deadline: float = float("inf")) -> Candidates:
+def find_candidates(
+    case: LayerCase, *, limit: int = 100_000, deadline: float = float("inf")
+) -> CandidateLayers:
     """All candidate layers of the case, or as many as ``limit`` and ``deadline`` (of time.monotonic) allow.
 
     Even when cut short, every requirement is served by at least one of them.
     """
     graph = sharing_graph(case)
-    rows = Rows(case)
-    found: dict[Members, frozenset[int]] = {}
+    rows = RequirementRows(case)
+    found: dict[LayerMembers, frozenset[int]] = {}
     visible = visible_sets(case)
     complete = len(visible) <= MAX_VISIBLE_SETS
     # Invariant: ``found`` holds every maximal clique of the graphs searched so far that serves something.
-    for layer in _cliques(graph, visible, deadline):
+    for layer in _maximal_cliques(graph, visible, deadline):
         if layer is None or len(found) >= limit:
             complete = False
             break
@@ -115,14 +113,14 @@ def find_candidates(case: Case, *, limit: int = 100_000, deadline: float = float
             found[layer] = covers
     if not complete:
         served = set().union(*found.values())
-        for layer in _grown_for(graph, case, rows, served):
+        for layer in _cliques_for_rows(graph, case, rows, served):
             found[layer] = rows.served_by(layer)
-    return Candidates(tuple(found), tuple(found.values()), complete)
+    return CandidateLayers(tuple(found), tuple(found.values()), complete)
 
 
-def _cliques(
-    graph: networkx.Graph[str], visible: Iterable[Members], deadline: float
-) -> Iterator[Members | None]:
+def _maximal_cliques(
+    graph: networkx.Graph[str], visible: Iterable[LayerMembers], deadline: float
+) -> Iterator[LayerMembers | None]:
     """The maximal cliques inside each of the sets, and a None at the end if the time was up before."""
     import networkx
 
@@ -131,51 +129,57 @@ def _cliques(
             yield None
             return
         for count, clique in enumerate(networkx.find_cliques(graph.subgraph(seen).copy())):
-            if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+            if count % _CLOCK_INTERVAL == 0 and time.monotonic() > deadline:
                 yield None
                 return
             yield frozenset(clique)
 
 
-def _grown_for(graph: networkx.Graph[str], case: Case, rows: Rows, served: set[int]) -> Iterator[Members]:
+def _cliques_for_rows(
+    graph: networkx.Graph[str], case: LayerCase, rows: RequirementRows, served: set[int]
+) -> Iterator[LayerMembers]:
     """Layers for the requirements not ``served`` yet, one grown after the other until all are."""
     neighbours = {name: set(graph.adj[name]) for name in graph}
     joining = sorted(neighbours, key=lambda name: (-len(neighbours[name]), name))
     for row, requirement in enumerate(case.requirements):
         if row not in served:
-            layer = _grown(neighbours, joining, case, requirement)
+            layer = _grow_clique(neighbours, joining, case, requirement)
             served |= rows.served_by(layer)
             yield layer
 
 
-def _grown(
-    neighbours: Mapping[str, set[str]], joining: Sequence[str], case: Case, requirement: Requirement
-) -> Members:
+def _grow_clique(
+    neighbours: Mapping[str, set[str]], joining: Sequence[str], case: LayerCase, requirement: Requirement
+) -> LayerMembers:
     """One maximal layer that serves a requirement: its entities, then whoever fits, in the order of ``joining``."""
-    layer = set(named_by(requirement))
-    blind = case.blind(case.laser[requirement.laser]) if isinstance(requirement, Sight) else frozenset()
+    layer = set(required_entities(requirement))
+    blind = (
+        case.blind_set(case.laser[requirement.laser])
+        if isinstance(requirement, SightRequirement)
+        else frozenset()
+    )
     for name in joining:
         if name not in layer and name not in blind and layer <= neighbours[name]:
             layer.add(name)
     return frozenset(layer)
 
 
-class Rows:
+class RequirementRows:
     """The requirements, numbered, and which of them a layer serves."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: LayerCase) -> None:
         self._contacts: dict[str, list[tuple[str, int]]] = {}
-        self._sights: list[tuple[Members, dict[str, int]]] = []
+        self._sights: list[tuple[LayerMembers, dict[str, int]]] = []
         sights: dict[str, dict[str, int]] = {}
         for row, requirement in enumerate(case.requirements):
-            if isinstance(requirement, Contact):
+            if isinstance(requirement, ContactRequirement):
                 self._contacts.setdefault(requirement.a, []).append((requirement.b, row))
             else:
                 sights.setdefault(requirement.laser, {})[requirement.entity] = row
         for laser, seen in sights.items():
-            self._sights.append((case.blind(case.laser[laser]), seen))
+            self._sights.append((case.blind_set(case.laser[laser]), seen))
 
-    def served_by(self, layer: Members) -> frozenset[int]:
+    def served_by(self, layer: LayerMembers) -> frozenset[int]:
         """The rows a layer serves when every laser that may watch it does."""
         rows = [row for a in layer for b, row in self._contacts.get(a, ()) if b in layer]
         for blind, seen in self._sights:

@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.requirement_binding import bind
-from kit.layers.flatland.world_case import WorldCase, as_requirements, today_case
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
+from kit.layers.flatland.world_case import WorldCase, current_case, to_requirements_file
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
-from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
-from kit.layers.reading import Requirements, is_world, read_requirements, written
-from kit.layers.requirements import Case
+from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
+from kit.layers.reading import RequirementsFile, is_world_file, read_requirements, requirements_text
+from kit.layers.requirements import LayerCase
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names
 from kit.world.records import World
 
 
-class UnknownTask(LookupError):
+class UnknownPlanningTask(LookupError):
     """Nothing is called so; the message offers the nearest name."""
 
 
@@ -32,18 +32,19 @@ class WorldSource:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class PlanningTask:
     """A case, and where it comes from."""
 
-    case: Case
+    case: LayerCase
     world: WorldCase | None = None
-    requirements: Requirements | None = None
+    requirements: RequirementsFile | None = None
     source: WorldSource | None = None
 
     def as_requirements(self) -> str:
         """The case as the text of a requirements file."""
-        return written(
-            self.case, requirements=self.requirements if self.world is None else as_requirements(self.world)
+        return requirements_text(
+            self.case,
+            requirements=self.requirements if self.world is None else to_requirements_file(self.world),
         )
 
 
@@ -54,42 +55,44 @@ def open_task(
     one_model_never_collides: bool = False,
     root: Path | None = None,
     environment: Mapping[str, str] | None = None,
-) -> Task:
+) -> PlanningTask:
     """The case that ``target`` stands for: a requirements file, a world file or its folder, an example, a map.
 
     ``requirements``: what is asked of the world that ``target`` is; by default that it behaves as it does. Raises
     UnknownTask, and WorldError with all that is wrong in the files.
     """
-    path, own_root = _find(target)
+    path, own_root = _find_file(target)
     never = one_model_never_collides
     if path is None:
-        return _without_world(EXAMPLES[target], None, never)
+        return _task_without_world(EXAMPLES[target], None, never)
     asked = None if requirements is None else read_requirements(requirements)
-    if asked is None and not is_world(path):
+    if asked is None and not is_world_file(path):
         asked = read_requirements(path)
         if asked.world is None:
-            return _without_world(asked.case, asked, never)
+            return _task_without_world(asked.case, asked, never)
         path, own_root = asked.world, allowed_root_of(asked.world)
     root = own_root if root is None else root
-    source = WorldSource(lambda: read_world(path, root=root, environment=environment), root)
-    slots = slots_of(source.read(), one_model_never_collides=never)
-    world_case = today_case(slots) if asked is None else bind(asked, slots)
-    return Task(world_case.case, world_case, asked, source)
+    source = WorldSource(lambda: read_world_layers(path, root=root, environment=environment), root)
+    slots = find_layer_lists(source.read(), one_model_never_collides=never)
+    world_case = current_case(slots) if asked is None else bind_requirements(asked, slots)
+    return PlanningTask(world_case.case, world_case, asked, source)
 
 
-def solve_task(task: Task, *, time_limit: float = DEFAULT_TIME_LIMIT) -> tuple[Plan, WorldPlan | None]:
+def solve_task(
+    task: PlanningTask, *, time_limit: float = DEFAULT_TIME_LIMIT
+) -> tuple[LayerPlan, WorldPlan | None]:
     """The plan of the case; and where it is a world's, the plan in the world's own names."""
     if task.world is None:
-        return solve(task.case, time_limit=time_limit), None
+        return solve_layers(task.case, time_limit=time_limit), None
     world_plan = plan_world(task.world, time_limit=time_limit)
     return world_plan.plan, world_plan
 
 
-def _without_world(case: Case, requirements: Requirements | None, never: bool) -> Task:
-    return Task(case.with_one_model_free() if never else case, requirements=requirements)
+def _task_without_world(case: LayerCase, requirements: RequirementsFile | None, never: bool) -> PlanningTask:
+    return PlanningTask(case.without_self_collisions() if never else case, requirements=requirements)
 
 
-def _find(target: str) -> tuple[Path | None, Path | None]:
+def _find_file(target: str) -> tuple[Path | None, Path | None]:
     """The file meant, and the folder it may use if that is not its own; no file for an example."""
     path = Path(target)
     try:
@@ -98,7 +101,7 @@ def _find(target: str) -> tuple[Path | None, Path | None]:
         if path.exists():
             return path, allowed_root_of(path)
     except (OSError, ValueError) as error:  # no permission; a name too long; a NUL in it
-        raise UnknownTask(f"{quoted(target)} cannot be opened") from error
+        raise UnknownPlanningTask(f"{quoted(target)} cannot be opened") from error
     if target in EXAMPLES:
         return None, None
     maps = map_names()
@@ -107,4 +110,4 @@ def _find(target: str) -> tuple[Path | None, Path | None]:
         return card.world_file, card.root
     known = () if "/" in target or path.suffix else (*EXAMPLES, *maps)
     hint = f": {suggestion(target, known)}" if known else ""
-    raise UnknownTask(f"there is no file {quoted(target)}{hint}")
+    raise UnknownPlanningTask(f"there is no file {quoted(target)}{hint}")

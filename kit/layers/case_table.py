@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final, Literal
 
-from kit.layers.requirements import Case, CaseError, Entity, Laser, Relation, Sighting
+from kit.layers.requirements import LaserEntity, LayerCase, LayerCaseError, LayerEntity, Relation, Sighting
 
 NEXT_RELATION: Final[Mapping[Relation, Relation]] = MappingProxyType(
     {"apart": "collide", "collide": "either", "either": "apart"}
@@ -16,52 +16,54 @@ NEXT_RELATION: Final[Mapping[Relation, Relation]] = MappingProxyType(
 NEXT_SIGHTING: Final[Mapping[Sighting, Sighting]] = MappingProxyType(
     {"blind": "sees", "sees": "either", "either": "blind"}
 )
-_NAME: Final = re.compile(r"[^\W\d][\w-]*(\.[\w-]+)*")
+_NAME_PATTERN: Final = re.compile(r"[^\W\d][\w-]*(\.[\w-]+)*")
 
-Kind = Literal["map", "body", "laser"]
+RowKind = Literal["map", "body", "laser"]
 
 
 @dataclass(frozen=True)
-class Editing:
+class CaseTable:
     """A case, its rows (entities, then lasers) and a cursor on one mark. Methods return the changed value; they
     raise CaseError, with the reason, for what cannot be."""
 
-    written: Case
+    written_case: LayerCase
     """As it is written down."""
     row: int = 0
     column: int = 0
-    never: bool = False
+    ignore_self_collisions: bool = False
     """Whether bodies of one model are assumed never to meet, as the slides do."""
-    before: tuple[Case, ...] = ()
+    history: tuple[LayerCase, ...] = ()
     """What can be gone back to, the newest last."""
 
     @property
-    def case(self) -> Case:
-        return self.written.with_one_model_free() if self.never else self.written
+    def case(self) -> LayerCase:
+        return (
+            self.written_case.without_self_collisions() if self.ignore_self_collisions else self.written_case
+        )
 
     @property
     def rows(self) -> int:
-        return len(self.written.entities) + len(self.written.lasers)
+        return len(self.written_case.entities) + len(self.written_case.lasers)
 
     @property
-    def laser(self) -> Laser | None:
+    def laser(self) -> LaserEntity | None:
         """The laser whose row the cursor is in."""
-        number = self.row - len(self.written.entities)
-        return self.written.lasers[number] if 0 <= number < len(self.written.lasers) else None
+        number = self.row - len(self.written_case.entities)
+        return self.written_case.lasers[number] if 0 <= number < len(self.written_case.lasers) else None
 
     @property
-    def pair(self) -> tuple[str, str] | None:
+    def cell_names(self) -> tuple[str, str] | None:
         """What the cursor's mark is about: two entities in their order, or a laser and an entity."""
-        names = self.written.names
+        names = self.written_case.names
         if not names:
             return None
         column = names[self.column]
         return (column, names[self.row]) if self.laser is None else (self.laser.name, column)
 
     @property
-    def meaning(self) -> str:
+    def cell_text(self) -> str:
         """The cursor's mark in words."""
-        pair = self.pair
+        pair = self.cell_names
         if pair is None:
             return "nobody is here yet"
         one, other = pair
@@ -79,62 +81,66 @@ class Editing:
             "apart": f"{one} and {other} must not collide",
         }[self.case.relation(one, other)]
 
-    def moved(self, down: int, right: int) -> Editing:
+    def with_cursor_moved(self, down: int, right: int) -> CaseTable:
         """The cursor elsewhere, within the table."""
         row = min(max(self.row + down, 0), max(0, self.rows - 1))
-        count = len(self.written.entities)
+        count = len(self.written_case.entities)
         last = min(row, count - 1) if row < count else count - 1
         return replace(self, row=row, column=min(max(self.column + right, 0), max(0, last)))
 
-    def turned(self) -> Editing:
+    def with_mark_toggled(self) -> CaseTable:
         """The cursor's mark changed to the next of its three."""
-        pair = self.pair
+        pair = self.cell_names
         if pair is None:
-            raise CaseError("add a map or a body first")
+            raise LayerCaseError("add a map or a body first")
         one, other = pair
         if self.laser is not None:
-            new = NEXT_SIGHTING[self.written.laser[one].sighting(other)]
-            return self._changed(self.written.with_sighting(one, other, new))
-        if one == other and self.written.by_name[one].copies == 1:
-            raise CaseError(f"there is only one {one}: move the cursor to another column")
-        if self.case.relation(one, other) != self.written.relation(one, other):
-            raise CaseError("bodies of one model never meet, as long as this is assumed")
-        return self._changed(
-            self.written.with_relation(one, other, NEXT_RELATION[self.written.relation(one, other)])
+            new = NEXT_SIGHTING[self.written_case.laser[one].sighting(other)]
+            return self._with_case(self.written_case.with_sighting(one, other, new))
+        if one == other and self.written_case.by_name[one].copies == 1:
+            raise LayerCaseError(f"there is only one {one}: move the cursor to another column")
+        if self.case.relation(one, other) != self.written_case.relation(one, other):
+            raise LayerCaseError("bodies of one model never meet, as long as this is assumed")
+        return self._with_case(
+            self.written_case.with_relation(one, other, NEXT_RELATION[self.written_case.relation(one, other)])
         )
 
-    def with_new(self, kind: Kind, name: str) -> Editing:
+    def with_row_added(self, kind: RowKind, name: str) -> CaseTable:
         """Another entity or laser, apart from all others, and the cursor in its row."""
-        if not _NAME.fullmatch(name):
-            raise CaseError(f"{name!r}: a name is letters, digits, _ and -; MODEL.PART for a part of a model")
+        if not _NAME_PATTERN.fullmatch(name):
+            raise LayerCaseError(
+                f"{name!r}: a name is letters, digits, _ and -; MODEL.PART for a part of a model"
+            )
         if kind == "laser":
-            new = self._changed(self.written.with_laser(Laser(name)))
-            return replace(new, row=new.rows - 1).moved(0, 0)
+            new = self._with_case(self.written_case.with_laser(LaserEntity(name)))
+            return replace(new, row=new.rows - 1).with_cursor_moved(0, 0)
         model = name.partition(".")[0] if kind == "body" else ""
-        parts = [other.name for other in self.written.entities if model and other.model == model]
+        parts = [other.name for other in self.written_case.entities if model and other.model == model]
         if any((model == other) != (model == name) for other in parts) or (parts and model == name):
-            raise CaseError(f"{model} is either one body or has parts: {', '.join(parts)} is here already")
-        entity = Entity(name, kind="map" if kind == "map" else "bodies", model=model)
-        new = self._changed(self.written.with_entity(entity))
-        return replace(new, row=len(new.written.entities) - 1).moved(0, 0)
+            raise LayerCaseError(
+                f"{model} is either one body or has parts: {', '.join(parts)} is here already"
+            )
+        entity = LayerEntity(name, kind="map" if kind == "map" else "bodies", model=model)
+        new = self._with_case(self.written_case.with_entity(entity))
+        return replace(new, row=len(new.written_case.entities) - 1).with_cursor_moved(0, 0)
 
-    def without_row(self) -> Editing:
+    def with_row_removed(self) -> CaseTable:
         """The cursor's entity or laser gone, with everything said about it."""
         if not self.rows:
-            raise CaseError("nobody is here")
+            raise LayerCaseError("nobody is here")
         laser = self.laser
         gone = (
-            self.written.without_entity(self.written.names[self.row])
+            self.written_case.without_entity(self.written_case.names[self.row])
             if laser is None
-            else self.written.without_laser(laser.name)
+            else self.written_case.without_laser(laser.name)
         )
-        return self._changed(gone).moved(0, 0)
+        return self._with_case(gone).with_cursor_moved(0, 0)
 
-    def undone(self) -> Editing:
+    def undo(self) -> CaseTable:
         """As before the last change."""
-        if not self.before:
-            raise CaseError("there is nothing to undo")
-        return replace(self, written=self.before[-1], before=self.before[:-1]).moved(0, 0)
+        if not self.history:
+            raise LayerCaseError("there is nothing to undo")
+        return replace(self, written_case=self.history[-1], history=self.history[:-1]).with_cursor_moved(0, 0)
 
-    def _changed(self, case: Case) -> Editing:
-        return replace(self, written=case, before=(*self.before, self.written))
+    def _with_case(self, case: LayerCase) -> CaseTable:
+        return replace(self, written_case=case, history=(*self.history, self.written_case))

@@ -15,58 +15,60 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 
-from kit.layers.candidates import Candidates
-from kit.layers.cover import Cover
-from kit.layers.requirements import Case, Requirement, fit_together
+from kit.layers.candidates import CandidateLayers
+from kit.layers.cover import SetCover
+from kit.layers.requirements import LayerCase, Requirement, layer_conflict
 
-Weights = Mapping[Requirement, Fraction]
+RequirementWeights = Mapping[Requirement, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
-class Certificate:
+class BoundCertificate:
     """A lower bound on the number of layers, with its reasons.
 
     ``bound`` = len(apart) + the sum of the weights of each part, rounded up.
     """
 
-    apart: tuple[Requirement, ...]
+    conflicting: tuple[Requirement, ...]
     """Requirements of which no two fit one layer."""
-    parts: tuple[Weights, ...] = ()
+    weighted_parts: tuple[RequirementWeights, ...] = ()
     """Weights, of which no layer collects more than 1; no layer serves two parts, nor a part and one ``apart``."""
 
     @property
     def bound(self) -> int:
-        return len(self.apart) + sum(math.ceil(sum(part.values())) for part in self.parts)
+        return len(self.conflicting) + sum(math.ceil(sum(part.values())) for part in self.weighted_parts)
 
 
-def certificate_of(
-    case: Case, candidates: Candidates, cover: Cover, *, deadline: float = math.inf
-) -> Certificate:
+def build_certificate(
+    case: LayerCase, candidates: CandidateLayers, cover: SetCover, *, deadline: float = math.inf
+) -> BoundCertificate:
     """The reasons a cover came with, as requirements; only those that hold when they are checked afresh.
 
     ``candidates`` must be complete for the weights to count; without them a packing that ``greedily_apart``
     finds takes their place.
     """
-    if candidates.complete:
-        found = Certificate(
-            tuple(case.requirements[row] for row in cover.packed),
+    if candidates.is_complete:
+        found = BoundCertificate(
+            tuple(case.requirements[row] for row in cover.packed_rows),
             tuple(
-                {case.requirements[row]: weight for row, weight in part.items()} for part in cover.weighted
+                {case.requirements[row]: weight for row, weight in part.items()} for part in cover.row_weights
             ),
         )
-        if holds(case, candidates, found):
+        if is_valid_certificate(case, candidates, found):
             return found
-    return greedily_apart(case, deadline=deadline)
+    return greedy_conflict_clique(case, deadline=deadline)
 
 
-def holds(case: Case, candidates: Candidates, certificate: Certificate) -> bool:
+def is_valid_certificate(case: LayerCase, candidates: CandidateLayers, certificate: BoundCertificate) -> bool:
     """Whether the certificate is what it claims to be, by the definitions alone."""
-    pairs = combinations(certificate.apart, 2)
-    if any(fit_together(case, one, other) is None for one, other in pairs):
+    pairs = combinations(certificate.conflicting, 2)
+    if any(layer_conflict(case, one, other) is None for one, other in pairs):
         return False
-    if not certificate.parts:
+    if not certificate.weighted_parts:
         return True
-    parts = [{requirement: Fraction(1)} for requirement in certificate.apart] + list(certificate.parts)
+    parts = [{requirement: Fraction(1)} for requirement in certificate.conflicting] + list(
+        certificate.weighted_parts
+    )
     number = {requirement: i for i, requirement in enumerate(case.requirements)}
     weight = {number[r]: (part, value) for part, weights in enumerate(parts) for r, value in weights.items()}
     if len(weight) < sum(map(len, parts)) or any(value < 0 for _, value in weight.values()):
@@ -78,12 +80,12 @@ def holds(case: Case, candidates: Candidates, certificate: Certificate) -> bool:
     return True
 
 
-def greedily_apart(case: Case, *, deadline: float = math.inf) -> Certificate:
+def greedy_conflict_clique(case: LayerCase, *, deadline: float = math.inf) -> BoundCertificate:
     """Requirements of which no two fit one layer, found one after the other; often not the most there are."""
     chosen: list[Requirement] = []
     for requirement in case.requirements:
         if time.monotonic() > deadline:
             break
-        if all(fit_together(case, requirement, other) is not None for other in chosen):
+        if all(layer_conflict(case, requirement, other) is not None for other in chosen):
             chosen.append(requirement)
-    return Certificate(tuple(chosen))
+    return BoundCertificate(tuple(chosen))

@@ -30,30 +30,30 @@ from heapq import heapify, heappop, heappush
 
 from kit.layers import solver
 
-Column = frozenset[int]
+CoverColumn = frozenset[int]
 
-_LARGEST_DENOMINATOR = 1000
-_LOOK_AT_CLOCK_EVERY = 64
+_MAX_DENOMINATOR = 1000
+_CLOCK_INTERVAL = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Cover:
+class SetCover:
     """Which columns cover every row, and the bound on how few can."""
 
     chosen: tuple[int, ...]
     bound: int
-    packed: tuple[int, ...]
+    packed_rows: tuple[int, ...]
     """Rows of which no column covers two."""
-    weighted: tuple[dict[int, Fraction], ...]
+    row_weights: tuple[dict[int, Fraction], ...]
     """Per part that needs it: weights of rows; no column collects more than 1, nor touches two parts."""
 
     @property
-    def proved(self) -> bool:
+    def is_proved(self) -> bool:
         return self.bound == len(self.chosen)
 
 
 @dataclass(slots=True)
-class _Part:
+class _CoverMatrix:
     """The part of a matrix that the reductions left. Invariant: ``covers`` and ``covered_by`` mirror each other."""
 
     covers: dict[int, set[int]]
@@ -68,85 +68,87 @@ class _Part:
             self.covered_by[row].discard(column)
 
 
-def minimum_cover(columns: Sequence[Column], rows: int, *, deadline: float = math.inf) -> Cover:
+def minimum_cover(columns: Sequence[CoverColumn], rows: int, *, deadline: float = math.inf) -> SetCover:
     """The fewest of ``columns`` whose union is ``range(rows)``; as good a cover as the deadline allows, with its bound.
 
     Every row must lie in some column. The deadline is one of ``time.monotonic``.
     """
-    whole = _Part({i: set(column) for i, column in enumerate(columns)}, {row: set() for row in range(rows)})
+    whole = _CoverMatrix(
+        {i: set(column) for i, column in enumerate(columns)}, {row: set() for row in range(rows)}
+    )
     for i, column in enumerate(columns):
         for row in column:
             whole.covered_by[row].add(i)
     if uncovered := [row for row, by in whole.covered_by.items() if not by]:
         raise ValueError(f"no column covers row {uncovered[0]}")
     essential, packed = _reduce(whole, deadline)
-    results = [_settle(part, deadline) for part in _parts(whole)]
-    return Cover(
+    results = [_solve_component(part, deadline) for part in _connected_components(whole)]
+    return SetCover(
         tuple(sorted([*essential, *(c for result in results for c in result.chosen)])),
         len(packed) + sum(result.bound for result in results),
-        tuple(sorted([*packed, *(row for result in results for row in result.packed)])),
-        tuple(weights for result in results for weights in result.weighted),
+        tuple(sorted([*packed, *(row for result in results for row in result.packed_rows)])),
+        tuple(weights for result in results for weights in result.row_weights),
     )
 
 
-def _reduce(part: _Part, deadline: float) -> tuple[list[int], list[int]]:
+def _reduce(matrix: _CoverMatrix, deadline: float) -> tuple[list[int], list[int]]:
     """Applies the reductions in place until none applies. Returns the essential columns and their witnesses."""
     essential: list[int] = []
     witnesses: list[int] = []
     changed = True
     while changed and time.monotonic() < deadline:
-        changed = _drop_dominated_rows(part, deadline) | _drop_dominated_columns(part, deadline)
-        for row in sorted(part.covered_by):
-            by = part.covered_by.get(row)
+        changed = _drop_dominated_rows(matrix, deadline) | _drop_dominated_columns(matrix, deadline)
+        for row in sorted(matrix.covered_by):
+            by = matrix.covered_by.get(row)
             if by is not None and len(by) == 1:
                 (column,) = by
                 essential.append(column)
                 witnesses.append(row)
-                for covered in sorted(part.covers[column]):
-                    part.drop_row(covered)
-                part.drop_column(column)
+                for covered in sorted(matrix.covers[column]):
+                    matrix.drop_row(covered)
+                matrix.drop_column(column)
                 changed = True
     return essential, witnesses
 
 
-def _drop_dominated_rows(part: _Part, deadline: float) -> bool:
+def _drop_dominated_rows(matrix: _CoverMatrix, deadline: float) -> bool:
     dropped = False
-    for count, row in enumerate(sorted(part.covered_by)):
-        if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+    for count, row in enumerate(sorted(matrix.covered_by)):
+        if count % _CLOCK_INTERVAL == 0 and time.monotonic() > deadline:
             break
-        if (by := part.covered_by.get(row)) is None:
+        if (by := matrix.covered_by.get(row)) is None:
             continue
         # A row that all of ``by`` cover lies in each of them: it is enough to look into the smallest.
-        smallest = min(by, key=lambda c: (len(part.covers[c]), c))
-        for other in sorted(part.covers[smallest]):
-            if other != row and by <= part.covered_by[other]:
-                part.drop_row(other)
+        smallest = min(by, key=lambda c: (len(matrix.covers[c]), c))
+        for other in sorted(matrix.covers[smallest]):
+            if other != row and by <= matrix.covered_by[other]:
+                matrix.drop_row(other)
                 dropped = True
     return dropped
 
 
-def _drop_dominated_columns(part: _Part, deadline: float) -> bool:
+def _drop_dominated_columns(matrix: _CoverMatrix, deadline: float) -> bool:
     dropped = False
-    for count, column in enumerate(sorted(part.covers)):
-        if count % _LOOK_AT_CLOCK_EVERY == 0 and time.monotonic() > deadline:
+    for count, column in enumerate(sorted(matrix.covers)):
+        if count % _CLOCK_INTERVAL == 0 and time.monotonic() > deadline:
             break
-        rows = part.covers[column]
+        rows = matrix.covers[column]
         if not rows:
-            part.drop_column(column)
+            matrix.drop_column(column)
             dropped = True
             continue
         # A column that covers all of ``rows`` covers the rarest of them.
-        rarest = min(rows, key=lambda r: (len(part.covered_by[r]), r))
-        if any(other != column and rows <= part.covers[other] for other in part.covered_by[rarest]):
-            part.drop_column(column)
+        rarest = min(rows, key=lambda r: (len(matrix.covered_by[r]), r))
+        if any(other != column and rows <= matrix.covers[other] for other in matrix.covered_by[rarest]):
+            matrix.drop_column(column)
             dropped = True
     return dropped
 
 
-def _parts(part: _Part) -> list[_Part]:
+def _connected_components(matrix: _CoverMatrix) -> list[_CoverMatrix]:
     """The connected components of a reduced matrix, each column and row in one of them."""
-    parts: list[_Part] = []
-    left = set(part.covered_by)
+    parts: list[_CoverMatrix] = []
+    left = set(matrix.covered_by)
     while left:
         rows: set[int] = set()
         columns: set[int] = set()
@@ -155,87 +157,92 @@ def _parts(part: _Part) -> list[_Part]:
             row = open_rows.pop()
             if row not in rows:
                 rows.add(row)
-                fresh = part.covered_by[row] - columns
+                fresh = matrix.covered_by[row] - columns
                 columns |= fresh
-                open_rows.extend(r for c in sorted(fresh) for r in part.covers[c] if r not in rows)
+                open_rows.extend(r for c in sorted(fresh) for r in matrix.covers[c] if r not in rows)
         left -= rows
         parts.append(
-            _Part({c: part.covers[c] for c in sorted(columns)}, {r: part.covered_by[r] for r in sorted(rows)})
+            _CoverMatrix(
+                {c: matrix.covers[c] for c in sorted(columns)},
+                {r: matrix.covered_by[r] for r in sorted(rows)},
+            )
         )
     return parts
 
 
-def _settle(part: _Part, deadline: float) -> Cover:
+def _solve_component(component: _CoverMatrix, deadline: float) -> SetCover:
     """The cover of one part: by the greedy methods if they meet, else by HiGHS."""
-    chosen, packed = _greedy_cover(part), _greedy_packing(part)
+    chosen, packed = _greedy_cover(component), _greedy_packing(component)
     if len(chosen) == len(packed):
-        return Cover(chosen, len(chosen), packed, ())
-    columns, rows = sorted(part.covers), sorted(part.covered_by)
+        return SetCover(chosen, len(chosen), packed, ())
+    columns, rows = sorted(component.covers), sorted(component.covered_by)
     number = {row: i for i, row in enumerate(rows)}
-    matrix = [frozenset(number[row] for row in part.covers[column]) for column in columns]
+    matrix = [frozenset(number[row] for row in component.covers[column]) for column in columns]
 
     def left() -> float:
         return deadline - time.monotonic()
 
     if left() <= 0:
-        return Cover(chosen, len(packed), packed, ())
-    values = solver.row_weights(matrix, len(rows), left())
-    selection = solver.fewest_columns(matrix, len(rows), left())
+        return SetCover(chosen, len(packed), packed, ())
+    values = solver.fractional_packing(matrix, len(rows), left())
+    selection = solver.minimum_columns(matrix, len(rows), left())
     bound = len(packed)
     if selection is not None:
         bound = max(bound, selection.bound)
         if len(selection.chosen) < len(chosen):
             chosen = tuple(columns[c] for c in selection.chosen)
-    weights = None if values is None else _exact(values, matrix)
+    weights = None if values is None else _feasible_fractions(values, matrix)
     if weights is None:
-        return Cover(chosen, bound, packed, ())
+        return SetCover(chosen, bound, packed, ())
     total = sum(weights, Fraction(0))
     bound = max(bound, math.ceil(total))
     if total > len(packed) and total.denominator == 1:  # else no packing reaches the bound of the weights
-        packed = max(packed, tuple(rows[i] for i in solver.most_rows(matrix, len(rows), left())), key=len)
+        packed = max(
+            packed, tuple(rows[i] for i in solver.maximum_packing(matrix, len(rows), left())), key=len
+        )
     if len(packed) >= math.ceil(total):
-        return Cover(chosen, bound, packed, ())
-    return Cover(chosen, bound, (), ({rows[i]: weight for i, weight in enumerate(weights) if weight},))
+        return SetCover(chosen, bound, packed, ())
+    return SetCover(chosen, bound, (), ({rows[i]: weight for i, weight in enumerate(weights) if weight},))
 
 
-def _exact(values: Sequence[float], matrix: Sequence[Column]) -> list[Fraction]:
+def _feasible_fractions(values: Sequence[float], matrix: Sequence[CoverColumn]) -> list[Fraction]:
     """The weights as fractions that certainly obey "no column collects more than 1"."""
-    weights = [Fraction(value).limit_denominator(_LARGEST_DENOMINATOR) for value in values]
+    weights = [Fraction(value).limit_denominator(_MAX_DENOMINATOR) for value in values]
     heaviest = max(
         (sum((weights[row] for row in column), Fraction(0)) for column in matrix), default=Fraction(1)
     )
     return [weight / heaviest for weight in weights] if heaviest > 1 else weights
 
 
-def _greedy_cover(part: _Part) -> tuple[int, ...]:
+def _greedy_cover(matrix: _CoverMatrix) -> tuple[int, ...]:
     """The column that covers most of what is left, until nothing is; then whatever turned out superfluous is dropped."""
-    left = set(part.covered_by)
+    left = set(matrix.covered_by)
     chosen: list[int] = []
     # What a column adds can only shrink, so the first whose stored gain is still right adds the most.
-    heap = [(-len(rows), column) for column, rows in part.covers.items()]
+    heap = [(-len(rows), column) for column, rows in matrix.covers.items()]
     heapify(heap)
     while left:
         stored, column = heappop(heap)
-        gain = len(part.covers[column] & left)
+        gain = len(matrix.covers[column] & left)
         if -stored == gain:
             chosen.append(column)
-            left -= part.covers[column]
+            left -= matrix.covers[column]
         elif gain:
             heappush(heap, (-gain, column))
-    times = Counter(row for column in chosen for row in part.covers[column])
+    times = Counter(row for column in chosen for row in matrix.covers[column])
     for column in list(chosen):
-        if all(times[row] > 1 for row in part.covers[column]):
+        if all(times[row] > 1 for row in matrix.covers[column]):
             chosen.remove(column)
-            times.subtract(part.covers[column])
+            times.subtract(matrix.covers[column])
     return tuple(sorted(chosen))
 
 
-def _greedy_packing(part: _Part) -> tuple[int, ...]:
+def _greedy_packing(matrix: _CoverMatrix) -> tuple[int, ...]:
     """Rows that share no column, those in the fewest columns first."""
     used: set[int] = set()
     packed: list[int] = []
-    for row in sorted(part.covered_by, key=lambda r: (len(part.covered_by[r]), r)):
-        if used.isdisjoint(part.covered_by[row]):
+    for row in sorted(matrix.covered_by, key=lambda r: (len(matrix.covered_by[r]), r)):
+        if used.isdisjoint(matrix.covered_by[row]):
             packed.append(row)
-            used |= part.covered_by[row]
+            used |= matrix.covered_by[row]
     return tuple(packed)

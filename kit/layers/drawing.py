@@ -12,78 +12,80 @@ from dataclasses import dataclass
 from itertools import combinations, groupby
 from typing import Final, Literal
 
-from kit.layers.assignment import Assignment
-from kit.layers.requirements import Case, Contact
+from kit.layers.assignment import LayerAssignment
+from kit.layers.requirements import ContactRequirement, LayerCase
 from kit.plain_text import table
 
-Style = Literal[
+DrawingStyle = Literal[
     "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"
 ]
-Glyphs = Literal["braille", "ascii"]
+GlyphStyle = Literal["braille", "ascii"]
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class DrawingSpan:
     text: str
-    style: Style
+    style: DrawingStyle
 
 
-Line = tuple[Span, ...]
+DrawingLine = tuple[DrawingSpan, ...]
 
-_ORDER: Final[tuple[Style, ...]] = (
+_STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
     "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
     "cursor",
 )  # fmt: skip
 """Where two things meet in one character, the later one is seen."""
 
-_RANK: Final = {style: rank for rank, style in enumerate(_ORDER)}
+_STYLE_RANK: Final = {style: rank for rank, style in enumerate(_STYLE_ORDER)}
 
-MOST_IN_PICTURE = 16
+MAX_ENTITIES_IN_PICTURE = 16
 """With more entities than this, lines cross too often to be followed: draw the matrix."""
 
 
-def plain(lines: Iterable[Line]) -> list[str]:
+def to_plain_lines(lines: Iterable[DrawingLine]) -> list[str]:
     """The lines as text, without what trails behind."""
     return ["".join(span.text for span in line).rstrip() for line in lines]
 
 
 def draw_graph(
-    case: Case,
+    case: LayerCase,
     *,
-    struck: Collection[Contact] = (),
+    struck: Collection[ContactRequirement] = (),
     group: Collection[str] = (),
     laser: str | None = None,
     width: int = 80,
     height: int = 17,
-    glyphs: Glyphs = "braille",
-) -> list[Line]:
+    glyphs: GlyphStyle = "braille",
+) -> list[DrawingLine]:
     """The collision graph as a picture of ``width`` x ``height`` characters.
 
     Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
     group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
     it must see.
     """
-    names = [*_order_with_few_crossings(case), *([laser] if laser else [])]
-    canvas = _Canvas(width, height, glyphs)
-    spots = dict(zip(names, _ellipse(len(case.names), width, height), strict=False))
+    names = [*_reduce_crossings(case), *([laser] if laser else [])]
+    canvas = _TextCanvas(width, height, glyphs)
+    spots = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
     if laser:
         spots[laser] = ((width - 1) / 2, (height - 1) / 2)
         for name in sorted(case.laser[laser].sees):
             canvas.line(spots[laser], spots[name], "beam")
-    for edge in sorted(case.edges(), key=lambda e: _RANK[_edge_style(e, struck, group)]):
+    for edge in sorted(case.edges(), key=lambda e: _STYLE_RANK[_edge_style(e, struck, group)]):
         canvas.line(spots[edge.a], spots[edge.b], _edge_style(edge, struck, group))
     for name in names:
-        canvas.label(spots[name], *_labelled(case, name, group))
+        canvas.label(spots[name], *_entity_label(case, name, group))
     return canvas.lines()
 
 
-def _edge_style(edge: Contact, struck: Collection[Contact], group: Collection[str]) -> Style:
+def _edge_style(
+    edge: ContactRequirement, struck: Collection[ContactRequirement], group: Collection[str]
+) -> DrawingStyle:
     if edge.a in group and edge.b in group:
         return "group edge"
     return "struck" if edge in struck else "edge"
 
 
-def _labelled(case: Case, name: str, group: Collection[str]) -> tuple[str, Style]:
+def _entity_label(case: LayerCase, name: str, group: Collection[str]) -> tuple[str, DrawingStyle]:
     if name in group:
         return f"[{name}]", "group"
     entity = case.by_name.get(name)
@@ -92,26 +94,26 @@ def _labelled(case: Case, name: str, group: Collection[str]) -> tuple[str, Style
     return (f"#{name}#", "map") if entity.kind == "map" else (f" {name} ", "body")
 
 
-def _ellipse(count: int, width: int, height: int) -> list[tuple[float, float]]:
+def _ellipse_points(count: int, width: int, height: int) -> list[tuple[float, float]]:
     """Points on an ellipse as wide and high as the picture, from the top clockwise: (column, row)."""
     turns = [math.tau * i / max(count, 1) - math.pi / 2 for i in range(count)]
     across, down = max(1.0, (width - 1) / 2 - 6), (height - 1) / 2
     return [((width - 1) / 2 + across * math.cos(t), down + down * math.sin(t)) for t in turns]
 
 
-def _order_with_few_crossings(case: Case) -> list[str]:
+def _reduce_crossings(case: LayerCase) -> list[str]:
     """The entities around the ellipse, two swapped as long as that makes fewer edges cross."""
     order = list(case.names)
     edges = [(edge.a, edge.b) for edge in case.edges()]
-    if len(order) > MOST_IN_PICTURE:
+    if len(order) > MAX_ENTITIES_IN_PICTURE:
         return order
-    best = _crossings(order, edges)
+    best = _crossing_cost(order, edges)
     improved = True
     while improved and best > (0, 0):
         improved = False
         for i, j in combinations(range(len(order)), 2):
             order[i], order[j] = order[j], order[i]
-            crossings = _crossings(order, edges)
+            crossings = _crossing_cost(order, edges)
             if crossings < best:
                 best, improved = crossings, True
             else:
@@ -119,7 +121,7 @@ def _order_with_few_crossings(case: Case) -> list[str]:
     return order
 
 
-def _crossings(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:
+def _crossing_cost(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:
     """How many pairs of chords cross, and how long the chords are together (in steps around the circle)."""
     place = {name: i for i, name in enumerate(order)}
     chords = [tuple(sorted((place[a], place[b]))) for a, b in edges]
@@ -127,21 +129,21 @@ def _crossings(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[
     return crossing, sum(min(b - a, len(order) - b + a) for a, b in chords)
 
 
-class _Canvas:
+class _TextCanvas:
     """A grid of characters with lines under labels. Columns and rows from 0, at the top left."""
 
-    def __init__(self, width: int, height: int, glyphs: Glyphs) -> None:
+    def __init__(self, width: int, height: int, glyphs: GlyphStyle) -> None:
         self._width, self._height, self._glyphs = width, height, glyphs
         self._dots: dict[tuple[int, int], int] = {}
-        self._styles: dict[tuple[int, int], Style] = {}
+        self._styles: dict[tuple[int, int], DrawingStyle] = {}
         self._letters: dict[tuple[int, int], str] = {}
 
-    def line(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+    def line(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
         """A straight line between two characters' middles."""
         draw = self._braille if self._glyphs == "braille" else self._ascii
         draw(start, end, style)
 
-    def label(self, middle: tuple[float, float], text: str, style: Style) -> None:
+    def label(self, middle: tuple[float, float], text: str, style: DrawingStyle) -> None:
         """Text over whatever is there, moved so that it fits."""
         row = min(max(round(middle[1]), 0), self._height - 1)
         shown = text[: self._width]
@@ -150,10 +152,10 @@ class _Canvas:
             self._letters[first + i, row] = letter
             self._styles[first + i, row] = style
 
-    def lines(self) -> list[Line]:
+    def lines(self) -> list[DrawingLine]:
         return [
             tuple(
-                Span("".join(glyph for glyph, _ in run), style)
+                DrawingSpan("".join(glyph for glyph, _ in run), style)
                 for style, run in groupby(
                     (self._cell(column, row) for column in range(self._width)), lambda c: c[1]
                 )
@@ -161,7 +163,7 @@ class _Canvas:
             for row in range(self._height)
         ]
 
-    def _cell(self, column: int, row: int) -> tuple[str, Style]:
+    def _cell(self, column: int, row: int) -> tuple[str, DrawingStyle]:
         cell = column, row
         if cell in self._letters:
             return self._letters[cell], self._styles[cell]
@@ -169,11 +171,11 @@ class _Canvas:
             return chr(0x2800 + self._dots[cell]), self._styles[cell]
         return " ", "space"
 
-    def _mark(self, cell: tuple[int, int], style: Style) -> None:
-        if _RANK[style] >= _RANK[self._styles.get(cell, "space")]:
+    def _mark(self, cell: tuple[int, int], style: DrawingStyle) -> None:
+        if _STYLE_RANK[style] >= _STYLE_RANK[self._styles.get(cell, "space")]:
             self._styles[cell] = style
 
-    def _braille(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+    def _braille(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
         x0, y0, x1, y1 = (2 * start[0] + 0.5, 4 * start[1] + 1.5, 2 * end[0] + 0.5, 4 * end[1] + 1.5)
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
         every = {"struck": 6, "beam": 3}.get(style, 1)
@@ -184,19 +186,21 @@ class _Canvas:
             if style == "group edge":
                 self._dot(x + aside[0], y + aside[1], style)
 
-    def _dot(self, x: int, y: int, style: Style) -> None:
+    def _dot(self, x: int, y: int, style: DrawingStyle) -> None:
         cell = x // 2, y // 4
         if 0 <= cell[0] < self._width and 0 <= cell[1] < self._height:
             self._dots[cell] = self._dots.get(cell, 0) | _BRAILLE[y % 4][x % 2]
             self._mark(cell, style)
 
-    def _ascii(self, start: tuple[float, float], end: tuple[float, float], style: Style) -> None:
+    def _ascii(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
         (x0, y0), (x1, y1) = start, end
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
-        letter = {"struck": ".", "beam": ":", "group edge": "*"}.get(style) or _slope(x1 - x0, y1 - y0)
+        letter = {"struck": ".", "beam": ":", "group edge": "*"}.get(style) or _line_character(
+            x1 - x0, y1 - y0
+        )
         for step in range(0, steps + 1, 2 if style == "struck" else 1):
             cell = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
-            if _RANK[style] >= _RANK[self._styles.get(cell, "space")]:
+            if _STYLE_RANK[style] >= _STYLE_RANK[self._styles.get(cell, "space")]:
                 self._letters[cell] = letter
                 self._mark(cell, style)
 
@@ -205,7 +209,7 @@ _BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """The bit of each dot of a braille character, by row and column."""
 
 
-def _slope(across: float, down: float) -> str:
+def _line_character(across: float, down: float) -> str:
     """The character that looks most like a line in this direction; a character is twice as high as wide."""
     if abs(down) * 5 < abs(across):
         return "-"
@@ -215,12 +219,12 @@ def _slope(across: float, down: float) -> str:
 
 
 def draw_matrix(
-    case: Case,
+    case: LayerCase,
     *,
-    struck: Collection[Contact] = (),
+    struck: Collection[ContactRequirement] = (),
     group: Collection[str] = (),
     cursor: tuple[int, int] | None = None,
-) -> list[Line]:
+) -> list[DrawingLine]:
     """Every pair and every laser in one table, which no number of entities tangles.
 
     ``#`` must collide, ``x`` the same and struck, ``~`` nobody minds, ``.`` must not; in a laser's row ``#`` must
@@ -232,51 +236,62 @@ def draw_matrix(
     wide = max((len(name) for name in (*case.names, *case.laser)), default=0)
     wide = min(wide, max(8, 76 - digits - 2 * len(numbers)))
     step = 2 if digits == 1 or wide + digits + 2 * len(numbers) <= 76 else 1
-    lines: list[Line] = []
+    lines: list[DrawingLine] = []
     for place in range(digits):
         head = "".join(number.rjust(digits)[place].ljust(step) for number in numbers)
-        lines.append((Span(" " * (wide + digits + 3) + head, "text"),))
+        lines.append((DrawingSpan(" " * (wide + digits + 3) + head, "text"),))
     at_row, at_column = cursor or (None, None)
     for i, a in enumerate(case.names):
         label = f"{numbers[i].rjust(digits)}{'*' if a in group else ' '}{a[:wide].ljust(wide)}  "
         marks = [_pair_mark(case, a, b, struck) for b in case.names[: i + 1]]
-        style: Style = "group" if a in group else "map" if case.by_name[a].kind == "map" else "body"
-        lines.append((Span(label, style), *_marks(marks, "edge", step, at_column if i == at_row else None)))
+        style: DrawingStyle = "group" if a in group else "map" if case.by_name[a].kind == "map" else "body"
+        lines.append(
+            (DrawingSpan(label, style), *_mark_spans(marks, "edge", step, at_column if i == at_row else None))
+        )
     for i, laser in enumerate(case.lasers, start=len(case.names)):
         marks = [{"sees": "#", "either": "~", "blind": "."}[laser.sighting(name)] for name in case.names]
         label = f"{' ' * digits}>{laser.name[:wide].ljust(wide)}  "
-        lines.append((Span(label, "laser"), *_marks(marks, "beam", step, at_column if i == at_row else None)))
+        lines.append(
+            (
+                DrawingSpan(label, "laser"),
+                *_mark_spans(marks, "beam", step, at_column if i == at_row else None),
+            )
+        )
     return lines
 
 
-def _marks(marks: Sequence[str], style: Style, step: int, cursor: int | None) -> Line:
+def _mark_spans(marks: Sequence[str], style: DrawingStyle, step: int, cursor: int | None) -> DrawingLine:
     """A row of the matrix, ``step`` characters to each mark, the one at the cursor apart."""
     text = "".join(mark.ljust(step) for mark in marks)
     if cursor is None:
-        return (Span(text, style),)
+        return (DrawingSpan(text, style),)
     at = cursor * step
-    return Span(text[:at], style), Span(text[at], "cursor"), Span(text[at + 1 :], style)
+    return DrawingSpan(text[:at], style), DrawingSpan(text[at], "cursor"), DrawingSpan(text[at + 1 :], style)
 
 
-def _pair_mark(case: Case, a: str, b: str, struck: Collection[Contact]) -> str:
+def _pair_mark(case: LayerCase, a: str, b: str, struck: Collection[ContactRequirement]) -> str:
     relation = case.relation(a, b)
     if a == b:
         return {"collide": "#", "apart": ".", "either": "\\"}[relation]
-    if relation == "collide" and Contact(a, b) in struck:
+    if relation == "collide" and ContactRequirement(a, b) in struck:
         return "x"
     return {"collide": "#", "apart": ".", "either": "~"}[relation]
 
 
 def draw_case(
-    case: Case, *, struck: Collection[Contact] = (), group: Collection[str] = (), glyphs: Glyphs = "braille"
-) -> list[Line]:
+    case: LayerCase,
+    *,
+    struck: Collection[ContactRequirement] = (),
+    group: Collection[str] = (),
+    glyphs: GlyphStyle = "braille",
+) -> list[DrawingLine]:
     """The picture of a case where that can be followed, else its matrix."""
-    if len(case.names) > MOST_IN_PICTURE:
+    if len(case.names) > MAX_ENTITIES_IN_PICTURE:
         return draw_matrix(case, struck=struck, group=group)
     return draw_graph(case, struck=struck, group=group, glyphs=glyphs)
 
 
-def draw_assignment(case: Case, assignment: Assignment, *, width: int = 80) -> list[str]:
+def draw_assignment(case: LayerCase, assignment: LayerAssignment, *, width: int = 80) -> list[str]:
     """The plan as two tables: what each layer holds and who watches it; which list each entity and laser gets."""
     watchers = {
         layer.name: ", ".join(name for name, watched in assignment.watches.items() if layer.name in watched)

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.assignment import Assignment, NamedLayer
-from kit.layers.requirements import Case, Contact, Entity, Laser
+from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
 
 
-def _case(
+def _case_from_text(
     title: str,
     edges: str,
     *,
@@ -18,24 +17,24 @@ def _case(
     ghosts: str = "",
     others: str = "",
     lasers: Mapping[str, str] = MappingProxyType({}),
-) -> Case:
+) -> LayerCase:
     """A case from text: edges as ``a-b``, names separated by spaces, ``model.part`` for a part of a model."""
     pairs = [edge.split("-") for edge in edges.split()]
     names = dict.fromkeys(
         [*maps.split(), *(name for pair in pairs for name in pair), *ghosts.split(), *others.split()]
     )
-    return Case(
+    return LayerCase(
         tuple(
-            Entity(
+            LayerEntity(
                 name,
                 kind="map" if name in maps.split() else "bodies",
                 model="" if name in maps.split() else name.partition(".")[0],
-                ghost=name in ghosts.split(),
+                is_ghost=name in ghosts.split(),
             )
             for name in names
         ),
-        tuple(Contact(a, b) for a, b in pairs),
-        lasers=tuple(Laser(name, frozenset(sees.split())) for name, sees in lasers.items()),
+        tuple(ContactRequirement(a, b) for a, b in pairs),
+        lasers=tuple(LaserEntity(name, frozenset(sees.split())) for name, sees in lasers.items()),
         title=title,
     )
 
@@ -45,88 +44,63 @@ _TWELVE_EDGES = (
     "M2-M3.B1 M2-M3.B2 Map2-M3.B1 Map2-M1 M3.B1-M1 M3.B2-M1"
 )
 
-EXAMPLES: Final[Mapping[str, Case]] = MappingProxyType(
+EXAMPLES: Final[Mapping[str, LayerCase]] = MappingProxyType(
     {
-        "two": _case("A robot between walls: one layer", "walls-robot", maps="walls"),
-        "blind-spot": _case(
+        "two": _case_from_text("A robot between walls: one layer", "walls-robot", maps="walls"),
+        "blind-spot": _case_from_text(
             "The robot touches the walls; its laser must see the walls and not the robot's own wheels",
             "walls-robot",
             maps="walls",
             lasers={"lidar": "walls"},
         ),
-        "three": _case(
+        "three": _case_from_text(
             "A robot, a person and walls: all three meet, and one layer is enough",
             "walls-robot walls-person robot-person",
             maps="walls",
         ),
-        "drone": _case(
+        "drone": _case_from_text(
             "A robot and a drone share the walls and fly past each other: two layers",
             "walls-robot walls-drone",
             maps="walls",
         ),
-        "beacon": _case(
+        "beacon": _case_from_text(
             "A robot that sees walls, and a beacon that sees the robot and touches nothing: three layers do, not four",
             "walls-robot",
             maps="walls",
             ghosts="beacon",
             lasers={"robot.lidar": "walls", "beacon.eye": "robot"},
         ),
-        "slides": _case(
+        "slides": _case_from_text(
             "The twelve edges of the slides: six layers, however one chooses",
             _TWELVE_EDGES,
             maps="Map1 Map2",
         ),
-        "slides-lasers": _case(
+        "slides-lasers": _case_from_text(
             "The twelve edges of the slides with their three lasers: ten layers",
             _TWELVE_EDGES,
             maps="Map1 Map2",
             lasers={"Ls1": "Map1 M4.B1 Map2", "Ls2": "M1 M2 Map2", "Ls3": "Map1 M4.B1 M3.B2 M1"},
         ),
-        "greedy-trap": _case(
+        "greedy-trap": _case_from_text(
             "Nine edges on which going down the list needs four layers, and three are enough",
             "a-b a-c a-d a-e b-c b-d b-f c-e c-f",
         ),
-        "laser-trap": _case(
+        "laser-trap": _case_from_text(
             "One laser for which the slides' method adds a layer that two others already make up for",
             "a-b a-c a-d b-c b-e",
             lasers={"eye": "a b d e"},
         ),
-        "unseen": _case(
+        "unseen": _case_from_text(
             "A lamp that touches nothing but must be seen: the slides' method never finds it",
             "walls-robot",
             maps="walls",
             others="lamp",
             lasers={"eye": "walls lamp"},
         ),
-        "too-many": _case(
+        "too-many": _case_from_text(
             "Four of one kind, five of the other, each to collide with all of the other: twenty layers, and only 16 exist",
             " ".join(f"left{i}-right{j}" for i in range(1, 5) for j in range(1, 6)),
         ),
     }
 )
 """Every preset by its name, the simplest first."""
-
-DECK: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = MappingProxyType(
-    {
-        "C1": (("Map1", "M4.B1", "M4.B2"), ()),
-        "C2": (("M4.B1", "M4.B2", "M2"), ()),
-        "C3": (("M2", "M3.B2"), ()),
-        "C4": (("M3.B2", "M1"), ("Ls3",)),
-        "C5": (("Map2", "M1", "M3.B1"), ()),
-        "C6": (("Map2", "M2", "M3.B1"), ()),
-        "L1": (("Map1", "M4.B1"), ("Ls1", "Ls3")),
-        "L2": (("M2", "Map2"), ("Ls2",)),
-        "L3": (("Map2", "M1"), ("Ls2",)),
-        "L4": (("Map2",), ("Ls1",)),
-    }
-)
-"""The slides' own answer to ``slides-lasers``: what each layer holds, and which lasers watch it."""
-
-
-def deck_assignment() -> Assignment:
-    """The slides' own answer to ``slides-lasers``, to be judged like any other."""
-    lasers = ("Ls1", "Ls2", "Ls3")
-    return Assignment(
-        tuple(NamedLayer(name, frozenset(members)) for name, (members, _) in DECK.items()),
-        {laser: tuple(name for name, (_, watchers) in DECK.items() if laser in watchers) for laser in lasers},
-    )

@@ -9,19 +9,19 @@ from fractions import Fraction
 from functools import partial
 from itertools import combinations
 
-from kit.layers.certificate import Certificate
-from kit.layers.flatland.world_patch import Patch
+from kit.layers.certificate import BoundCertificate
+from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
-from kit.layers.planning import Plan
-from kit.layers.relaxation import Sacrifice
-from kit.layers.requirements import Case, Requirement, Sight, fit_together
+from kit.layers.planning import LayerPlan
+from kit.layers.relaxation import Relaxation
+from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
 from kit.world.records import MAX_LAYERS
 
 WIDTH = 80
 
 
-def wrapped(text: str, *, width: int = WIDTH, indent: str = "", later: str | None = None) -> list[str]:
+def wrap(text: str, *, width: int = WIDTH, indent: str = "", later: str | None = None) -> list[str]:
     """A paragraph; ``later`` is the indent of its further lines."""
     return textwrap.wrap(
         text,
@@ -33,24 +33,24 @@ def wrapped(text: str, *, width: int = WIDTH, indent: str = "", later: str | Non
     )
 
 
-def listed(names: Iterable[object]) -> str:
+def join_with_and(names: Iterable[object]) -> str:
     """a, b and c"""
     words = [str(name) for name in names]
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-def layers_in_words(count: int) -> str:
+def layers_text(count: int) -> str:
     return f"{count} layer" if count == 1 else f"{count} layers"
 
 
-def members_in_words(case: Case, members: Collection[str]) -> str:
+def members_text(case: LayerCase, members: Collection[str]) -> str:
     """{a, b, c}, in the case's order."""
     return f"{{{', '.join(name for name in case.names if name in members)}}}"
 
 
-def requirement_in_words(requirement: Requirement, case: Case) -> str:
+def requirement_text(requirement: Requirement, case: LayerCase) -> str:
     """A requirement as a statement: "a and b collide"."""
-    if isinstance(requirement, Sight):
+    if isinstance(requirement, SightRequirement):
         return f"{requirement.laser} sees {requirement.entity}"
     if requirement.a != requirement.b:
         return f"{requirement.a} and {requirement.b} collide"
@@ -59,79 +59,81 @@ def requirement_in_words(requirement: Requirement, case: Case) -> str:
     return f"the copies of {requirement.a} collide with each other"
 
 
-def case_in_words(case: Case, *, width: int = WIDTH) -> list[str]:
+def case_text(case: LayerCase, *, width: int = WIDTH) -> list[str]:
     """What a case asks, briefly: counts, then who collides with whom and what the lasers see."""
-    say = partial(wrapped, width=width)
+    say = partial(wrap, width=width)
     maps = [entity.name for entity in case.entities if entity.kind == "map"]
     others = [entity.name for entity in case.entities if entity.kind != "map"]
     lines = say(f"Maps: {', '.join(maps) or 'none'}. Bodies: {', '.join(others) or 'none'}.")
     for contact in case.collide:
-        lines += say(requirement_in_words(contact, case), indent="  ", later="    ")
+        lines += say(requirement_text(contact, case), indent="  ", later="    ")
     for laser in case.lasers:
         seen = [name for name in case.names if name in laser.sees]
-        lines += say(f"{laser.name} sees {listed(seen) or 'nothing'}", indent="  ", later="    ")
+        lines += say(f"{laser.name} sees {join_with_and(seen) or 'nothing'}", indent="  ", later="    ")
     return lines
 
 
 # The slides' method
 
 
-def greedy_in_words(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None = None) -> Iterator[str]:
+def greedy_text(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None = None) -> Iterator[str]:
     """The method as it is taught, clique by clique, then laser by laser.
 
     ``draw``: the picture that goes with a collision step, by its number from 0.
     """
     edges = run.case.edges()
     yield f"Edges: {len(edges)}"
-    yield from wrapped(", ".join(map(str, edges)) or "none", indent="  ")
+    yield from wrap(", ".join(map(str, edges)) or "none", indent="  ")
     for number, step in enumerate(run.collision_steps, start=1):
         yield ""
-        yield from collision_step_in_words(run.case, number, step)
+        yield from collision_step_text(run.case, number, step)
         if draw is not None:
             yield from draw(number - 1)
     for laser_step in run.laser_steps:
         yield ""
-        yield from laser_step_in_words(run.case, laser_step)
+        yield from laser_step_text(run.case, laser_step)
     yield ""
-    yield from greedy_end_in_words(run)
+    yield from greedy_end_text(run)
 
 
-def greedy_end_in_words(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
+def greedy_end_text(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
     """Where the method led, and what it left open."""
-    say = partial(wrapped, width=width)
-    lines = say(f"The slides' method ends with {layers_in_words(run.size)}.")
+    say = partial(wrap, width=width)
+    lines = say(f"The slides' method ends with {layers_text(run.size)}.")
     if run.missed:
         lines += say(
-            f"It leaves a hole: {listed(run.missed)} (laser > what it should see). What collides with nothing is in "
+            f"It leaves a hole: {join_with_and(run.missed)} (laser > what it should see). What collides with nothing is in "
             "no collision layer, so the method never shows it to a laser. Give it a layer of its own."
         )
     return lines
 
 
-def collision_step_in_words(case: Case, number: int, step: CollisionStep, *, width: int = WIDTH) -> list[str]:
+def collision_step_text(
+    case: LayerCase, number: int, step: CollisionStep, *, width: int = WIDTH
+) -> list[str]:
     """One collision layer: the edge, what joined, what is struck, what is left."""
-    say = partial(wrapped, width=width)
+    say = partial(wrap, width=width)
     left = len(step.choices)
     lines = say(
         f"Step {number}. {f'Of {left} edges left, take' if left > 1 else 'Take the last edge,'} {step.edge}."
     )
     for growth in step.growth:
         also = [name for name in growth.choices if name != growth.added]
-        choice = f" ({listed(also)} could have joined instead)" if also else ""
+        choice = f" ({join_with_and(also)} could have joined instead)" if also else ""
         lines += say(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
     lines += say(
         f"Nobody {'else ' if step.growth else ''}collides with everyone. "
-        f"Layer {step.layer.name} = {members_in_words(case, step.layer.members)}.",
+        f"Layer {step.layer.name} = {members_text(case, step.layer.members)}.",
         indent="  ",
     )
-    struck = ", ".join(map(str, step.struck))
-    lines += say(f"Strike {struck}. {left - len(step.struck) or 'None'} left.", indent="  ")
+    struck = ", ".join(map(str, step.covered_edges))
+    lines += say(f"Strike {struck}. {left - len(step.covered_edges) or 'None'} left.", indent="  ")
     return lines
 
 
-def laser_step_in_words(case: Case, step: LaserStep, *, width: int = WIDTH) -> list[str]:
+def laser_step_text(case: LayerCase, step: LaserStep, *, width: int = WIDTH) -> list[str]:
     """One laser: its groups, what becomes of each, and the layers it watches."""
-    say = partial(wrapped, width=width)
+    say = partial(wrap, width=width)
     lines = say(f"Laser {step.laser}. In each collision layer, group what it must see.")
     endings = {
         "whole layer": "the whole layer, so {} itself serves",
@@ -140,81 +142,83 @@ def laser_step_in_words(case: Case, step: LaserStep, *, width: int = WIDTH) -> l
         "inside another": "inside {}: not needed",
     }
     for group in step.groups:
-        members = members_in_words(case, group.members)
-        lines += say(f"{group.source}: {members}, {endings[group.fate].format(group.layer)}.", indent="  ")
-    lines += say(f"{step.laser} watches {listed(step.watches) or 'nothing'}.", indent="  ")
+        members = members_text(case, group.members)
+        lines += say(f"{group.source}: {members}, {endings[group.outcome].format(group.layer)}.", indent="  ")
+    lines += say(f"{step.laser} watches {join_with_and(step.watches) or 'nothing'}.", indent="  ")
     return lines
 
 
 # The optimum and its proof
 
 
-def plan_in_words(plan: Plan, *, width: int = WIDTH) -> list[str]:
+def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """How many layers, and whether that is proved."""
-    say = partial(wrapped, width=width)
-    if plan.optimal:
-        return say(f"{layers_in_words(plan.size)}, and no plan has fewer.")
+    say = partial(wrap, width=width)
+    if plan.is_optimal:
+        return say(f"{layers_text(plan.size)}, and no plan has fewer.")
     return say(
-        f"{layers_in_words(plan.size)} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
+        f"{layers_text(plan.size)} found. Proved so far: at least {plan.bound} are needed, so the best plan may "
         f"have up to {plan.gap} fewer. The time was up; --time-limit gives it more."
     )
 
 
-def proof_in_words(plan: Plan, *, every_pair: bool = False, width: int = WIDTH) -> list[str]:
+def proof_text(plan: LayerPlan, *, every_pair: bool = False, width: int = WIDTH) -> list[str]:
     """Why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
-    say = partial(wrapped, width=width)
+    say = partial(wrap, width=width)
     certificate = plan.certificate
     lines = (
-        _packing_in_words(plan.case, certificate, every_pair=every_pair, width=width)
-        if certificate.apart
+        _packing_text(plan.case, certificate, every_pair=every_pair, width=width)
+        if certificate.conflicting
         else []
     )
-    for part in certificate.parts:
-        lines += _weights_in_words(plan.case, dict(part), width)
+    for part in certificate.weighted_parts:
+        lines += _weights_text(plan.case, dict(part), width)
     if not plan.size:
         return [*lines, *say("Nothing has to meet and nothing has to be seen: no layer is needed.")]
     if certificate.bound < plan.bound:
         lines += say(
-            f"That proves {certificate.bound}. The solver went through every cover by the {plan.candidates} possible "
+            f"That proves {certificate.bound}. The solver went through every cover by the {plan.candidate_count} possible "
             f"layers and found none with fewer than {plan.bound}; there is no shorter reason to give."
         )
-    elif certificate.parts and certificate.apart:
-        lines += say(f"No layer counts twice in this: together that is {layers_in_words(certificate.bound)}.")
+    elif certificate.weighted_parts and certificate.conflicting:
+        lines += say(f"No layer counts twice in this: together that is {layers_text(certificate.bound)}.")
     return lines
 
 
-def _packing_in_words(case: Case, certificate: Certificate, *, every_pair: bool, width: int) -> list[str]:
-    say = partial(wrapped, width=width)
-    apart = certificate.apart
+def _packing_text(
+    case: LayerCase, certificate: BoundCertificate, *, every_pair: bool, width: int
+) -> list[str]:
+    say = partial(wrap, width=width)
+    apart = certificate.conflicting
     count = len(apart)
     if count == 1:
         lines = say("This needs a layer:")
     else:
-        lines = say(f"No two of these {count} fit one layer, so they need {layers_in_words(count)}:")
+        lines = say(f"No two of these {count} fit one layer, so they need {layers_text(count)}:")
     for number, requirement in enumerate(apart, start=1):
-        lines += say(f"{number:>3}  {requirement_in_words(requirement, case)}", later="     ")
+        lines += say(f"{number:>3}  {requirement_text(requirement, case)}", later="     ")
     pairs = list(combinations(range(count), 2))
     shown = pairs if every_pair else [(i, i + 1) for i in range(min(3, count - 1))]
     if shown:
         lines.append("Because:" if every_pair or len(pairs) <= len(shown) else "Because, for example:")
     for i, j in shown:
-        lines += say(f"{i + 1:>3} and {j + 1}: {fit_together(case, apart[i], apart[j])}", later="     ")
+        lines += say(f"{i + 1:>3} and {j + 1}: {layer_conflict(case, apart[i], apart[j])}", later="     ")
     return lines
 
 
-def _weights_in_words(case: Case, weights: dict[Requirement, Fraction], width: int) -> list[str]:
-    say = partial(wrapped, width=width)
+def _weights_text(case: LayerCase, weights: dict[Requirement, Fraction], width: int) -> list[str]:
+    say = partial(wrap, width=width)
     total = sum(weights.values(), Fraction(0))
     lines = say(
         f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
-        f"they weigh {_mixed(total)}: they need {layers_in_words(-(-total.numerator // total.denominator))}."
+        f"they weigh {_mixed_number(total)}: they need {layers_text(-(-total.numerator // total.denominator))}."
     )
     for requirement, weight in weights.items():
-        lines += say(f"{_mixed(weight):>5}  {requirement_in_words(requirement, case)}", later="       ")
+        lines += say(f"{_mixed_number(weight):>5}  {requirement_text(requirement, case)}", later="       ")
     return lines
 
 
-def _mixed(number: Fraction) -> str:
+def _mixed_number(number: Fraction) -> str:
     """7 1/2"""
     whole, rest = divmod(number.numerator, number.denominator)
     if not rest:
@@ -222,88 +226,88 @@ def _mixed(number: Fraction) -> str:
     return f"{whole} {rest}/{number.denominator}" if whole else f"{rest}/{number.denominator}"
 
 
-def comparison_in_words(run: GreedyRun, plan: Plan, *, width: int = WIDTH) -> list[str]:
+def comparison_text(run: GreedyRun, plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """The slides' method beside the plan."""
-    say = partial(wrapped, width=width)
+    say = partial(wrap, width=width)
     more = run.size - plan.size
     if run.missed:
         count = len(run.missed)
         verdict = f"it also leaves {count} {'thing' if count == 1 else 'things'} unseen"
     elif more == 0:
-        verdict = "as few as can be" if plan.optimal else "as few as the plan"
+        verdict = "as few as can be" if plan.is_optimal else "as few as the plan"
     elif more < 0:
         verdict = f"{-more} fewer than this plan, which ran out of time"
     else:
-        verdict = f"{more} more than needed" if plan.optimal else f"{more} more than the plan"
-    return say(f"The slides' method, taking edges in order: {layers_in_words(run.size)}; {verdict}.")
+        verdict = f"{more} more than needed" if plan.is_optimal else f"{more} more than the plan"
+    return say(f"The slides' method, taking edges in order: {layers_text(run.size)}; {verdict}.")
 
 
 # A world
 
 
-def world_plan_in_words(plan: WorldPlan) -> list[str]:
+def world_plan_text(plan: WorldPlan) -> list[str]:
     """How many names the world has, how many it needs, and what is wrong today."""
-    count, size = plan.names_today, plan.size
-    file = plan.world_case.slots.world.file
+    count, size = plan.current_name_count, plan.size
+    file = plan.world_case.layer_lists.world.file
     lines: list[str] = []
-    if plan.wrong_today:
-        lines += wrapped(f"Today {file} does not do what is asked:")
-        for breach in plan.wrong_today[:_MOST_BREACHES]:
-            lines += wrapped(str(breach), indent="  - ", later="    ")
-        if len(plan.wrong_today) > _MOST_BREACHES:
-            lines.append(f"  ... and {len(plan.wrong_today) - _MOST_BREACHES} more")
+    if plan.current_breaches:
+        lines += wrap(f"Today {file} does not do what is asked:")
+        for breach in plan.current_breaches[:MAX_LISTED_BREACHES]:
+            lines += wrap(str(breach), indent="  - ", later="    ")
+        if len(plan.current_breaches) > MAX_LISTED_BREACHES:
+            lines.append(f"  ... and {len(plan.current_breaches) - MAX_LISTED_BREACHES} more")
     if not count:
         return [
             *lines,
-            *wrapped(f"{file} names no layer: whatever is in all of them meets. Nothing can be saved."),
+            *wrap(f"{file} names no layer: whatever is in all of them meets. Nothing can be saved."),
         ]
-    proof = "and no plan has fewer" if plan.optimal else f"and at least {plan.bound} are needed"
-    if plan.changes_nothing:
-        verdict = "as few as can be" if plan.optimal else f"and at least {plan.bound} are needed"
-        lines += wrapped(f"{file} names {layers_in_words(count)}, {verdict}. Nothing needs to change.")
-    elif plan.wrong_today:
-        lines += wrapped(f"It names {layers_in_words(count)}; what is asked takes {size}, {proof}.")
+    proof = "and no plan has fewer" if plan.is_optimal else f"and at least {plan.bound} are needed"
+    if plan.is_unchanged:
+        verdict = "as few as can be" if plan.is_optimal else f"and at least {plan.bound} are needed"
+        lines += wrap(f"{file} names {layers_text(count)}, {verdict}. Nothing needs to change.")
+    elif plan.current_breaches:
+        lines += wrap(f"It names {layers_text(count)}; what is asked takes {size}, {proof}.")
     else:
-        lines += wrapped(f"{file} names {layers_in_words(count)}. {size} would do the same, {proof}.")
-    if plan.world_case.slots.kept:
-        lines += wrapped(
-            f"The layer {listed(plan.world_case.slots.kept)} stays as it is: lasers know it by its name, and report what is "
+        lines += wrap(f"{file} names {layers_text(count)}. {size} would do the same, {proof}.")
+    if plan.world_case.layer_lists.kept_layers:
+        lines += wrap(
+            f"The layer {join_with_and(plan.world_case.layer_lists.kept_layers)} stays as it is: lasers know it by its name, and report what is "
             "in it as bright."
         )
     return lines
 
 
-def check_in_words(plan: WorldPlan) -> list[str]:
+def check_text(plan: WorldPlan) -> list[str]:
     """The verdict on a world, in a few lines."""
-    lines = world_plan_in_words(plan)
-    if not plan.changes_nothing:
-        lines += wrapped("`kit layers plan` shows which, and with --patch what to change in the files.")
+    lines = world_plan_text(plan)
+    if not plan.is_unchanged:
+        lines += wrap("`kit layers plan` shows which, and with --patch what to change in the files.")
     return lines
 
 
-def patch_in_words(patch: Patch) -> list[str]:
+def patch_text(patch: WorldPatch) -> list[str]:
     """The diff, and what has to be done by hand."""
     lines = patch.diff().splitlines()
-    for left in patch.left_alone:
-        lines += ["", *wrapped(f"{left.path} is left alone: {left.reason}. By hand:")]
+    for left in patch.skipped:
+        lines += ["", *wrap(f"{left.path} is left alone: {left.reason}. By hand:")]
         lines += [f"  {words}" for words in left.by_hand]
-    if patch.left_alone:
+    if patch.skipped:
         lines += [
             "",
-            *wrapped("These changes belong together: --apply writes none of them as long as one is left."),
+            *wrap("These changes belong together: --apply writes none of them as long as one is left."),
         ]
     return lines or ["There is nothing to change."]
 
 
-_MOST_BREACHES = 20
+MAX_LISTED_BREACHES = 20
 
 
 # What to give up
 
 
-def too_many_in_words(plan: Plan, given_up: Sacrifice | None, tolerated: Sacrifice | None) -> list[str]:
+def too_many_text(plan: LayerPlan, given_up: Relaxation | None, tolerated: Relaxation | None) -> list[str]:
     """More than Flatland's sixteen layers: the two ways out, the shorter first."""
-    lines = wrapped(f"Flatland has {MAX_LAYERS} layers and this plan needs {plan.size}. Ways out:")
+    lines = wrap(f"Flatland has {MAX_LAYERS} layers and this plan needs {plan.size}. Ways out:")
     ways = [
         (sacrifice, words)
         for sacrifice, words in (
@@ -312,16 +316,16 @@ def too_many_in_words(plan: Plan, given_up: Sacrifice | None, tolerated: Sacrifi
         )
         if sacrifice is not None
     ]
-    for sacrifice, words in sorted(ways, key=lambda way: len(way[0].what)):
-        proof = "the fewest there are" if sacrifice.fewest else "perhaps not the fewest"
+    for sacrifice, words in sorted(ways, key=lambda way: len(way[0].requirements)):
+        proof = "the fewest there are" if sacrifice.is_fewest else "perhaps not the fewest"
         words = words.removeprefix("Or ").capitalize()
-        lines += wrapped(
-            f"{words} ({len(sacrifice.what)}, {proof}; {layers_in_words(sacrifice.plan.size)} then do):"
+        lines += wrap(
+            f"{words} ({len(sacrifice.requirements)}, {proof}; {layers_text(sacrifice.plan.size)} then do):"
         )
-        for requirement in sacrifice.what:
-            lines += wrapped(requirement_in_words(requirement, plan.case), indent="    - ", later="      ")
+        for requirement in sacrifice.requirements:
+            lines += wrap(requirement_text(requirement, plan.case), indent="    - ", later="      ")
     if not ways:
-        lines += wrapped(
+        lines += wrap(
             "None was found in the time given. Split the world, or give models the same needs.", indent="  "
         )
     return lines

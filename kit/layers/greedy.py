@@ -30,25 +30,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeVar
 
-from kit.layers.assignment import Assignment, NamedLayer
-from kit.layers.requirements import Case, Contact, Laser, Sight
+from kit.layers.assignment import LayerAssignment, NamedLayer
+from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, SightRequirement
 
 T = TypeVar("T")
 
 
-class Chooser(Protocol):
+class ChoiceFunction(Protocol):
     """Takes one of several choices that are all right: ``random.Random(seed).choice``, or the player."""
 
     def __call__(self, choices: Sequence[T], /) -> T: ...
 
 
-def first(choices: Sequence[T], /) -> T:
+def first_choice(choices: Sequence[T], /) -> T:
     """The choice of whoever goes down the list."""
     return choices[0]
 
 
 @dataclass(frozen=True, slots=True)
-class Growth:
+class GrowthStep:
     """One vertex joins the group."""
 
     added: str
@@ -60,25 +60,25 @@ class Growth:
 class CollisionStep:
     """One collision layer: an edge chosen, its group grown, the edges inside struck."""
 
-    edge: Contact
-    choices: tuple[Contact, ...]
+    edge: ContactRequirement
+    choices: tuple[ContactRequirement, ...]
     """Every edge not struck before this step."""
-    growth: tuple[Growth, ...]
+    growth: tuple[GrowthStep, ...]
     layer: NamedLayer
-    struck: tuple[Contact, ...]
+    covered_edges: tuple[ContactRequirement, ...]
     """The edges this step strikes."""
 
 
-Fate = Literal["whole layer", "known group", "new layer", "inside another"]
+GroupOutcome = Literal["whole layer", "known group", "new layer", "inside another"]
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class LaserGroup:
     """What a laser must see of one collision layer, and what becomes of it."""
 
     source: str
     members: frozenset[str]
-    fate: Fate
+    outcome: GroupOutcome
     layer: str
     """The layer that shows this group to the laser."""
 
@@ -88,10 +88,10 @@ class LaserStep:
     """One laser: its groups, and the layers it is to watch."""
 
     laser: str
-    groups: tuple[Group, ...]
+    groups: tuple[LaserGroup, ...]
     watches: tuple[str, ...]
     added: tuple[NamedLayer, ...]
-    missed: tuple[Sight, ...]
+    missed: tuple[SightRequirement, ...]
     """What it must see and does not, because no collision layer holds it."""
 
 
@@ -99,79 +99,84 @@ class LaserStep:
 class GreedyRun:
     """The whole of it, step by step, and where it led."""
 
-    case: Case
+    case: LayerCase
     collision_steps: tuple[CollisionStep, ...]
     laser_steps: tuple[LaserStep, ...]
-    assignment: Assignment
+    assignment: LayerAssignment
 
     @property
     def size(self) -> int:
         return len(self.assignment.layers)
 
     @property
-    def missed(self) -> tuple[Sight, ...]:
+    def missed(self) -> tuple[SightRequirement, ...]:
         return tuple(sight for step in self.laser_steps for sight in step.missed)
 
-    def struck_before(self, step: int) -> frozenset[Contact]:
+    def covered_before(self, step: int) -> frozenset[ContactRequirement]:
         """The edges already struck when collision step number ``step`` (from 0) begins."""
-        return frozenset(edge for done in self.collision_steps[:step] for edge in done.struck)
+        return frozenset(edge for done in self.collision_steps[:step] for edge in done.covered_edges)
 
 
-def greedy(case: Case, *, choose: Chooser = first) -> GreedyRun:
+def run_greedy(case: LayerCase, *, choose: ChoiceFunction = first_choice) -> GreedyRun:
     """The method's layers, with every step and the choices it had. ``choose`` picks edges and vertices."""
     collision_steps: list[CollisionStep] = []
-    struck: set[Contact] = set()
-    while choices := _open_edges(case, struck):
-        step = collision_step(case, choices, f"C{len(collision_steps) + 1}", choose=choose)
+    struck: set[ContactRequirement] = set()
+    while choices := _uncovered_edges(case, struck):
+        step = grow_collision_layer(case, choices, f"C{len(collision_steps) + 1}", choose=choose)
         collision_steps.append(step)
         struck.update(c for c in case.collide if c.a in step.layer.members and c.b in step.layer.members)
     layers = [step.layer for step in collision_steps]
     laser_steps: list[LaserStep] = []
     for laser in case.lasers:
         groups_so_far = [layer for step in laser_steps for layer in step.added]
-        laser_steps.append(laser_step(case, laser, layers, groups_so_far))
+        laser_steps.append(add_laser_layers(case, laser, layers, groups_so_far))
     added = [layer for step in laser_steps for layer in step.added]
     return GreedyRun(
         case,
         tuple(collision_steps),
         tuple(laser_steps),
-        Assignment((*layers, *added), {step.laser: step.watches for step in laser_steps}),
+        LayerAssignment((*layers, *added), {step.laser: step.watches for step in laser_steps}),
     )
 
 
-def _open_edges(case: Case, struck: set[Contact]) -> tuple[Contact, ...]:
+def _uncovered_edges(case: LayerCase, struck: set[ContactRequirement]) -> tuple[ContactRequirement, ...]:
     """The edges not struck yet. What has to be in some layer, no matter which, waits until the last."""
     edges = tuple(edge for edge in case.edges() if edge not in struck)
     return edges or tuple(contact for contact in case.collide if contact not in struck)
 
 
-def collision_step(
-    case: Case, choices: tuple[Contact, ...], name: str, *, choose: Chooser = first
+def grow_collision_layer(
+    case: LayerCase,
+    choices: tuple[ContactRequirement, ...],
+    name: str,
+    *,
+    choose: ChoiceFunction = first_choice,
 ) -> CollisionStep:
     """One layer called ``name``, grown from one of the edges not struck yet."""
     edge = choose(choices)
     group = {edge.a, edge.b}
-    growth: list[Growth] = []
+    growth: list[GrowthStep] = []
     # Invariant: the group is a complete subgraph of the collision graph.
-    while joining := joined_to_all(case, group):
+    while joining := common_neighbours(case, group):
         added = choose(joining)
-        growth.append(Growth(added, joining))
+        growth.append(GrowthStep(added, joining))
         group.add(added)
     struck = tuple(e for e in choices if e.a in group and e.b in group)
     return CollisionStep(edge, choices, tuple(growth), NamedLayer(name, frozenset(group)), struck)
 
 
-def joined_to_all(case: Case, group: set[str]) -> tuple[str, ...]:
+def common_neighbours(case: LayerCase, group: set[str]) -> tuple[str, ...]:
     """The vertices outside the group that collide with everyone in it."""
     return tuple(
         name
         for name in case.names
-        if name not in group and all(Contact(name, member) in case.must for member in group)
+        if name not in group
+        and all(ContactRequirement(name, member) in case.required_contacts for member in group)
     )
 
 
-def laser_step(
-    case: Case, laser: Laser, layers: Sequence[NamedLayer], known: Sequence[NamedLayer]
+def add_laser_layers(
+    case: LayerCase, laser: LaserEntity, layers: Sequence[NamedLayer], known: Sequence[NamedLayer]
 ) -> LaserStep:
     """What one laser needs, given the collision layers and the layers earlier lasers have added."""
     shown = {layer.name: layer.members & laser.sees for layer in layers}
@@ -182,7 +187,7 @@ def laser_step(
     whole = {layer.members: layer.name for layer in reversed(layers)}
     earlier = {layer.members: layer.name for layer in known}
     added: list[NamedLayer] = []
-    names: dict[frozenset[str], tuple[str, Fate]] = {}
+    names: dict[frozenset[str], tuple[str, GroupOutcome]] = {}
     for members in largest:
         if members in whole:
             names[members] = whole[members], "whole layer"
@@ -198,7 +203,9 @@ def laser_step(
             home = next(other for other in largest if members <= other)
             name, fate = names[home]
             groups.append(
-                Group(source, members, "inside another" if members != home or home in met else fate, name)
+                LaserGroup(
+                    source, members, "inside another" if members != home or home in met else fate, name
+                )
             )
             met.add(members)
     seen = frozenset().union(*shown.values())
@@ -207,5 +214,5 @@ def laser_step(
         tuple(groups),
         tuple(names[members][0] for members in largest),
         tuple(added),
-        tuple(Sight(laser.name, name) for name in case.names if name in laser.sees - seen),
+        tuple(SightRequirement(laser.name, name) for name in case.names if name in laser.sees - seen),
     )

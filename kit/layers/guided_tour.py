@@ -13,28 +13,28 @@ from itertools import count
 from typing import Literal, TypeVar
 
 from kit.layers import explain as words
-from kit.layers.assignment import Assignment, NamedLayer
+from kit.layers.assignment import LayerAssignment, NamedLayer
 from kit.layers.flatland.world_planning import WorldPlan
-from kit.layers.greedy import Chooser, GreedyRun, greedy
-from kit.layers.planning import Plan
-from kit.layers.requirements import Case, Contact, Sight
+from kit.layers.greedy import ChoiceFunction, GreedyRun, run_greedy
+from kit.layers.planning import LayerPlan
+from kit.layers.requirements import ContactRequirement, LayerCase, SightRequirement
 
 T = TypeVar("T")
 
-FEW = 4
+MAX_PAIRS_IN_WORDS = 4
 """Requirements of which every two are compared in words; of more, some pairs stand for all."""
 
-Part = Literal["case", "method", "fewest", "proof"]
+TourPart = Literal["case", "method", "fewest", "proof"]
 
 
 @dataclass(frozen=True, slots=True)
-class Page:
+class TourPage:
     """One step, and what to draw with it."""
 
-    part: Part
+    part: TourPart
     title: str
-    words: tuple[str, ...]
-    struck: frozenset[Contact] = frozenset()
+    lines: tuple[str, ...]
+    covered_edges: frozenset[ContactRequirement] = frozenset()
     group: frozenset[str] = frozenset()
     laser: str | None = None
     step: int | None = None
@@ -42,120 +42,127 @@ class Page:
 
 
 @dataclass(frozen=True)
-class Method:
+class GreedyTour:
     """The slides' method on a case, as somebody does it: some edges chosen, the others the first there are."""
 
-    case: Case
-    wanted: Mapping[int, Contact] = field(default_factory=dict)
+    case: LayerCase
+    chosen_edges: Mapping[int, ContactRequirement] = field(default_factory=dict)
     """Edges by the number of the choice, counted over the whole run."""
 
     @cached_property
     def run(self) -> GreedyRun:
-        return greedy(self.case, choose=self._chooser())
+        return run_greedy(self.case, choose=self._choice_function())
 
-    def edges(self, step: int) -> tuple[Contact, ...]:
+    def edges(self, step: int) -> tuple[ContactRequirement, ...]:
         """Every edge that this step could begin with."""
         return self.run.collision_steps[step].choices
 
-    def beginning_with(self, step: int, edge: Contact) -> Method:
+    def with_edge(self, step: int, edge: ContactRequirement) -> GreedyTour:
         """The method with another edge at this step; what came before stays, what comes after starts anew."""
         number = sum(1 + len(done.growth) for done in self.run.collision_steps[:step])
-        kept = {place: earlier for place, earlier in self.wanted.items() if place < number}
-        return Method(self.case, {**kept, number: edge})
+        kept = {place: earlier for place, earlier in self.chosen_edges.items() if place < number}
+        return GreedyTour(self.case, {**kept, number: edge})
 
-    def _chooser(self) -> Chooser:
+    def _choice_function(self) -> ChoiceFunction:
         numbers = count()
 
         def choose(choices: Sequence[T], /) -> T:
-            wanted = self.wanted.get(next(numbers))
+            wanted = self.chosen_edges.get(next(numbers))
             return next((choice for choice in choices if choice == wanted), choices[0])
 
         return choose
 
 
-def case_page(case: Case, width: int) -> Page:
+def case_page(case: LayerCase, width: int) -> TourPage:
     """What is asked."""
-    said = words.case_in_words(case, width=width)
-    title = words.wrapped(case.title, width=width)
-    return Page("case", "What is asked", (*title, *([""] if title else []), *said))
+    said = words.case_text(case, width=width)
+    title = words.wrap(case.title, width=width)
+    return TourPage("case", "What is asked", (*title, *([""] if title else []), *said))
 
 
-def method_pages(run: GreedyRun, width: int) -> Iterator[Page]:
+def method_pages(run: GreedyRun, width: int) -> Iterator[TourPage]:
     """The slides' method, clique by clique, then laser by laser, then where it led."""
     case, steps = run.case, run.collision_steps
     for number, step in enumerate(steps):
-        said = words.collision_step_in_words(case, number + 1, step, width=width)
+        said = words.collision_step_text(case, number + 1, step, width=width)
         title = f"The slides' method, layer {number + 1} of {len(steps)}"
-        yield Page("method", title, tuple(said), run.struck_before(number), step.layer.members, step=number)
-    struck = run.struck_before(len(steps))
+        yield TourPage(
+            "method", title, tuple(said), run.covered_before(number), step.layer.members, step=number
+        )
+    struck = run.covered_before(len(steps))
     for laser in run.laser_steps:
-        said = words.laser_step_in_words(case, laser, width=width)
-        yield Page(
+        said = words.laser_step_text(case, laser, width=width)
+        yield TourPage(
             "method", f"The slides' method, laser {laser.laser}", tuple(said), struck, laser=laser.laser
         )
-    ending = (*words.greedy_end_in_words(run, width=width), "", *listing(case, run.assignment, width))
-    yield Page("method", "Where the slides' method ends", ending, struck)
+    ending = (*words.greedy_end_text(run, width=width), "", *layer_listing(case, run.assignment, width))
+    yield TourPage("method", "Where the slides' method ends", ending, struck)
 
 
 def plan_pages(
-    case: Case, plan: Plan, world_plan: WorldPlan | None, run: GreedyRun, width: int
-) -> Iterator[Page]:
+    case: LayerCase, plan: LayerPlan, world_plan: WorldPlan | None, run: GreedyRun, width: int
+) -> Iterator[TourPage]:
     """The fewest layers, all and one by one, and the proof; in a world's own names where there is one. ``run``: what
     the slides' method comes to."""
     assignment = plan.assignment if world_plan is None else world_plan.assignment
     size = len(assignment.layers)
     overview = (
-        *([] if world_plan is None else _today(world_plan, width)),
-        *words.plan_in_words(plan, width=width),
-        *words.comparison_in_words(run, plan, width=width),
+        *([] if world_plan is None else _current_layers(world_plan, width)),
+        *words.plan_text(plan, width=width),
+        *words.comparison_text(run, plan, width=width),
         "",
-        *listing(case, assignment, width),
+        *layer_listing(case, assignment, width),
     )
-    yield Page("fewest", "The fewest layers", overview)
-    struck: frozenset[Contact] = frozenset()
+    yield TourPage("fewest", "The fewest layers", overview)
+    struck: frozenset[ContactRequirement] = frozenset()
     for number, layer in enumerate(assignment.layers, start=1):
         title = f"The fewest layers, {number} of {size}"
-        yield Page("fewest", title, tuple(_layer(case, assignment, layer, width)), struck, layer.members)
+        yield TourPage(
+            "fewest", title, tuple(_layer_page(case, assignment, layer, width)), struck, layer.members
+        )
         struck |= {edge for edge in case.edges() if layer.members.issuperset((edge.a, edge.b))}
-    named = {*plan.certificate.apart, *(named for part in plan.certificate.parts for named in part)}
+    named = {
+        *plan.certificate.conflicting,
+        *(named for part in plan.certificate.weighted_parts for named in part),
+    }
     others = frozenset(edge for edge in case.edges() if edge not in named)
-    few = len(plan.certificate.apart) <= FEW
-    said = words.proof_in_words(plan, every_pair=few, width=width)
-    yield Page("proof", "Why no plan has fewer", tuple(said), others)
+    few = len(plan.certificate.conflicting) <= MAX_PAIRS_IN_WORDS
+    said = words.proof_text(plan, every_pair=few, width=width)
+    yield TourPage("proof", "Why no plan has fewer", tuple(said), others)
 
 
-def _today(world_plan: WorldPlan, width: int) -> list[str]:
+def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:
     """What the world has at present."""
-    said = words.wrapped(
-        f"Today the world names {words.layers_in_words(world_plan.names_today)}.", width=width
+    said = words.wrap(
+        f"Today the world names {words.layers_text(world_plan.current_name_count)}.", width=width
     )
-    if wrong := len(world_plan.wrong_today):
-        said += words.wrapped(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
+    if wrong := len(world_plan.current_breaches):
+        said += words.wrap(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
     return said
 
 
-def listing(case: Case, assignment: Assignment, width: int) -> list[str]:
+def layer_listing(case: LayerCase, assignment: LayerAssignment, width: int) -> list[str]:
     """Every layer with what it holds and who watches it."""
-    return [line for layer in assignment.layers for line in _head(case, assignment, layer, width)]
+    return [line for layer in assignment.layers for line in _layer_heading(case, assignment, layer, width)]
 
 
-def _head(case: Case, assignment: Assignment, layer: NamedLayer, width: int) -> list[str]:
+def _layer_heading(case: LayerCase, assignment: LayerAssignment, layer: NamedLayer, width: int) -> list[str]:
     watchers = [name for name, watched in assignment.watches.items() if layer.name in watched]
-    seen = f", watched by {words.listed(watchers)}" if watchers else ""
-    members = words.members_in_words(case, layer.members)
-    return words.wrapped(f"{layer.name} = {members}{seen}", width=width, later="  ")
+    seen = f", watched by {words.join_with_and(watchers)}" if watchers else ""
+    members = words.members_text(case, layer.members)
+    return words.wrap(f"{layer.name} = {members}{seen}", width=width, later="  ")
 
 
-def _layer(case: Case, assignment: Assignment, layer: NamedLayer, width: int) -> Iterator[str]:
+def _layer_page(case: LayerCase, assignment: LayerAssignment, layer: NamedLayer, width: int) -> Iterator[str]:
     """One layer of a plan and what it brings about."""
-    say = partial(words.wrapped, width=width, indent="  ", later="    ")
-    yield from _head(case, assignment, layer, width)
+    say = partial(words.wrap, width=width, indent="  ", later="    ")
+    yield from _layer_heading(case, assignment, layer, width)
     yield "It brings about:"
     for requirement in case.requirements:
-        if isinstance(requirement, Sight):
+        if isinstance(requirement, SightRequirement):
             watched = layer.name in assignment.watches.get(requirement.laser, ())
             served = watched and requirement.entity in layer.members
         else:
             served = layer.members.issuperset((requirement.a, requirement.b))
         if served:
-            yield from say(words.requirement_in_words(requirement, case))
+            yield from say(words.requirement_text(requirement, case))

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from kit.layers.assignment import Assignment, Breach
-from kit.layers.certificate import Certificate
-from kit.layers.flatland.world_patch import Patch
+from kit.layers.assignment import LayerAssignment, RequirementBreach
+from kit.layers.certificate import BoundCertificate
+from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import GreedyRun
-from kit.layers.planning import Plan
-from kit.layers.relaxation import Sacrifice
-from kit.layers.requirements import Case, Requirement, Sight
+from kit.layers.planning import LayerPlan
+from kit.layers.relaxation import Relaxation
+from kit.layers.requirements import LayerCase, Requirement, SightRequirement
 from kit.world.records import MAX_LAYERS
 
 
-def assignment_data(case: Case, assignment: Assignment) -> dict[str, Any]:
+def assignment_data(case: LayerCase, assignment: LayerAssignment) -> dict[str, Any]:
     """Layers with their members and watchers, and the list of every entity and laser."""
     return {
         "layers": [
@@ -34,13 +34,13 @@ def assignment_data(case: Case, assignment: Assignment) -> dict[str, Any]:
     }
 
 
-def plan_data(plan: Plan, run: GreedyRun) -> dict[str, Any]:
+def plan_data(plan: LayerPlan, run: GreedyRun) -> dict[str, Any]:
     """A plan of requirements, with its proof and the slides' method beside it."""
     return {
         "title": plan.case.title,
         "size": plan.size,
         "bound": plan.bound,
-        "optimal": plan.optimal,
+        "optimal": plan.is_optimal,
         "fits_flatland": plan.size <= MAX_LAYERS,
         **assignment_data(plan.case, plan.assignment),
         "certificate": certificate_data(plan.certificate),
@@ -60,12 +60,12 @@ def world_data(plan: WorldPlan) -> dict[str, Any]:
     return {
         "size": plan.size,
         "bound": plan.bound,
-        "optimal": plan.optimal,
+        "optimal": plan.is_optimal,
         "fits_flatland": plan.size <= MAX_LAYERS,
-        "world": str(plan.world_case.slots.world.file),
-        "names_today": plan.names_today,
-        "kept": list(plan.world_case.slots.kept),
-        "breaches_today": [breach_data(breach) for breach in plan.wrong_today],
+        "world": str(plan.world_case.layer_lists.world.file),
+        "names_today": plan.current_name_count,
+        "kept": list(plan.world_case.layer_lists.kept_layers),
+        "breaches_today": [breach_data(breach) for breach in plan.current_breaches],
         **assignment_data(plan.world_case.case, plan.assignment),
     }
 
@@ -73,57 +73,57 @@ def world_data(plan: WorldPlan) -> dict[str, Any]:
 def check_data(plan: WorldPlan) -> dict[str, Any]:
     """The verdict on a world as it is."""
     return {
-        "world": str(plan.world_case.slots.world.file),
-        "names_today": plan.names_today,
+        "world": str(plan.world_case.layer_lists.world.file),
+        "names_today": plan.current_name_count,
         "needed": plan.size,
         "bound": plan.bound,
-        "breaches": [breach_data(breach) for breach in plan.wrong_today],
+        "breaches": [breach_data(breach) for breach in plan.current_breaches],
     }
 
 
-def certificate_data(certificate: Certificate) -> dict[str, Any]:
+def certificate_data(certificate: BoundCertificate) -> dict[str, Any]:
     """``apart``: requirements of which no two fit one layer. ``weighted``: weights as ``[above, below]`` the line."""
     return {
         "bound": certificate.bound,
-        "apart": [requirement_data(requirement) for requirement in certificate.apart],
+        "apart": [requirement_data(requirement) for requirement in certificate.conflicting],
         "weighted": [
             [{**requirement_data(r), "weight": [w.numerator, w.denominator]} for r, w in part.items()]
-            for part in certificate.parts
+            for part in certificate.weighted_parts
         ],
     }
 
 
 def requirement_data(requirement: Requirement) -> dict[str, Any]:
     """``{"collide": [a, b]}`` or ``{"laser": l, "sees": e}``."""
-    if isinstance(requirement, Sight):
+    if isinstance(requirement, SightRequirement):
         return {"laser": requirement.laser, "sees": requirement.entity}
     return {"collide": [requirement.a, requirement.b]}
 
 
-def sacrifice_data(sacrifice: Sacrifice) -> dict[str, Any]:
+def sacrifice_data(sacrifice: Relaxation) -> dict[str, Any]:
     """What to give up, or to tolerate; how few it must be at least (0: not proved); the layers that then do."""
     return {
-        "what": [requirement_data(requirement) for requirement in sacrifice.what],
-        "at_least": sacrifice.at_least,
+        "what": [requirement_data(requirement) for requirement in sacrifice.requirements],
+        "at_least": sacrifice.lower_bound,
         "size": sacrifice.plan.size,
     }
 
 
-def breach_data(breach: Breach) -> dict[str, Any]:
+def breach_data(breach: RequirementBreach) -> dict[str, Any]:
     return {
-        **requirement_data(breach.what),
-        "wanted": breach.wanted,
+        **requirement_data(breach.requirement),
+        "wanted": breach.is_missing,
         "layers": list(breach.layers),
         "words": str(breach),
     }
 
 
-def patch_data(patch: Patch) -> dict[str, Any]:
+def patch_data(patch: WorldPatch) -> dict[str, Any]:
     return {
         "diff": patch.diff(),
         "files": [str(file.path) for file in patch.files],
         "left_alone": [
             {"file": str(left.path), "reason": left.reason, "by_hand": list(left.by_hand)}
-            for left in patch.left_alone
+            for left in patch.skipped
         ],
     }

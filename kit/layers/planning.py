@@ -5,27 +5,27 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from kit.layers.assignment import Assignment, breaches, lean, named
+from kit.layers.assignment import LayerAssignment, drop_superfluous, find_breaches, name_layers
 from kit.layers.candidates import find_candidates
-from kit.layers.certificate import Certificate, certificate_of
+from kit.layers.certificate import BoundCertificate, build_certificate
 from kit.layers.cover import minimum_cover
-from kit.layers.requirements import Case
+from kit.layers.requirements import LayerCase
 
 DEFAULT_TIME_LIMIT = 10.0
 """Seconds."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class LayerPlan:
     """The layers found for a case, and what is known about how few there could be."""
 
-    case: Case
-    assignment: Assignment
+    case: LayerCase
+    assignment: LayerAssignment
     bound: int
     """Proved: no plan has fewer layers."""
-    certificate: Certificate
+    certificate: BoundCertificate
     """The part of the proof that can be checked by hand; its own bound may be lower."""
-    candidates: int
+    candidate_count: int
     """How many layers were considered."""
     seconds: float
 
@@ -34,7 +34,7 @@ class Plan:
         return len(self.assignment.layers)
 
     @property
-    def optimal(self) -> bool:
+    def is_optimal(self) -> bool:
         return self.bound == self.size
 
     @property
@@ -43,7 +43,7 @@ class Plan:
         return self.size - self.bound
 
 
-def solve(case: Case, *, time_limit: float = DEFAULT_TIME_LIMIT) -> Plan:
+def solve_layers(case: LayerCase, *, time_limit: float = DEFAULT_TIME_LIMIT) -> LayerPlan:
     """The plan with the fewest layers, proved; or within ``time_limit`` [s] the best found, with bound and gap.
 
     At most 40 percent of the time goes to listing candidate layers. The plan is the same every time unless the limit
@@ -52,16 +52,16 @@ def solve(case: Case, *, time_limit: float = DEFAULT_TIME_LIMIT) -> Plan:
     start = time.monotonic()
     candidates = find_candidates(case, deadline=start + 0.4 * time_limit)
     cover = minimum_cover(candidates.covers, len(case.requirements), deadline=start + 0.9 * time_limit)
-    layers, watches = lean(case, [candidates.layers[i] for i in cover.chosen])
-    assignment = named(case, layers, watches)
+    layers, watches = drop_superfluous(case, [candidates.layers[i] for i in cover.chosen])
+    assignment = name_layers(case, layers, watches)
     last = max(start + time_limit, time.monotonic() + time_limit / 10)
-    certificate = certificate_of(case, candidates, cover, deadline=last)
-    if found := breaches(case, assignment):
+    certificate = build_certificate(case, candidates, cover, deadline=last)
+    if found := find_breaches(case, assignment):
         raise RuntimeError(f"the planner's own mistake, please report it: {found[0]}")
-    return Plan(
+    return LayerPlan(
         case,
         assignment,
-        max(cover.bound if candidates.complete else 0, certificate.bound),
+        max(cover.bound if candidates.is_complete else 0, certificate.bound),
         certificate,
         len(candidates.layers),
         time.monotonic() - start,

@@ -27,17 +27,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.flatland.yaml_edits import flow, scalar
+from kit.layers.flatland.yaml_edits import format_flow_list, format_scalar
 from kit.layers.requirements import (
-    Case,
-    CaseError,
-    Contact,
-    Entity,
-    Laser,
+    ContactRequirement,
+    LaserEntity,
+    LayerCase,
+    LayerCaseError,
+    LayerEntity,
     Relation,
     Requirement,
-    Sight,
     Sighting,
+    SightRequirement,
 )
 from kit.plain_text import quoted, suggestion
 from kit.world.documents import WorldDocuments
@@ -46,38 +46,48 @@ from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-_PAIRS: Final[Mapping[str, Relation]] = MappingProxyType(
+_RELATION_KEYS: Final[Mapping[str, Relation]] = MappingProxyType(
     {"collide": "collide", "either": "either", "apart": "apart"}
 )
-_SIGHTS: Final[Mapping[str, Sighting]] = MappingProxyType(
+_SIGHTING_KEYS: Final[Mapping[str, Sighting]] = MappingProxyType(
     {"lasers": "sees", "may_see": "either", "blind": "blind"}
 )
-KEYS: Final = ("world", "maps", "models", "parts", "bodies", "copies", "ghosts", *_PAIRS, *_SIGHTS)
+KEYS: Final = (
+    "world",
+    "maps",
+    "models",
+    "parts",
+    "bodies",
+    "copies",
+    "ghosts",
+    *_RELATION_KEYS,
+    *_SIGHTING_KEYS,
+)
 
 
 @dataclass(frozen=True)
-class Requirements:
+class RequirementsFile:
     """A requirements file: the case, and what its names mean in a Flatland world."""
 
     file: Path
-    case: Case
+    case: LayerCase
     world: Path | None
     copies: Mapping[str, tuple[str, ...]]
     """For each model of the case, the model instances of the world it stands for: itself, if nothing else is said."""
     bodies: Mapping[str, tuple[str, ...]]
     """For each part of a model, the bodies it consists of (``body``, or ``body.0`` for its first footprint)."""
-    places: Mapping[Requirement, SourceLocation] = field(default_factory=dict)
+    locations: Mapping[Requirement, SourceLocation] = field(default_factory=dict)
     """Where the file speaks of a pair, or of a laser and an entity."""
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class DeclaredNames:
     """The names a file declares: entities, and what stands for several of them."""
 
-    entities: Mapping[str, Entity]
+    entities: Mapping[str, LayerEntity]
     models: Mapping[str, tuple[str, ...]]
 
-    def meant(self, name: str, section: Section, key: str) -> tuple[str, ...]:
+    def resolve(self, name: str, section: Section, key: str) -> tuple[str, ...]:
         """The entities a name stands for; none if it is unknown, which is noted."""
         if name in self.models:
             return self.models[name]
@@ -88,7 +98,7 @@ class Names:
         return ()
 
 
-def read_requirements(path: Path) -> Requirements:
+def read_requirements(path: Path) -> RequirementsFile:
     """What a requirements file asks. Raises WorldError with all that is wrong in it."""
     problems = ProblemCollector()
     try:
@@ -101,52 +111,52 @@ def read_requirements(path: Path) -> Requirements:
         raise AssertionError("a missing section is noted as a problem")
     title = section.text("title", "")
     world = section.name("world", "") if section.has("world") else ""
-    copies, bodies = _lists(section, "copies"), _lists(section, "bodies")
-    names = _names(section, copies)
-    places: dict[Requirement, SourceLocation] = {}
-    contacts = _contacts(section, names, places)
-    lasers = tuple(_lasers(section, names, places))
-    _check_keys(section, "copies", copies, names.models, "model")
-    _check_keys(section, "bodies", bodies, names.entities, "part of a model")
+    copies, bodies = _read_name_lists(section, "copies"), _read_name_lists(section, "bodies")
+    names = _read_names(section, copies)
+    locations: dict[Requirement, SourceLocation] = {}
+    contacts = _read_contacts(section, names, locations)
+    lasers = tuple(_read_lasers(section, names, locations))
+    _check_known_keys(section, "copies", copies, names.models, "model")
+    _check_known_keys(section, "bodies", bodies, names.entities, "part of a model")
     section.finish()
     problems.raise_if_any()
     try:
-        case = Case(
+        case = LayerCase(
             tuple(names.entities.values()),
             tuple(contact for contact, relation in contacts.items() if relation == "collide"),
             frozenset(contact for contact, relation in contacts.items() if relation == "either"),
             lasers,
             title,
         )
-    except CaseError as error:
+    except LayerCaseError as error:
         raise WorldError([Problem(SourceLocation(path), str(error))]) from error
     named = {model: copies.get(model, (model,)) for model in names.models}
-    return Requirements(path, case, path.parent / world if world else None, named, bodies, places)
+    return RequirementsFile(path, case, path.parent / world if world else None, named, bodies, locations)
 
 
-def _lists(section: Section, key: str) -> dict[str, tuple[str, ...]]:
+def _read_name_lists(section: Section, key: str) -> dict[str, tuple[str, ...]]:
     """A mapping from names to lists of names; empty where the key is missing."""
     inner = section.section(key, None)
     return {} if inner is None else {name: inner.texts(name) for name in inner.keys()}  # noqa: SIM118 - a Section
 
 
-def _names(section: Section, copies: Mapping[str, tuple[str, ...]]) -> Names:
+def _read_names(section: Section, copies: Mapping[str, tuple[str, ...]]) -> DeclaredNames:
     maps, models = section.texts("maps", ()), section.texts("models", ())
     for key, listed in (("maps", maps), ("models", models)):
         for name in dict.fromkeys(name for name in listed if listed.count(name) > 1):
             section.error(f"{quoted(name)} is named twice", key)
-    parts = _lists(section, "parts")
-    _check_keys(section, "parts", parts, models, "model")
+    parts = _read_name_lists(section, "parts")
+    _check_known_keys(section, "parts", parts, models, "model")
     grouped = {
         model: tuple(f"{model}.{part}" for part in parts.get(model, ())) or (model,) for model in models
     }
-    entities: dict[str, Entity] = {}
+    entities: dict[str, LayerEntity] = {}
     for key, kind_entities in (
-        ("maps", [Entity(name, kind="map") for name in maps]),
+        ("maps", [LayerEntity(name, kind="map") for name in maps]),
         (
             "models",
             [
-                Entity(name, model=model, copies=len(copies.get(model, (model,))))
+                LayerEntity(name, model=model, copies=len(copies.get(model, (model,))))
                 for model, names in grouped.items()
                 for name in names
             ],
@@ -156,54 +166,61 @@ def _names(section: Section, copies: Mapping[str, tuple[str, ...]]) -> Names:
             if entity.name in entities:
                 section.error(f"{quoted(entity.name)} is named twice", key)
             entities[entity.name] = entity
-    names = Names(entities, grouped)
-    for ghost in [n for name in section.texts("ghosts", ()) for n in names.meant(name, section, "ghosts")]:
+    names = DeclaredNames(entities, grouped)
+    for ghost in [n for name in section.texts("ghosts", ()) for n in names.resolve(name, section, "ghosts")]:
         old = entities[ghost]
-        entities[ghost] = Entity(old.name, old.kind, old.model, old.copies, ghost=True)
+        entities[ghost] = LayerEntity(old.name, old.kind, old.model, old.copies, is_ghost=True)
     return names
 
 
-def _check_keys(section: Section, key: str, found: Iterable[str], known: Iterable[str], what: str) -> None:
+def _check_known_keys(
+    section: Section, key: str, found: Iterable[str], known: Iterable[str], what: str
+) -> None:
     known = list(known)
     for name in found:
         if name not in known:
             section.error(f"{quoted(name)} is no {what}: {suggestion(name, known)}", key)
 
 
-def _contacts(
-    section: Section, names: Names, places: dict[Requirement, SourceLocation]
-) -> dict[Contact, Relation]:
+def _read_contacts(
+    section: Section, names: DeclaredNames, locations: dict[Requirement, SourceLocation]
+) -> dict[ContactRequirement, Relation]:
     """Every pair the file speaks of. Two statements about one pair that differ are noted, with both places."""
-    said: dict[Contact, tuple[Relation, SourceLocation]] = {}
-    for key, relation in _PAIRS.items():
+    statements: dict[ContactRequirement, tuple[Relation, SourceLocation]] = {}
+    for key, relation in _RELATION_KEYS.items():
         inner = section.section(key, None)
         for name in () if inner is None else inner.keys():
             assert inner is not None
-            first = names.meant(name, inner, name)
+            first = names.resolve(name, inner, name)
             for other in inner.texts(name):
-                for contact in _pairs(first, names.meant(other, inner, name), names):
-                    if wrong := _impossible(contact, relation, names):
-                        inner.error(wrong, name)
+                for contact in _expand_pairs(first, names.resolve(other, inner, name), names):
+                    if reason := _impossible_reason(contact, relation, names):
+                        inner.error(reason, name)
                         continue
-                    old, place = said.setdefault(contact, (relation, inner.location_of(name)))
-                    if old != relation:
+                    earlier, location = statements.setdefault(contact, (relation, inner.location_of(name)))
+                    if earlier != relation:
                         inner.error(
-                            _contradiction(str(contact), _IN_WORDS[relation], _IN_WORDS[old], place), name
+                            _contradiction_text(
+                                str(contact), _RELATION_TEXTS[relation], _RELATION_TEXTS[earlier], location
+                            ),
+                            name,
                         )
-    places.update({contact: place for contact, (_, place) in said.items()})
-    return {contact: relation for contact, (relation, _) in said.items()}
+    locations.update({contact: location for contact, (_, location) in statements.items()})
+    return {contact: relation for contact, (relation, _) in statements.items()}
 
 
-def _pairs(first: tuple[str, ...], second: tuple[str, ...], names: Names) -> Iterator[Contact]:
+def _expand_pairs(
+    first: tuple[str, ...], second: tuple[str, ...], names: DeclaredNames
+) -> Iterator[ContactRequirement]:
     """Each of one with each of the other. Of a model with itself: its parts with one another, and its copies."""
     if first == second and len(first) > 1:
         pairs = combinations_with_replacement(first, 2)
-        yield from (Contact(a, b) for a, b in pairs if a != b or names.entities[a].copies > 1)
+        yield from (ContactRequirement(a, b) for a, b in pairs if a != b or names.entities[a].copies > 1)
     else:
-        yield from (Contact(a, b) for a in first for b in second)
+        yield from (ContactRequirement(a, b) for a in first for b in second)
 
 
-def _impossible(contact: Contact, relation: Relation, names: Names) -> str | None:
+def _impossible_reason(contact: ContactRequirement, relation: Relation, names: DeclaredNames) -> str | None:
     """Why Flatland rules a wish out, in words."""
     a, b = names.entities[contact.a], names.entities[contact.b]
     if a == b and a.kind == "map":
@@ -213,39 +230,50 @@ def _impossible(contact: Contact, relation: Relation, names: Names) -> str | Non
             f"{a.name} and {b.name} are maps: maps never collide, and a layer name belongs to one entry of the "
             "world file, so no layer holds two"
         )
-    if relation == "collide" and (a.ghost or b.ghost):
-        return f"{(a if a.ghost else b).name} is one of the ghosts: it cannot collide with anything"
+    if relation == "collide" and (a.is_ghost or b.is_ghost):
+        return f"{(a if a.is_ghost else b).name} is one of the ghosts: it cannot collide with anything"
     return None
 
 
-def _lasers(section: Section, names: Names, places: dict[Requirement, SourceLocation]) -> Iterator[Laser]:
+def _read_lasers(
+    section: Section, names: DeclaredNames, locations: dict[Requirement, SourceLocation]
+) -> Iterator[LaserEntity]:
     """Every laser with what the file says of it. Statements that contradict each other are noted."""
-    known = _lists(section, "lasers")
-    said: dict[Sight, tuple[Sighting, SourceLocation]] = {}
-    for key, sighting in _SIGHTS.items():
+    sees_lists = _read_name_lists(section, "lasers")
+    statements: dict[SightRequirement, tuple[Sighting, SourceLocation]] = {}
+    for key, sighting in _SIGHTING_KEYS.items():
         inner = section.section(key, None)
         for laser in () if inner is None else inner.keys():
             assert inner is not None
-            if laser not in known:
+            if laser not in sees_lists:
                 inner.error(
-                    f"there is no laser {quoted(laser)} under lasers: {suggestion(laser, known)}", laser
+                    f"there is no laser {quoted(laser)} under lasers: {suggestion(laser, sees_lists)}", laser
                 )
-            for sight in (Sight(laser, e) for n in inner.texts(laser) for e in names.meant(n, inner, laser)):
-                old, place = said.setdefault(sight, (sighting, inner.location_of(laser)))
-                if old != sighting:
-                    inner.error(_contradiction(str(sight), _IN_WORDS[sighting], _IN_WORDS[old], place), laser)
-    places.update({sight: place for sight, (_, place) in said.items()})
-    for laser in known:
+            for sight in (
+                SightRequirement(laser, e) for n in inner.texts(laser) for e in names.resolve(n, inner, laser)
+            ):
+                earlier, location = statements.setdefault(sight, (sighting, inner.location_of(laser)))
+                if earlier != sighting:
+                    inner.error(
+                        _contradiction_text(
+                            str(sight), _RELATION_TEXTS[sighting], _RELATION_TEXTS[earlier], location
+                        ),
+                        laser,
+                    )
+    locations.update({sight: location for sight, (_, location) in statements.items()})
+    for laser in sees_lists:
         entities = {
             wanted: frozenset(
-                sight.entity for sight, (what, _) in said.items() if sight.laser == laser and what == wanted
+                sight.entity
+                for sight, (stated, _) in statements.items()
+                if sight.laser == laser and stated == wanted
             )
             for wanted in ("sees", "either")
         }
-        yield Laser(laser, entities["sees"], entities["either"])
+        yield LaserEntity(laser, entities["sees"], entities["either"])
 
 
-_IN_WORDS: Final = MappingProxyType(
+_RELATION_TEXTS: Final = MappingProxyType(
     {
         "collide": "must collide",
         "either": "is left open",
@@ -256,14 +284,16 @@ _IN_WORDS: Final = MappingProxyType(
 )
 
 
-def _contradiction(what: str, here: str, there: str, place: SourceLocation) -> str:
-    return f"contradiction: {what} {here} here, and {there} in line {place.line}: strike one of the two"
+def _contradiction_text(what: str, here: str, there: str, location: SourceLocation) -> str:
+    return f"contradiction: {what} {here} here, and {there} in line {location.line}: strike one of the two"
 
 
 # Writing
 
 
-def written(case: Case, *, requirements: Requirements | None = None, comment: str = "") -> str:
+def requirements_text(
+    case: LayerCase, *, requirements: RequirementsFile | None = None, comment: str = ""
+) -> str:
     """The case as the text of a requirements file, which reads as the same case.
 
     ``requirements``: whose world, copies and bodies to write along.
@@ -280,30 +310,32 @@ def written(case: Case, *, requirements: Requirements | None = None, comment: st
     }
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     if case.title:
-        lines.append(f"title: {scalar(case.title)}")
+        lines.append(f"title: {format_scalar(case.title)}")
     if requirements is not None and requirements.world is not None:
-        lines.append(f"world: {scalar(str(requirements.world))}")
+        lines.append(f"world: {format_scalar(str(requirements.world))}")
     for key, names in (("maps", maps), ("models", models)):
         if names:
-            lines.append(f"{key}: {flow(names)}")
-    lines += _mapping("parts", {model: names for model, names in parts.items() if names})
+            lines.append(f"{key}: {format_flow_list(names)}")
+    lines += _mapping_lines("parts", {model: names for model, names in parts.items() if names})
     if requirements is not None:
-        lines += _mapping("bodies", requirements.bodies)
+        lines += _mapping_lines("bodies", requirements.bodies)
         copies = {model: names for model, names in requirements.copies.items() if names != (model,)}
-        lines += _mapping("copies", copies)
-    if ghosts := [entity.name for entity in case.entities if entity.ghost]:
-        lines.append(f"ghosts: {flow(ghosts)}")
-    lines += _mapping("collide", _adjacency(c for c in case.collide if c.a != c.b or c.a not in maps))
-    lines += _mapping("either", _adjacency(sorted(case.either)))
-    lines += _mapping(
+        lines += _mapping_lines("copies", copies)
+    if ghosts := [entity.name for entity in case.entities if entity.is_ghost]:
+        lines.append(f"ghosts: {format_flow_list(ghosts)}")
+    lines += _mapping_lines(
+        "collide", _adjacency_lists(c for c in case.collide if c.a != c.b or c.a not in maps)
+    )
+    lines += _mapping_lines("either", _adjacency_lists(sorted(case.either)))
+    lines += _mapping_lines(
         "lasers", {laser.name: [n for n in case.names if n in laser.sees] for laser in case.lasers}
     )
     may_see = {laser.name: [n for n in case.names if n in laser.either] for laser in case.lasers}
-    lines += _mapping("may_see", {laser: names for laser, names in may_see.items() if names})
+    lines += _mapping_lines("may_see", {laser: names for laser, names in may_see.items() if names})
     return "\n".join([*lines, ""])
 
 
-def _adjacency(contacts: Iterable[Contact]) -> dict[str, list[str]]:
+def _adjacency_lists(contacts: Iterable[ContactRequirement]) -> dict[str, list[str]]:
     """Pairs as a list for each first name. The order of the pairs is kept as far as such lists allow."""
     lists: dict[str, list[str]] = {}
     for first, run in groupby(contacts, key=lambda contact: contact.a):
@@ -311,13 +343,15 @@ def _adjacency(contacts: Iterable[Contact]) -> dict[str, list[str]]:
     return lists
 
 
-def _mapping(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
+def _mapping_lines(key: str, lists: Mapping[str, Iterable[str]]) -> list[str]:
     return (
-        [f"{key}:", *(f"  {scalar(name)}: {flow(names)}" for name, names in lists.items())] if lists else []
+        [f"{key}:", *(f"  {format_scalar(name)}: {format_flow_list(names)}" for name, names in lists.items())]
+        if lists
+        else []
     )
 
 
-def is_world(path: Path) -> bool:
+def is_world_file(path: Path) -> bool:
     """Whether a file is a Flatland world rather than requirements, told by its keys. Raises WorldError."""
     problems = ProblemCollector()
     try:
@@ -329,8 +363,8 @@ def is_world(path: Path) -> bool:
     problems.raise_if_any()
     keys = set() if section is None else set(section.keys())
     return bool(keys & {"properties", "layers", "plugins"}) and not keys & {
-        *_PAIRS,
-        *_SIGHTS,
+        *_RELATION_KEYS,
+        *_SIGHTING_KEYS,
         "maps",
         "world",
     }

@@ -15,50 +15,50 @@ from itertools import combinations, product
 
 from kit.layers import solver
 from kit.layers.candidates import find_candidates
-from kit.layers.planning import DEFAULT_TIME_LIMIT, Plan, solve
-from kit.layers.requirements import Case, Contact, Requirement, Sight
+from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
+from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
 from kit.world.records import MAX_LAYERS
 
 
 @dataclass(frozen=True, slots=True)
-class Sacrifice:
+class Relaxation:
     """What to give up or to tolerate, and the plan of the case without it."""
 
-    what: tuple[Requirement, ...]
-    at_least: int
+    requirements: tuple[Requirement, ...]
+    lower_bound: int
     """Proved: no smaller sacrifice of this kind will do. 0 where nothing is proved."""
-    plan: Plan
+    plan: LayerPlan
 
     @property
-    def fewest(self) -> bool:
-        return self.at_least == len(self.what)
+    def is_fewest(self) -> bool:
+        return self.lower_bound == len(self.requirements)
 
 
-def give_up(
-    case: Case, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
-) -> Sacrifice | None:
+def drop_requirements(
+    case: LayerCase, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
+) -> Relaxation | None:
     """The fewest requirements without which ``limit`` layers do. None: none found in time."""
     if not case.requirements:
-        return Sacrifice((), 0, solve(case))
+        return Relaxation((), 0, solve_layers(case))
     deadline = time.monotonic() + time_limit
     candidates = find_candidates(case, deadline=time.monotonic() + time_limit / 4)
     rows = len(case.requirements)
-    selection = solver.fewest_left_out(candidates.covers, rows, limit, (deadline - time.monotonic()) / 2)
+    selection = solver.minimum_uncovered(candidates.covers, rows, limit, (deadline - time.monotonic()) / 2)
     if selection is None:
         return None
     served = frozenset().union(*(candidates.covers[i] for i in selection.chosen))
     dropped = tuple(requirement for row, requirement in enumerate(case.requirements) if row not in served)
-    plan = solve(case.without(dropped), time_limit=max(0.1, deadline - time.monotonic()))
+    plan = solve_layers(case.without_requirements(dropped), time_limit=max(0.1, deadline - time.monotonic()))
     return (
-        Sacrifice(dropped, selection.bound if candidates.complete else 0, plan)
+        Relaxation(dropped, selection.bound if candidates.is_complete else 0, plan)
         if plan.size <= limit
         else None
     )
 
 
-def tolerate(
-    plan: Plan, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
-) -> Sacrifice | None:
+def allow_unwanted(
+    plan: LayerPlan, *, limit: int = MAX_LAYERS, time_limit: float = DEFAULT_TIME_LIMIT
+) -> Relaxation | None:
     """Few unwanted contacts and sightings with which ``limit`` layers do. None: no merging leads there."""
     case = plan.case
     layers = [
@@ -73,7 +73,7 @@ def tolerate(
         prices = {
             (i, j): price
             for (i, one), (j, other) in combinations(enumerate(layers), 2)
-            if (price := _price(case, one, other)) is not None
+            if (price := _merge_cost(case, one, other)) is not None
         }
         if not prices:
             return None
@@ -81,33 +81,35 @@ def tolerate(
         tolerated |= prices[i, j]
         merged = (layers[i][0] | layers[j][0], layers[i][1] | layers[j][1])
         layers = [layer for k, layer in enumerate(layers) if k not in (i, j)] + [merged]
-    what = tuple(sorted(tolerated, key=_by_kind))
-    relaxed = solve(case.without(what), time_limit=time_limit)
-    return Sacrifice(what, 0, relaxed) if relaxed.size <= limit else None
+    what = tuple(sorted(tolerated, key=_sort_key))
+    relaxed = solve_layers(case.without_requirements(what), time_limit=time_limit)
+    return Relaxation(what, 0, relaxed) if relaxed.size <= limit else None
 
 
-_Layer = tuple[frozenset[str], frozenset[str]]
+_WatchedLayer = tuple[frozenset[str], frozenset[str]]
 """Members, and the lasers that watch."""
 
 
-def _price(case: Case, one: _Layer, other: _Layer) -> frozenset[Requirement] | None:
+def _merge_cost(case: LayerCase, one: _WatchedLayer, other: _WatchedLayer) -> frozenset[Requirement] | None:
     """What happens that should not when two layers become one; None where it cannot be done (two maps)."""
     unwanted: set[Requirement] = set()
     for a, b in product(one[0] - other[0], other[0] - one[0]):
         if case.relation(a, b) == "apart":
             if case.by_name[a].kind == case.by_name[b].kind == "map":
                 return None
-            unwanted.add(Contact(a, b))
-    for laser, (members, _) in _crossings(one, other):
-        unwanted.update(Sight(laser, name) for name in members if case.laser[laser].sighting(name) == "blind")
+            unwanted.add(ContactRequirement(a, b))
+    for laser, (members, _) in _lasers_across(one, other):
+        unwanted.update(
+            SightRequirement(laser, name) for name in members if case.laser[laser].sighting(name) == "blind"
+        )
     return frozenset(unwanted)
 
 
-def _crossings(one: _Layer, other: _Layer) -> Iterable[tuple[str, _Layer]]:
+def _lasers_across(one: _WatchedLayer, other: _WatchedLayer) -> Iterable[tuple[str, _WatchedLayer]]:
     """Each laser of one layer with the other layer, whose members it would come to see."""
     yield from ((laser, other) for laser in one[1])
     yield from ((laser, one) for laser in other[1])
 
 
-def _by_kind(requirement: Requirement) -> tuple[bool, str]:
-    return isinstance(requirement, Sight), str(requirement)
+def _sort_key(requirement: Requirement) -> tuple[bool, str]:
+    return isinstance(requirement, SightRequirement), str(requirement)

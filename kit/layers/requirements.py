@@ -25,7 +25,7 @@ Sighting = Literal["sees", "either", "blind"]
 
 
 @dataclass(frozen=True, slots=True)
-class Entity:
+class LayerEntity:
     """Whatever gets one list of layers."""
 
     name: str
@@ -34,12 +34,12 @@ class Entity:
     """The model whose bodies these are: entities of one model have the same word here. Empty for a map."""
     copies: int = 1
     """How many model instances share this one list, because they are read from one model file."""
-    ghost: bool = False
+    is_ghost: bool = False
     """Never collides (``collision: false``), whatever layers it shares; lasers can still see it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Contact:
+class ContactRequirement:
     """A pair of entities; ``Contact(a, b) == Contact(b, a)``. ``Contact(a, a)``: the copies of ``a``, or its bodies,
     among themselves."""
 
@@ -47,24 +47,24 @@ class Contact:
     b: str
 
     @property
-    def _either_way(self) -> tuple[str, str]:
+    def _sorted_pair(self) -> tuple[str, str]:
         return (self.a, self.b) if self.a <= self.b else (self.b, self.a)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Contact) and self._either_way == other._either_way
+        return isinstance(other, ContactRequirement) and self._sorted_pair == other._sorted_pair
 
     def __hash__(self) -> int:
-        return hash(self._either_way)
+        return hash(self._sorted_pair)
 
-    def __lt__(self, other: Contact) -> bool:
-        return self._either_way < other._either_way
+    def __lt__(self, other: ContactRequirement) -> bool:
+        return self._sorted_pair < other._sorted_pair
 
     def __str__(self) -> str:
         return f"{self.a} - {self.b}"
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Sight:
+class SightRequirement:
     """A laser and an entity."""
 
     laser: str
@@ -74,12 +74,12 @@ class Sight:
         return f"{self.laser} > {self.entity}"
 
 
-Requirement: TypeAlias = Contact | Sight
+Requirement: TypeAlias = ContactRequirement | SightRequirement
 """Something some layer has to bring about: a contact, or a sighting."""
 
 
 @dataclass(frozen=True, slots=True)
-class Laser:
+class LaserEntity:
     """What one laser must see, and what it may see; it must be blind to everything else."""
 
     name: str
@@ -92,12 +92,12 @@ class Laser:
         return "either" if entity in self.either else "blind"
 
 
-class CaseError(ValueError):
+class LayerCaseError(ValueError):
     """A case that means nothing: a name given twice or unknown, a wish that Flatland rules out."""
 
 
 @dataclass(frozen=True)
-class Case:
+class LayerCase:
     """One layer-assignment problem. Immutable; the ``with_`` methods return the changed case.
 
     ``collide`` keeps the order it was written in, which is the order of the slides' list of edges. Raises
@@ -106,58 +106,60 @@ class Case:
     collide.
     """
 
-    entities: tuple[Entity, ...]
-    collide: tuple[Contact, ...] = ()
-    either: frozenset[Contact] = frozenset()
-    lasers: tuple[Laser, ...] = ()
+    entities: tuple[LayerEntity, ...]
+    collide: tuple[ContactRequirement, ...] = ()
+    either: frozenset[ContactRequirement] = frozenset()
+    lasers: tuple[LaserEntity, ...] = ()
     title: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        _unique("entity", [entity.name for entity in self.entities])
-        _unique("laser", [laser.name for laser in self.lasers])
-        if len(self.must) < len(self.collide):
-            raise CaseError("the same pair is required twice")
+        _check_unique("entity", [entity.name for entity in self.entities])
+        _check_unique("laser", [laser.name for laser in self.lasers])
+        if len(self.required_contacts) < len(self.collide):
+            raise LayerCaseError("the same pair is required twice")
         for contact in (*self.collide, *self.either):
-            self._check(contact)
+            self._check_contact(contact)
         for laser in self.lasers:
             for name in laser.sees | laser.either:
                 if name not in self.by_name:
-                    raise CaseError(f"laser {laser.name}: there is no entity {name!r}")
+                    raise LayerCaseError(f"laser {laser.name}: there is no entity {name!r}")
             if both := laser.sees & laser.either:
-                raise CaseError(f"laser {laser.name} both must and may see {min(both)!r}")
+                raise LayerCaseError(f"laser {laser.name} both must and may see {min(both)!r}")
         for requirement in self.requirements:
-            for name in named_by(requirement):
+            for name in required_entities(requirement):
                 if self.relation(name, name) == "apart":
-                    raise CaseError(
+                    raise LayerCaseError(
                         f"contradiction: {requirement} needs a layer, but the {self.by_name[name].copies} copies of "
                         f"{name} share one list of layers, and nothing says that they may collide with each other: "
                         f"say so, or give one of them a model file of its own"
                     )
 
-    def _check(self, contact: Contact) -> None:
+    def _check_contact(self, contact: ContactRequirement) -> None:
         for name in (contact.a, contact.b):
             if name not in self.by_name:
-                raise CaseError(f"there is no entity {name!r}")
+                raise LayerCaseError(f"there is no entity {name!r}")
         a, b = self.by_name[contact.a], self.by_name[contact.b]
         if a.kind == b.kind == "map" and a != b:
-            raise CaseError(
+            raise LayerCaseError(
                 f"{a.name} and {b.name} are maps: maps never collide, and a layer holds one at most"
             )
-        if contact in self.must and contact in self.either:
-            raise CaseError(f"{contact} is both required and left open")
-        if contact in self.must and (a.ghost or b.ghost):
-            raise CaseError(f"{(a if a.ghost else b).name} is a ghost: it cannot collide with anything")
+        if contact in self.required_contacts and contact in self.either:
+            raise LayerCaseError(f"{contact} is both required and left open")
+        if contact in self.required_contacts and (a.is_ghost or b.is_ghost):
+            raise LayerCaseError(
+                f"{(a if a.is_ghost else b).name} is a ghost: it cannot collide with anything"
+            )
 
     @cached_property
-    def by_name(self) -> Mapping[str, Entity]:
+    def by_name(self) -> Mapping[str, LayerEntity]:
         return {entity.name: entity for entity in self.entities}
 
     @cached_property
-    def laser(self) -> Mapping[str, Laser]:
+    def laser(self) -> Mapping[str, LaserEntity]:
         return {laser.name: laser for laser in self.lasers}
 
     @cached_property
-    def must(self) -> frozenset[Contact]:
+    def required_contacts(self) -> frozenset[ContactRequirement]:
         """``collide`` as a set."""
         return frozenset(self.collide)
 
@@ -169,51 +171,54 @@ class Case:
     def requirements(self) -> tuple[Requirement, ...]:
         """Everything the layers have to bring about: the contacts as written, then the sightings."""
         sights = [
-            Sight(laser.name, name) for laser in self.lasers for name in self.names if name in laser.sees
+            SightRequirement(laser.name, name)
+            for laser in self.lasers
+            for name in self.names
+            if name in laser.sees
         ]
         return (*self.collide, *sights)
 
     def relation(self, a: str, b: str) -> Relation:
         """Of two entities, or (``a == b``) of the copies of one among themselves."""
-        contact = Contact(a, b)
-        if contact in self.must:
+        contact = ContactRequirement(a, b)
+        if contact in self.required_contacts:
             return "collide"
         if contact in self.either:
             return "either"
         first, second = self.by_name[a], self.by_name[b]
         if a == b:
-            return "either" if first.copies == 1 or first.ghost else "apart"
+            return "either" if first.copies == 1 or first.is_ghost else "apart"
         if first.kind == second.kind == "map":
             return "apart"
-        return "either" if first.ghost or second.ghost else "apart"
+        return "either" if first.is_ghost or second.is_ghost else "apart"
 
-    def pairs(self) -> Iterable[Contact]:
+    def entity_pairs(self) -> Iterable[ContactRequirement]:
         """Every pair of two different entities, in their order."""
-        return (Contact(a, b) for a, b in combinations(self.names, 2))
+        return (ContactRequirement(a, b) for a, b in combinations(self.names, 2))
 
-    def blind(self, laser: Laser) -> frozenset[str]:
+    def blind_set(self, laser: LaserEntity) -> frozenset[str]:
         """What the laser must not see."""
         return frozenset(self.names) - laser.sees - laser.either
 
-    def edges(self) -> tuple[Contact, ...]:
+    def edges(self) -> tuple[ContactRequirement, ...]:
         """The edges of the collision graph: the required contacts of two different entities."""
         return tuple(contact for contact in self.collide if contact.a != contact.b)
 
-    def with_relation(self, a: str, b: str, relation: Relation) -> Case:
+    def with_relation(self, a: str, b: str, relation: Relation) -> LayerCase:
         """The case with another relation of one pair; a new required contact goes to the end of the list."""
-        contact = Contact(a, b)
+        contact = ContactRequirement(a, b)
         collide = tuple(c for c in self.collide if c != contact) if relation != "collide" else self.collide
-        if relation == "collide" and contact not in self.must:
+        if relation == "collide" and contact not in self.required_contacts:
             collide = (*self.collide, contact)
         either = self.either | {contact} if relation == "either" else self.either - {contact}
         return replace(self, collide=collide, either=either)
 
-    def with_sighting(self, laser: str, entity: str, sighting: Sighting) -> Case:
+    def with_sighting(self, laser: str, entity: str, sighting: Sighting) -> LayerCase:
         """The case with another relation of one laser to one entity."""
 
-        def changed(old: Laser) -> Laser:
+        def changed(old: LaserEntity) -> LaserEntity:
             sees, either = old.sees - {entity}, old.either - {entity}
-            return Laser(
+            return LaserEntity(
                 old.name,
                 sees | {entity} if sighting == "sees" else sees,
                 either | {entity} if sighting == "either" else either,
@@ -221,36 +226,38 @@ class Case:
 
         return replace(self, lasers=tuple(changed(old) if old.name == laser else old for old in self.lasers))
 
-    def with_entity(self, entity: Entity) -> Case:
+    def with_entity(self, entity: LayerEntity) -> LayerCase:
         return replace(self, entities=(*self.entities, entity))
 
-    def with_laser(self, laser: Laser) -> Case:
+    def with_laser(self, laser: LaserEntity) -> LayerCase:
         return replace(self, lasers=(*self.lasers, laser))
 
-    def without_entity(self, name: str) -> Case:
+    def without_entity(self, name: str) -> LayerCase:
         """The case without an entity and everything said about it."""
         return replace(
             self,
             entities=tuple(entity for entity in self.entities if entity.name != name),
             collide=tuple(contact for contact in self.collide if name not in (contact.a, contact.b)),
             either=frozenset(contact for contact in self.either if name not in (contact.a, contact.b)),
-            lasers=tuple(Laser(old.name, old.sees - {name}, old.either - {name}) for old in self.lasers),
+            lasers=tuple(
+                LaserEntity(old.name, old.sees - {name}, old.either - {name}) for old in self.lasers
+            ),
         )
 
-    def without_laser(self, name: str) -> Case:
+    def without_laser(self, name: str) -> LayerCase:
         return replace(self, lasers=tuple(laser for laser in self.lasers if laser.name != name))
 
-    def without(self, requirements: Iterable[Requirement]) -> Case:
+    def without_requirements(self, requirements: Iterable[Requirement]) -> LayerCase:
         """The case in which these requirements are given up: nobody minds any more."""
         case = self
         for given_up in requirements:
-            if isinstance(given_up, Contact):
+            if isinstance(given_up, ContactRequirement):
                 case = case.with_relation(given_up.a, given_up.b, "either")
             else:
                 case = case.with_sighting(given_up.laser, given_up.entity, "either")
         return case
 
-    def with_one_model_free(self) -> Case:
+    def without_self_collisions(self) -> LayerCase:
         """The slides' assumption as a switch: bodies of one model never collide, so they may share layers.
 
         Flatland does not treat them so: two bodies of one model that share a layer and are not joined do
@@ -258,7 +265,7 @@ class Case:
         several instances in one list, a part of one can meet a part of another.
         """
         mates = [
-            Contact(a.name, b.name)
+            ContactRequirement(a.name, b.name)
             for a, b in combinations(self.entities, 2)
             if a.model and a.model == b.model and a.copies == b.copies == 1
         ]
@@ -269,18 +276,18 @@ class Case:
         )
 
 
-def fit_together(case: Case, one: Requirement, other: Requirement) -> str | None:
+def layer_conflict(case: LayerCase, one: Requirement, other: Requirement) -> str | None:
     """Why no layer can serve both requirements, in words; None if one can.
 
     A layer that serves them holds all the entities they name, so no two of these may be ``apart``, and it is
     watched by the lasers they name, so none of these may be blind to any of those. Nothing else can stand in
     the way. This is the whole of the argument of a certificate, and it asks no solver.
     """
-    entities = dict.fromkeys(name for requirement in (one, other) for name in named_by(requirement))
+    entities = dict.fromkeys(name for requirement in (one, other) for name in required_entities(requirement))
     for a, b in combinations(entities, 2):
         if case.relation(a, b) == "apart":
             return f"{a} and {b} must not share a layer"
-    lasers = dict.fromkeys(r.laser for r in (one, other) if isinstance(r, Sight))
+    lasers = dict.fromkeys(r.laser for r in (one, other) if isinstance(r, SightRequirement))
     for name in lasers:
         for entity in entities:
             if case.laser[name].sighting(entity) == "blind":
@@ -288,14 +295,18 @@ def fit_together(case: Case, one: Requirement, other: Requirement) -> str | None
     return None
 
 
-def named_by(requirement: Requirement) -> tuple[str, ...]:
+def required_entities(requirement: Requirement) -> tuple[str, ...]:
     """The entities a requirement names: a layer that brings it about holds them all."""
-    return (requirement.a, requirement.b) if isinstance(requirement, Contact) else (requirement.entity,)
+    return (
+        (requirement.a, requirement.b)
+        if isinstance(requirement, ContactRequirement)
+        else (requirement.entity,)
+    )
 
 
-def _unique(what: str, names: list[str]) -> None:
+def _check_unique(what: str, names: list[str]) -> None:
     seen: set[str] = set()
     for name in names:
         if name in seen:
-            raise CaseError(f"the {what} {name!r} is named twice")
+            raise LayerCaseError(f"the {what} {name!r} is named twice")
         seen.add(name)

@@ -13,53 +13,55 @@ from typing import Any, Literal
 
 import numpy as np
 
-_SMALL = 1e-6
+_BOUND_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class SolverSelection:
     """The columns (or rows) chosen, and how many any choice must have at least (or at most)."""
 
     chosen: tuple[int, ...]
     bound: int
 
 
-def fewest_columns(columns: Sequence[frozenset[int]], rows: int, seconds: float) -> Selection | None:
+def minimum_columns(columns: Sequence[frozenset[int]], rows: int, seconds: float) -> SolverSelection | None:
     """The fewest columns that cover every row: ``min sum z, A z >= 1, z binary``. None: nothing found in time."""
-    highs = _model(columns, rows, sense="cover", integer=True, seconds=seconds)
+    highs = _build_model(columns, rows, sense="cover", integer=True, seconds=seconds)
     highs.run()
-    bound = _rounded_up(highs.getInfo().mip_dual_bound)
-    chosen = _chosen(highs)
-    return None if chosen is None else Selection(chosen, min(bound, len(chosen)))
+    bound = _round_bound_up(highs.getInfo().mip_dual_bound)
+    chosen = _selected_variables(highs)
+    return None if chosen is None else SolverSelection(chosen, min(bound, len(chosen)))
 
 
-def most_rows(columns: Sequence[frozenset[int]], rows: int, seconds: float) -> tuple[int, ...]:
+def maximum_packing(columns: Sequence[frozenset[int]], rows: int, seconds: float) -> tuple[int, ...]:
     """The most rows of which no column contains two: ``max sum y, y A <= 1, y binary``. Empty: none found in time."""
-    highs = _model(columns, rows, sense="packing", integer=True, seconds=seconds)
+    highs = _build_model(columns, rows, sense="packing", integer=True, seconds=seconds)
     highs.run()
-    return _chosen(highs) or ()
+    return _selected_variables(highs) or ()
 
 
-def row_weights(columns: Sequence[frozenset[int]], rows: int, seconds: float) -> tuple[float, ...] | None:
+def fractional_packing(
+    columns: Sequence[frozenset[int]], rows: int, seconds: float
+) -> tuple[float, ...] | None:
     """Weights of the rows of which no column collects more than 1, of the greatest sum: the packing's relaxation.
 
     By duality their sum is the least fractional cover, so no cover is smaller. None: not solved in time.
     """
-    highs = _model(columns, rows, sense="packing", integer=False, seconds=seconds)
+    highs = _build_model(columns, rows, sense="packing", integer=False, seconds=seconds)
     highs.run()
     if highs.getModelStatus() != _highspy().HighsModelStatus.kOptimal:
         return None
     return tuple(min(1.0, max(0.0, value)) for value in highs.getSolution().col_value)
 
 
-def fewest_left_out(
+def minimum_uncovered(
     columns: Sequence[frozenset[int]], rows: int, at_most: int, seconds: float
-) -> Selection | None:
+) -> SolverSelection | None:
     """``at_most`` columns that leave the fewest rows uncovered; the bound is on how few those can be.
 
     ``min sum d, A z + d >= 1, sum z <= at_most, z binary, d >= 0``. ``chosen`` are the columns.
     """
-    highs = _model(columns, rows, sense="cover", integer=True, seconds=seconds)
+    highs = _build_model(columns, rows, sense="cover", integer=True, seconds=seconds)
     count = len(columns)
     every = np.arange(count, dtype=np.int32)
     highs.changeColsCost(count, every, np.zeros(count))
@@ -67,9 +69,9 @@ def fewest_left_out(
     for row in range(rows):
         highs.addCol(1.0, 0.0, 1.0, 1, np.array([row], dtype=np.int32), np.ones(1))
     highs.run()
-    bound = max(0, _rounded_up(highs.getInfo().mip_dual_bound))
-    chosen = _chosen(highs)
-    return None if chosen is None else Selection(tuple(c for c in chosen if c < count), bound)
+    bound = max(0, _round_bound_up(highs.getInfo().mip_dual_bound))
+    chosen = _selected_variables(highs)
+    return None if chosen is None else SolverSelection(tuple(c for c in chosen if c < count), bound)
 
 
 def _highspy() -> Any:
@@ -78,7 +80,7 @@ def _highspy() -> Any:
     return highspy
 
 
-def _model(
+def _build_model(
     columns: Sequence[frozenset[int]],
     rows: int,
     *,
@@ -118,12 +120,12 @@ def _model(
     return highs
 
 
-def _chosen(highs: Any) -> tuple[int, ...] | None:
+def _selected_variables(highs: Any) -> tuple[int, ...] | None:
     """The variables set to 1 in the best solution found, if there is one."""
     if highs.getInfo().primal_solution_status != _highspy().SolutionStatus.kSolutionStatusFeasible:
         return None
     return tuple(i for i, value in enumerate(highs.getSolution().col_value) if value > 0.5)
 
 
-def _rounded_up(bound: float) -> int:
-    return math.ceil(bound - _SMALL) if math.isfinite(bound) else 0
+def _round_bound_up(bound: float) -> int:
+    return math.ceil(bound - _BOUND_TOLERANCE) if math.isfinite(bound) else 0

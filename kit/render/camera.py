@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kit.render.scene import Bounds, FloatArray
+from kit.render.scene import FloatArray, SceneBounds
 
 CELL_ASPECT = 2.0
 """A terminal's character is about twice as high as it is wide."""
@@ -15,14 +15,14 @@ CELL_ASPECT = 2.0
 ZOOM_STEP = math.sqrt(2.0)
 """Two steps of zoom double the scale."""
 
-FINEST_CELL, COARSEST_CELL = 0.002, 20.0
+MIN_CELL_WIDTH, MAX_CELL_WIDTH = 0.002, 20.0
 """The limits of zoom: the width of a character [m]."""
 
-MARGIN = 0.45
+FIT_MARGIN = 0.45
 """Characters to spare around what is fitted in. Not one half, which would put the outermost walls between two
 dots, on one side of them here and on the other there."""
 
-CALM_ZONE = 0.5
+FOLLOW_DEAD_ZONE = 0.5
 """The middle share of the picture in which a followed robot moves without the picture moving."""
 
 
@@ -32,7 +32,7 @@ class Camera:
 
     x: float
     y: float
-    cell: float
+    cell_width: float
     """Width of a character [m]."""
     columns: int
     rows: int
@@ -41,7 +41,12 @@ class Camera:
 
     @classmethod
     def fit(
-        cls, bounds: Bounds, columns: int, rows: int, aspect: float = CELL_ASPECT, margin: float = MARGIN
+        cls,
+        bounds: SceneBounds,
+        columns: int,
+        rows: int,
+        aspect: float = CELL_ASPECT,
+        margin: float = FIT_MARGIN,
     ) -> Camera:
         """The camera that shows all of ``bounds``, as large as it can, with ``margin`` characters to spare on
         every side."""
@@ -51,7 +56,7 @@ class Camera:
         return cls(
             (bounds.left + bounds.right) / 2,
             (bounds.bottom + bounds.top) / 2,
-            max(cell, FINEST_CELL),
+            max(cell, MIN_CELL_WIDTH),
             columns,
             rows,
             aspect,
@@ -60,13 +65,13 @@ class Camera:
     @property
     def cell_height(self) -> float:
         """Height of a character [m]."""
-        return self.cell * self.aspect
+        return self.cell_width * self.aspect
 
     @property
-    def bounds(self) -> Bounds:
+    def bounds(self) -> SceneBounds:
         """What is seen of the world."""
-        across, up = self.columns * self.cell / 2, self.rows * self.cell_height / 2
-        return Bounds(self.x - across, self.y - up, self.x + across, self.y + up)
+        across, up = self.columns * self.cell_width / 2, self.rows * self.cell_height / 2
+        return SceneBounds(self.x - across, self.y - up, self.x + across, self.y + up)
 
     def resized(self, columns: int, rows: int) -> Camera:
         """The same place at the same scale in another window."""
@@ -74,19 +79,19 @@ class Camera:
 
     def zoomed(self, steps: int) -> Camera:
         """``steps`` nearer, or farther if negative; the centre stays."""
-        cell = self.cell / ZOOM_STEP**steps
-        return replace(self, cell=min(max(cell, FINEST_CELL), COARSEST_CELL))
+        cell = self.cell_width / ZOOM_STEP**steps
+        return replace(self, cell_width=min(max(cell, MIN_CELL_WIDTH), MAX_CELL_WIDTH))
 
     def panned(self, columns: int, rows: int) -> Camera:
         """Moved by whole characters, to the right and up, so that what stands still keeps its shape."""
-        return replace(self, x=self.x + columns * self.cell, y=self.y + rows * self.cell_height)
+        return replace(self, x=self.x + columns * self.cell_width, y=self.y + rows * self.cell_height)
 
     def following(self, x: float, y: float) -> Camera:
         """Moved by as few whole characters as keep the point within the calm middle of the picture."""
         if not (math.isfinite(x) and math.isfinite(y)):
             return self
-        right = _excess((x - self.x) / self.cell, self.columns * CALM_ZONE / 2)
-        up = _excess((y - self.y) / self.cell_height, self.rows * CALM_ZONE / 2)
+        right = _steps_back_into((x - self.x) / self.cell_width, self.columns * FOLLOW_DEAD_ZONE / 2)
+        up = _steps_back_into((y - self.y) / self.cell_height, self.rows * FOLLOW_DEAD_ZONE / 2)
         return self.panned(right, up) if right or up else self
 
     def project(self, points: FloatArray, across: int = 1, down: int = 1) -> FloatArray:
@@ -94,11 +99,11 @@ class Camera:
         corner, ``across`` x ``down`` dots in a character. Dot (i, j) covers [i, i + 1) x [j, j + 1).
         """
         left, _, _, top = self.bounds
-        scale = np.array((across / self.cell, -down / self.cell_height))
+        scale = np.array((across / self.cell_width, -down / self.cell_height))
         dots: FloatArray = (points - np.array((left, top))) * scale
         return dots
 
 
-def _excess(offset: float, limit: float) -> int:
+def _steps_back_into(offset: float, limit: float) -> int:
     """How many whole steps bring ``offset`` back into [-limit, limit]."""
     return math.trunc(math.copysign(math.ceil(max(0.0, abs(offset) - limit)), offset))

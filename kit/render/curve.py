@@ -14,13 +14,13 @@ import numpy as np
 from kit.render import raster
 from kit.render.encode import Encoder
 from kit.render.frame import BLANK, Frame
-from kit.render.roles import ROBOTS, Role
+from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import FloatArray
 
-INKS = ROBOTS
+CURVE_ROLES = ROBOT_ROLES
 """The first curve's, the second's, the third's as the first's again; their numbers tell them apart too."""
 
-MARGIN_FROM = 20
+MIN_COLUMNS_WITH_MARGIN = 20
 """From so many columns on there is room for a scale on the left."""
 
 
@@ -55,29 +55,29 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     """A frame of ``columns`` x ``rows`` characters: names and newest values on top, then the plot, then the
     horizontal scale. Where there is little room the plot keeps it."""
     frame = Frame.empty(columns, rows)
-    curves = [_finite(curve) for curve in curves]
-    low, high = _vertical(curves, axes)
-    right = round_up(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
+    curves = [_without_gaps(curve) for curve in curves]
+    low, high = _value_range(curves, axes)
+    right = nice_ceiling(max((float(curve.x[-1]) for curve in curves if len(curve.x)), default=1.0))
     top, bottom = int(rows >= 4), rows - int(rows >= 3)
     labels = {top: f"{high:.4g}", bottom - 1: f"{low:.4g}"}
     if axes.goal is not None:
-        labels.setdefault(top + _row(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
-    left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MARGIN_FROM else 0
-    plot = _plot(curves, axes.goal, (low, high, right), columns - left, bottom - top, encoder)
-    _paste(frame, plot, top, left)
+        labels.setdefault(top + _row_of(axes.goal, low, high, bottom - top), f"{axes.goal:.4g}")
+    left = max(axes.margin, max(map(len, labels.values())) + 1) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
+    plot = _draw_plot(curves, axes.goal, (low, high, right), columns - left, bottom - top, encoder)
+    _paste_frame(frame, plot, top, left)
     if left:
         for row, label in labels.items():
-            write(frame, row, 0, label.rjust(left - 1))
+            write_text(frame, row, 0, label.rjust(left - 1))
     if bottom < rows:
-        write(frame, bottom, left, "0")
-        end = f"{_count(right)} {axes.unit}".rstrip()
-        write(frame, bottom, max(left + 2, columns - len(end)), end)
+        write_text(frame, bottom, left, "0")
+        end = f"{_format_count(right)} {axes.unit}".rstrip()
+        write_text(frame, bottom, max(left + 2, columns - len(end)), end)
     if top:
         _write_names(frame, curves, left)
     return frame
 
 
-def _plot(
+def _draw_plot(
     curves: Sequence[Curve],
     goal: float | None,
     scale: tuple[float, float, float],
@@ -89,7 +89,7 @@ def _plot(
     columns, rows = max(1, columns), max(1, rows)
     low, high, right = scale
     width, height = columns * encoder.across, rows * encoder.down
-    grid = raster.blank(width, height)
+    grid = raster.empty_grid(width, height)
 
     def level(values: FloatArray) -> FloatArray:
         dots: FloatArray = (high - values) / (high - low) * (height - 1) + 0.5
@@ -99,29 +99,29 @@ def _plot(
         y = float(level(np.array(goal)))
         line, across = raster.line_dots(np.array([(0.0, y, width - 0.5, y)]), width, height)
         kept = across % 6 < 3
-        raster.put(grid, (line[kept], across[kept]), Role.PATH)
+        raster.draw_dots(grid, (line[kept], across[kept]), Role.PATH)
     for number, curve in enumerate(curves):
-        x, y_mean = _binned(curve, right, width)
+        x, y_mean = _bin_means(curve, right, width)
         dots = np.stack((x, level(y_mean)), axis=1)
-        role = INKS[number % len(INKS)]
-        raster.put(grid, raster.point_dots(dots, width, height), role)
-        raster.put(grid, raster.line_dots(raster.polyline(dots), width, height), role)
+        role = CURVE_ROLES[number % len(CURVE_ROLES)]
+        raster.draw_dots(grid, raster.point_dots(dots, width, height), role)
+        raster.draw_dots(grid, raster.line_dots(raster.polyline(dots), width, height), role)
     frame = encoder.encode(grid)
     if len(curves) > 1:
         for number, curve in enumerate(curves):
             if len(curve.x):
                 column = int(curve.x[-1] / right * (columns - 1))
-                row = _row(float(curve.y[-1]), low, high, rows)
+                row = _row_of(float(curve.y[-1]), low, high, rows)
                 if 0 <= row < rows:
-                    write(frame, row, column, str(number + 1), INKS[number % len(INKS)])
+                    write_text(frame, row, column, str(number + 1), CURVE_ROLES[number % len(CURVE_ROLES)])
     return frame
 
 
-def _row(value: float, low: float, high: float, rows: int) -> int:
+def _row_of(value: float, low: float, high: float, rows: int) -> int:
     return math.floor((high - value) / (high - low) * (rows - 1) + 0.5)
 
 
-def _binned(curve: Curve, right: float, bins: int) -> tuple[FloatArray, FloatArray]:
+def _bin_means(curve: Curve, right: float, bins: int) -> tuple[FloatArray, FloatArray]:
     """The middles [dots] of the columns of dots that have data, and the mean of the data in each."""
     if not len(curve.x):
         return np.empty(0), np.empty(0)
@@ -132,24 +132,24 @@ def _binned(curve: Curve, right: float, bins: int) -> tuple[FloatArray, FloatArr
     return kept.astype(np.float64) + 0.5, np.asarray(total[kept] / count[kept], dtype=np.float64)
 
 
-def _finite(curve: Curve) -> Curve:
+def _without_gaps(curve: Curve) -> Curve:
     kept = np.isfinite(curve.x) & np.isfinite(curve.y)
     return Curve(curve.name, curve.x[kept], curve.y[kept])
 
 
-def _vertical(curves: Sequence[Curve], axes: Axes) -> tuple[float, float]:
+def _value_range(curves: Sequence[Curve], axes: Axes) -> tuple[float, float]:
     """Least and greatest value shown, always different."""
     seen = [curve.y for curve in curves if len(curve.y)]
     values = np.concatenate(seen) if seen else np.array((0.0, 1.0))
     marks = [float(values.min()), float(values.max())] + ([] if axes.goal is None else [axes.goal])
     low, high = min(marks), max(marks)
-    step = round_up((high - low) / 4 or abs(high) or 1.0)
+    step = nice_ceiling((high - low) / 4 or abs(high) or 1.0)
     low = math.floor(low / step) * step if axes.low is None else axes.low
     high = math.ceil(high / step) * step if axes.high is None else axes.high
     return (low, high) if high > low else (low, low + step)
 
 
-def round_up(value: float) -> float:
+def nice_ceiling(value: float) -> float:
     """The next of 1, 2, 5, 10, 20, 50, ... times any power of ten."""
     if value <= 0:
         return 1.0
@@ -157,7 +157,7 @@ def round_up(value: float) -> float:
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if value <= factor * power * (1 + 1e-9))
 
 
-def _count(value: float) -> str:
+def _format_count(value: float) -> str:
     """A round number as people write it: 50 000, or 0.2."""
     return f"{value:,.0f}".replace(",", " ") if value >= 1 else f"{value:.4g}"
 
@@ -167,23 +167,23 @@ def _write_names(frame: Frame, curves: Sequence[Curve], column: int) -> None:
         newest = f" {curve.y[-1]:.3g}" if len(curve.y) else ""
         key = f"{number + 1} " if len(curves) > 1 else ""
         text = f"{key}{curve.name}{newest}"
-        write(frame, 0, column, text, INKS[number % len(INKS)])
+        write_text(frame, 0, column, text, CURVE_ROLES[number % len(CURVE_ROLES)])
         column += len(text) + 2
 
 
-def write(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:
+def write_text(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:
     """Writes a text into a frame; what does not fit is cut off."""
     rows, columns = frame.shape
     if not 0 <= row < rows:
         return
     for at, glyph in enumerate(text[: max(0, columns - column)], column):
         frame.glyphs[row, at] = ord(glyph)
-        frame.inks[row, at] = Role.EMPTY if glyph == chr(BLANK) else role
-        frame.papers[row, at] = Role.EMPTY
+        frame.fg[row, at] = Role.EMPTY if glyph == chr(BLANK) else role
+        frame.bg[row, at] = Role.EMPTY
 
 
-def _paste(frame: Frame, part: Frame, top: int, left: int) -> None:
+def _paste_frame(frame: Frame, part: Frame, top: int, left: int) -> None:
     rows, columns = part.shape
-    for whole, piece in ((frame.glyphs, part.glyphs), (frame.inks, part.inks), (frame.papers, part.papers)):
+    for whole, piece in ((frame.glyphs, part.glyphs), (frame.fg, part.fg), (frame.bg, part.bg)):
         room = whole[top : top + rows, left : left + columns]
         room[:] = piece[: room.shape[0], : room.shape[1]]

@@ -16,29 +16,40 @@ from kit.render.roles import Role
 
 
 @dataclass(frozen=True, slots=True)
-class Symbols:
+class GlyphSet:
     """Single characters that stand for a thing as a whole. Strings of directions start at the right and
     go round counter-clockwise in equal turns."""
 
-    robots: tuple[str, ...]
+    robot_arrows: tuple[str, ...]
     """Arrows of the first robot, the second, ..., then from the first again."""
-    field: str
+    field_arrows: str
     """Arrows of a field."""
-    strong: str
+    strong_field_arrows: str
     """Arrows where it is strong."""
-    faint: str
+    weak_field_dot: str
     """A place where the field is next to nothing."""
     target: str
     contact: str
-    noses: str = ""
+    heading_strokes: str = ""
     """Strokes that show a robot's heading where a line of dots would be too coarse to."""
 
 
-ARROWS = Symbols(
-    robots=("►◥▲◤◄◣▼◢", "▷◹△◸◁◺▽◿"), field="→↗↑↖←↙↓↘", strong="⇒⇗⇑⇖⇐⇙⇓⇘", faint="·", target="◎", contact="×"
+UNICODE_GLYPHS = GlyphSet(
+    robot_arrows=("►◥▲◤◄◣▼◢", "▷◹△◸◁◺▽◿"),
+    field_arrows="→↗↑↖←↙↓↘",
+    strong_field_arrows="⇒⇗⇑⇖⇐⇙⇓⇘",
+    weak_field_dot="·",
+    target="◎",
+    contact="×",
 )
-LETTERS = Symbols(
-    robots=(">^<v",), field=">^<v", strong="}A{V", faint="'", target="*", contact="X", noses="-/|\\-/|\\"
+ASCII_GLYPHS = GlyphSet(
+    robot_arrows=(">^<v",),
+    field_arrows=">^<v",
+    strong_field_arrows="}A{V",
+    weak_field_dot="'",
+    target="*",
+    contact="X",
+    heading_strokes="-/|\\-/|\\",
 )
 
 
@@ -50,21 +61,21 @@ class Encoder(Protocol):
     @property
     def down(self) -> int: ...
     @property
-    def symbols(self) -> Symbols: ...
+    def symbols(self) -> GlyphSet: ...
 
     def encode(self, grid: Grid) -> Frame:
         """``grid``: (rows * down, columns * across) uint8 roles."""
         ...
 
 
-class Braille:
+class BrailleEncoder:
     """2 x 4 dots in a character, one ink for all of them: that of the most important. What is thinner than a
     wall gives way to what is not, so that it does not blur it.
 
     Without colours (``mono``) a lidar hit is a bullet, which no wall looks like.
     """
 
-    across, down, symbols = 2, 4, ARROWS
+    across, down, symbols = 2, 4, UNICODE_GLYPHS
 
     def __init__(self, mono: bool = False) -> None:
         self._mono = mono
@@ -86,13 +97,13 @@ class Braille:
         return Frame(glyphs, inks, np.zeros_like(inks))
 
 
-class HalfBlock:
+class HalfBlockEncoder:
     """1 x 2 dots in a character, each with a colour of its own; what is thin is a dot or a shade.
 
     Without colours (``mono``) two different things in one character are one full block.
     """
 
-    across, down, symbols = 1, 2, ARROWS
+    across, down, symbols = 1, 2, UNICODE_GLYPHS
 
     _upper, _lower, _full = ord("▀"), ord("▄"), ord("█")
     _thin = MappingProxyType(
@@ -123,10 +134,10 @@ class HalfBlock:
         return Frame(glyphs, inks, papers)
 
 
-class Ascii:
+class AsciiEncoder:
     """One dot in a character: the character says what it is, with colours or without."""
 
-    across, down, symbols = 1, 1, LETTERS
+    across, down, symbols = 1, 1, ASCII_GLYPHS
 
     shapes: Mapping[Role, str] = MappingProxyType(
         {
@@ -156,6 +167,6 @@ class Ascii:
 
 
 ENCODERS: Mapping[str, Callable[[bool], Encoder]] = MappingProxyType(
-    {"braille": Braille, "block": HalfBlock, "ascii": Ascii}
+    {"braille": BrailleEncoder, "block": HalfBlockEncoder, "ascii": AsciiEncoder}
 )
 """By the word the user knows them by (``--glyphs``); called with whether there are no colours."""

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 BLANK = ord(" ")
 
-GAP = 8
+MERGE_GAP = 8
 """Unchanged characters that are cheaper to send again than to jump over: moving the cursor and naming the
 colour anew cost about as many bytes as eight characters."""
 
 
-class Span(NamedTuple):
+class CellSpan(NamedTuple):
     """The characters ``start`` to ``stop`` (exclusive) of a row."""
 
     row: int
@@ -25,12 +25,12 @@ class Span(NamedTuple):
     stop: int
 
 
-class Run(NamedTuple):
+class StyledRun(NamedTuple):
     """Characters of one ink on one paper (roles)."""
 
     text: str
-    ink: int
-    paper: int
+    fg: int
+    bg: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,8 +39,8 @@ class Frame:
 
     glyphs: NDArray[np.uint32]
     """(rows, columns) Unicode code points, all one character wide."""
-    inks: NDArray[np.uint8]
-    papers: NDArray[np.uint8]
+    fg: NDArray[np.uint8]
+    bg: NDArray[np.uint8]
 
     @classmethod
     def empty(cls, columns: int, rows: int) -> Frame:
@@ -62,10 +62,10 @@ class Frame:
         """The characters alone, row by row, without the blanks at the ends."""
         return [self.text(row).rstrip() for row in range(self.shape[0])]
 
-    def runs(self, row: int) -> Iterator[Run]:
+    def runs(self, row: int) -> Iterator[StyledRun]:
         """The row cut where the ink or the paper changes. A blank takes the ink of what stands before it,
         since nobody sees it: fewer cuts, fewer bytes."""
-        text, inks, papers = self.text(row), self.inks[row], self.papers[row]
+        text, inks, papers = self.text(row), self.fg[row], self.bg[row]
         if not len(inks):
             return
         visible = (self.glyphs[row] != BLANK) | (papers != 0)
@@ -74,25 +74,27 @@ class Frame:
         starts = np.concatenate(([0], np.flatnonzero(looks[1:] != looks[:-1]) + 1))
         cuts = pairwise((*starts.tolist(), len(looks)))
         for (start, stop), look in zip(cuts, looks[starts].tolist(), strict=True):
-            yield Run(text[start:stop], look >> 8, look & 255)
+            yield StyledRun(text[start:stop], look >> 8, look & 255)
 
 
-def diff(before: Frame | None, after: Frame, gap: int = GAP) -> list[Span]:
+def changed_spans(before: Frame | None, after: Frame, gap: int = MERGE_GAP) -> list[CellSpan]:
     """The spans in which ``after`` looks different, merged where ``gap`` or fewer characters lie between.
 
     Without a frame before, or after one of another size, everything differs.
     """
     rows, columns = after.shape
     if before is None or before.shape != after.shape:
-        return [Span(row, 0, columns) for row in range(rows)] if columns else []
+        return [CellSpan(row, 0, columns) for row in range(rows)] if columns else []
     changed = before.glyphs != after.glyphs
-    changed |= before.inks != after.inks
-    changed |= before.papers != after.papers
+    changed |= before.fg != after.fg
+    changed |= before.bg != after.bg
     spans = []
     for row in np.flatnonzero(changed.any(axis=1)).tolist():
         where = np.flatnonzero(changed[row])
         cuts = np.flatnonzero(np.diff(where) > gap + 1)
         starts = where[np.concatenate(([0], cuts + 1))]
         stops = where[np.concatenate((cuts, [-1]))] + 1
-        spans += [Span(row, start, stop) for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)]
+        spans += [
+            CellSpan(row, start, stop) for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
+        ]
     return spans

@@ -16,102 +16,102 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from kit.render.frame import Frame
-from kit.render.graph_data import Conversation, Item
-from kit.render.graph_layout import Places
+from kit.render.graph_data import GraphData, GraphItem
+from kit.render.graph_layout import GraphLayout
 from kit.render.roles import Role
 
-Column = Literal["sender", "item", "receiver"]
+ColumnName = Literal["sender", "item", "receiver"]
 
-LINE: Final = Role.WALL
-NAME: Final = Role.WALL
-CHOSEN: Final = Role.ROBOT
-MESSAGE: Final = Role.HIT
-BROKEN: Final = Role.CONTACT
-RATE: Final = Role.TRAIL
+LINE_ROLE: Final = Role.WALL
+NAME_ROLE: Final = Role.WALL
+SELECTED_ROLE: Final = Role.ROBOT
+MESSAGE_ROLE: Final = Role.HIT
+MISMATCH_ROLE: Final = Role.CONTACT
+RATE_ROLE: Final = Role.TRAIL
 """What the inks of the world's picture stand for in this one."""
 
 
-class Spot(NamedTuple):
+class GraphElement(NamedTuple):
     """A node or an item of the picture. A node that sends and receives is in two spots."""
 
-    column: Column
+    column: ColumnName
     name: str
     """The node's full name or the item's label."""
 
 
-class Link(NamedTuple):
+class GraphLink(NamedTuple):
     """A node's line to an item, or an item's to a node."""
 
     node: str
     item: str
     """Its label."""
-    sends: bool
+    is_sender: bool
     """Whether it leads from the node to the item."""
 
 
-class Cell(NamedTuple):
+class GraphCell(NamedTuple):
     column: int
     row: int
 
 
 @dataclass(frozen=True, slots=True)
-class Columns:
+class ColumnLayout:
     """Where the columns begin and how wide they are."""
 
     width: int
-    nodes: int
+    node_width: int
     """Of each column of nodes."""
-    left: int
+    left_gap: int
     """Between senders and items: lanes, then the rate, then the arrow."""
-    items: int
-    right: int
+    item_width: int
+    right_gap: int
     """Between items and receivers: lanes, then the arrow."""
-    pitch: tuple[int, int]
+    lane_pitch: tuple[int, int]
     """Characters from one lane to the next, left and right."""
 
     @property
-    def item(self) -> int:
+    def item_start(self) -> int:
         """The first character of the items."""
-        return self.nodes + self.left
+        return self.node_width + self.left_gap
 
     @property
-    def receiver(self) -> int:
+    def receiver_start(self) -> int:
         """The first character of the receivers."""
-        return self.item + self.items + self.right
+        return self.item_start + self.item_width + self.right_gap
 
 
-RATE_ROOM: Final = 8
-ARROW_ROOM: Final = 2
-LEAST_LANES: Final = (5, 8)
+RATE_WIDTH: Final = 8
+ARROW_WIDTH: Final = 2
+MIN_LANE_WIDTHS: Final = (5, 8)
 """Characters kept for lanes, left and right, so that the columns stay where they are when one joins."""
-LEAST_NAME: Final = 8
+MIN_NAME_WIDTH: Final = 8
 
 
-def columns(width: int, places: Places) -> Columns:
+def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
     """The columns for a picture of this width: what lanes need beyond the usual is taken from the names."""
-    needed = [max(side.lanes.values(), default=-1) + 1 for side in (places.senders, places.receivers)]
-    left, right = (max(least, lanes) for least, lanes in zip(LEAST_LANES, needed, strict=True))
-    names = max(3 * LEAST_NAME, width - left - right - RATE_ROOM - 2 * ARROW_ROOM)
+    needed = [max(side.lanes.values(), default=-1) + 1 for side in (layout.senders, layout.receivers)]
+    left, right = (max(least, lanes) for least, lanes in zip(MIN_LANE_WIDTHS, needed, strict=True))
+    names = max(3 * MIN_NAME_WIDTH, width - left - right - RATE_WIDTH - 2 * ARROW_WIDTH)
     nodes = names // 3
     pitches = tuple(
         2 if lanes and 2 * lanes <= room else 1 for lanes, room in zip(needed, (left, right), strict=True)
     )
-    return Columns(
+    return ColumnLayout(
         width,
         nodes,
-        left + RATE_ROOM + ARROW_ROOM,
+        left + RATE_WIDTH + ARROW_WIDTH,
         names - 2 * nodes,
-        right + ARROW_ROOM,
+        right + ARROW_WIDTH,
         (pitches[0], pitches[1]),
     )
 
 
 EAST, NORTH, WEST, SOUTH = 1, 2, 4, 8
-LEVEL, UPRIGHT = EAST | WEST, NORTH | SOUTH
+HORIZONTAL, VERTICAL = EAST | WEST, NORTH | SOUTH
 
 
 @dataclass(frozen=True, slots=True)
-class Strokes:
+class LineGlyphs:
     """The characters of lines, by where they lead; and the other signs."""
 
     light: Mapping[int, str]
@@ -119,146 +119,162 @@ class Strokes:
     dashed: Mapping[int, str]
     arrow: str
     message: str
-    broken: str
-    cut: str
+    mismatch: str
+    ellipsis: str
     """Stands for the beginning of a name that is too long."""
 
 
-def _table(level: str, upright: str, corners: str) -> Mapping[int, str]:
-    joints = (EAST | SOUTH, WEST | SOUTH, NORTH | EAST, NORTH | WEST, UPRIGHT | EAST, UPRIGHT | WEST)
-    tees = (*joints, LEVEL | SOUTH, LEVEL | NORTH, LEVEL | UPRIGHT)
-    straight = {EAST: level, WEST: level, LEVEL: level, NORTH: upright, SOUTH: upright, UPRIGHT: upright}
+def _line_table(level: str, upright: str, corners: str) -> Mapping[int, str]:
+    joints = (EAST | SOUTH, WEST | SOUTH, NORTH | EAST, NORTH | WEST, VERTICAL | EAST, VERTICAL | WEST)
+    tees = (*joints, HORIZONTAL | SOUTH, HORIZONTAL | NORTH, HORIZONTAL | VERTICAL)
+    straight = {
+        EAST: level,
+        WEST: level,
+        HORIZONTAL: level,
+        NORTH: upright,
+        SOUTH: upright,
+        VERTICAL: upright,
+    }
     return MappingProxyType({**straight, **dict(zip(tees, corners, strict=True))})
 
 
 _LIGHT = "┌┐└┘├┤┬┴┼"
-BOX: Final = Strokes(
-    _table("─", "│", _LIGHT),
-    _table("━", "┃", "┏┓┗┛┣┫┳┻╋"),
-    _table("╌", "│", _LIGHT),
+UNICODE_LINES: Final = LineGlyphs(
+    _line_table("─", "│", _LIGHT),
+    _line_table("━", "┃", "┏┓┗┛┣┫┳┻╋"),
+    _line_table("╌", "│", _LIGHT),
     arrow="▶",
     message="●",
-    broken="✗",
-    cut="…",
+    mismatch="✗",
+    ellipsis="…",
 )
-PLAIN: Final = Strokes(
-    _table("-", "|", "+" * 9),
-    _table("=", "|", "#" * 9),
-    _table(".", "|", "+" * 9),
+ASCII_LINES: Final = LineGlyphs(
+    _line_table("-", "|", "+" * 9),
+    _line_table("=", "|", "#" * 9),
+    _line_table(".", "|", "+" * 9),
     arrow=">",
     message="o",
-    broken="X",
-    cut="~",
+    mismatch="X",
+    ellipsis="~",
 )
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _LinkRoute:
     """A link's cells from the sender to the receiver, and where they lead."""
 
-    cells: tuple[tuple[Cell, int], ...]
-    joint: Cell
+    cells: tuple[tuple[GraphCell, int], ...]
+    branch_cell: GraphCell
     """Where the node's lane meets the item's row; the middle of the line if it is straight."""
 
 
 @dataclass(frozen=True)
-class Plan:
+class GraphDrawing:
     """Where everything of a conversation is drawn, in a picture of this width."""
 
-    talk: Conversation
-    places: Places
+    graph: GraphData
+    layout: GraphLayout
     width: int
 
     @cached_property
-    def columns(self) -> Columns:
-        return columns(self.width, self.places)
+    def columns(self) -> ColumnLayout:
+        return fit_columns(self.width, self.layout)
 
     @cached_property
-    def ways(self) -> Mapping[Link, _Way]:
-        ways: dict[Link, _Way] = {}
-        for item in self.talk.items:
+    def routes(self) -> Mapping[GraphLink, _LinkRoute]:
+        ways: dict[GraphLink, _LinkRoute] = {}
+        for item in self.graph.items:
             for node in item.senders:
-                ways[Link(node, item.label, sends=True)] = self._way_in(node, item)
+                ways[GraphLink(node, item.label, is_sender=True)] = self._sender_route(node, item)
             for node in item.receivers:
-                ways[Link(node, item.label, sends=False)] = self._way_out(node, item)
+                ways[GraphLink(node, item.label, is_sender=False)] = self._receiver_route(node, item)
         return ways
 
-    def path(self, link: Link) -> tuple[Cell, ...]:
+    def link_cells(self, link: GraphLink) -> tuple[GraphCell, ...]:
         """The characters that a message on this link goes through, from sender to receiver."""
-        return tuple(cell for cell, _ in self.ways[link].cells)
+        return tuple(cell for cell, _ in self.routes[link].cells)
 
-    def links_of(self, spot: Spot | None) -> Collection[Link]:
+    def links_of(self, element: GraphElement | None) -> Collection[GraphLink]:
         """The lines of what is chosen: a node's on both its sides."""
-        if spot is None:
+        if element is None:
             return ()
         return {
-            link for link in self.ways if spot.name == (link.item if spot.column == "item" else link.node)
+            link
+            for link in self.routes
+            if element.name == (link.item if element.column == "item" else link.node)
         }
 
-    def spots(self) -> Mapping[Spot, int]:
+    def element_rows(self) -> Mapping[GraphElement, int]:
         """Everything that can be chosen, with its row."""
-        rows = {Spot("sender", node): row for node, row in self.places.senders.seats.items()}
-        rows |= {Spot("item", label): row for label, row in self.places.items.items()}
-        return rows | {Spot("receiver", node): row for node, row in self.places.receivers.seats.items()}
+        rows = {GraphElement("sender", node): row for node, row in self.layout.senders.rows.items()}
+        rows |= {GraphElement("item", label): row for label, row in self.layout.items.items()}
+        return rows | {
+            GraphElement("receiver", node): row for node, row in self.layout.receivers.rows.items()
+        }
 
-    def _way_in(self, node: str, item: Item) -> _Way:
-        columns, seat, row = self.columns, self.places.senders.seats[node], self.places.items[item.label]
-        start, end = min(len(node), columns.nodes - 2) + 2, columns.item - 1
-        lane = self.places.senders.lanes.get(node)
-        at = None if lane is None else columns.nodes + lane * columns.pitch[0]
-        return _bent(start, end, at, seat, row)
+    def _sender_route(self, node: str, item: GraphItem) -> _LinkRoute:
+        columns, node_row, row = self.columns, self.layout.senders.rows[node], self.layout.items[item.label]
+        start, end = min(len(node), columns.node_width - 2) + 2, columns.item_start - 1
+        lane = self.layout.senders.lanes.get(node)
+        lane_column = None if lane is None else columns.node_width + lane * columns.lane_pitch[0]
+        return _route(start, end, lane_column, node_row, row)
 
-    def _way_out(self, node: str, item: Item) -> _Way:
-        columns, seat, row = self.columns, self.places.receivers.seats[node], self.places.items[item.label]
-        start = columns.item + min(len(item.label), columns.items - 2) + 2
-        end = columns.receiver - 1
-        lane = self.places.receivers.lanes.get(node)
-        at = None if lane is None else columns.receiver - ARROW_ROOM - 1 - lane * columns.pitch[1]
-        return _bent(start, end, at, row, seat)
+    def _receiver_route(self, node: str, item: GraphItem) -> _LinkRoute:
+        columns, node_row, row = self.columns, self.layout.receivers.rows[node], self.layout.items[item.label]
+        start = columns.item_start + min(len(item.label), columns.item_width - 2) + 2
+        end = columns.receiver_start - 1
+        lane = self.layout.receivers.lanes.get(node)
+        lane_column = (
+            None if lane is None else columns.receiver_start - ARROW_WIDTH - 1 - lane * columns.lane_pitch[1]
+        )
+        return _route(start, end, lane_column, row, node_row)
 
 
-def _bent(start: int, end: int, lane: int | None, first: int, last: int) -> _Way:
+def _route(start: int, end: int, lane: int | None, first: int, last: int) -> _LinkRoute:
     """A way along row ``first`` to the lane, along that, and on row ``last`` to the end (exclusive)."""
     if lane is None:
-        cells = [(Cell(column, first), LEVEL) for column in range(start, end)]
-        return _Way(tuple(cells), cells[len(cells) // 2][0])
-    cells = [(Cell(column, first), LEVEL) for column in range(start, lane)]
+        cells = [(GraphCell(column, first), HORIZONTAL) for column in range(start, end)]
+        return _LinkRoute(tuple(cells), cells[len(cells) // 2][0])
+    cells = [(GraphCell(column, first), HORIZONTAL) for column in range(start, lane)]
     if first == last:
-        cells.append((Cell(lane, first), LEVEL))
+        cells.append((GraphCell(lane, first), HORIZONTAL))
     else:
         down = last > first
         onward, back = (SOUTH, NORTH) if down else (NORTH, SOUTH)
-        cells.append((Cell(lane, first), WEST | onward))
+        cells.append((GraphCell(lane, first), WEST | onward))
         cells += [
-            (Cell(lane, row), UPRIGHT) for row in range(first + (1 if down else -1), last, 1 if down else -1)
+            (GraphCell(lane, row), VERTICAL)
+            for row in range(first + (1 if down else -1), last, 1 if down else -1)
         ]
-        cells.append((Cell(lane, last), back | EAST))
-    cells += [(Cell(column, last), LEVEL) for column in range(lane + 1, end)]
-    return _Way(tuple(cells), Cell(lane, first))
+        cells.append((GraphCell(lane, last), back | EAST))
+    cells += [(GraphCell(column, last), HORIZONTAL) for column in range(lane + 1, end)]
+    return _LinkRoute(tuple(cells), GraphCell(lane, first))
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
+class GraphView:
     """What is to be seen on the lines, and which part of the picture."""
 
     rates: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     """Messages per second, by an item's label."""
-    chosen: Spot | None = None
-    messages: Collection[Cell] = ()
+    selected: GraphElement | None = None
+    message_cells: Collection[GraphCell] = ()
     """Where messages are just now."""
-    top: int = 0
+    first_row: int = 0
     """The first row shown."""
 
 
-def draw(plan: Plan, sight: Sight, rows: int, strokes: Strokes = BOX) -> Frame:
-    """The picture, ``plan.width`` x ``rows`` characters."""
-    pen = _Pen(plan, sight, rows, strokes)
-    pen.lines()
-    pen.breaks()
-    pen.rates()
-    pen.messages()
-    pen.names()
-    return pen.frame
+def draw_graph(
+    drawing: GraphDrawing, view: GraphView, rows: int, glyphs: LineGlyphs = UNICODE_LINES
+) -> Frame:
+    """The picture, ``drawing.width`` x ``rows`` characters."""
+    painter = _GraphPainter(drawing, view, rows, glyphs)
+    painter.draw_lines()
+    painter.draw_mismatches()
+    painter.draw_rates()
+    painter.draw_messages()
+    painter.draw_names()
+    return painter.frame
 
 
 def rate_text(rate: float) -> str:
@@ -268,105 +284,113 @@ def rate_text(rate: float) -> str:
     return f"{rate:.0f} Hz" if rate >= 9.5 else f"{rate:.2g} Hz"
 
 
-class _Pen:
-    def __init__(self, plan: Plan, sight: Sight, rows: int, strokes: Strokes) -> None:
-        self._plan, self._sight, self._strokes = plan, sight, strokes
-        self._chosen = plan.links_of(sight.chosen)
-        self.frame = Frame.empty(plan.width, rows)
-        self._words: set[Cell] = set()
+class _GraphPainter:
+    def __init__(self, drawing: GraphDrawing, view: GraphView, rows: int, glyphs: LineGlyphs) -> None:
+        self._drawing, self._view, self._glyphs = drawing, view, glyphs
+        self._selected_links = drawing.links_of(view.selected)
+        self.frame = Frame.empty(drawing.width, rows)
+        self._text_cells: set[GraphCell] = set()
 
-    def lines(self) -> None:
-        for cell, glyph in _strokes_of(self._plan, self._chosen, self._strokes):
-            is_chosen = glyph in self._strokes.heavy.values()
-            self._put(cell, glyph, CHOSEN if is_chosen else LINE)
-        columns, places = self._plan.columns, self._plan.places
-        for item in self._plan.talk.items:
+    def draw_lines(self) -> None:
+        for cell, glyph in _line_glyphs(self._drawing, self._selected_links, self._glyphs):
+            is_selected = glyph in self._glyphs.heavy.values()
+            self._put(cell, glyph, SELECTED_ROLE if is_selected else LINE_ROLE)
+        columns, layout = self._drawing.columns, self._drawing.layout
+        for item in self._drawing.graph.items:
             if item.senders:
-                self._put(Cell(columns.item - 2, places.items[item.label]), self._strokes.arrow, LINE)
-        for row in places.receivers.seats.values():
-            self._put(Cell(columns.receiver - 2, row), self._strokes.arrow, LINE)
+                self._put(
+                    GraphCell(columns.item_start - 2, layout.items[item.label]), self._glyphs.arrow, LINE_ROLE
+                )
+        for row in layout.receivers.rows.values():
+            self._put(GraphCell(columns.receiver_start - 2, row), self._glyphs.arrow, LINE_ROLE)
 
-    def breaks(self) -> None:
+    def draw_mismatches(self) -> None:
         """Marks the lines on which something is not delivered, where they leave the common one."""
-        for item in self._plan.talk.items:
-            for _, receiver in item.broken:
-                way = self._plan.ways[Link(receiver, item.label, sends=False)]
-                self._put(way.joint, self._strokes.broken, BROKEN)
-                self._words.add(way.joint)
+        for item in self._drawing.graph.items:
+            for _, receiver in item.undelivered:
+                route = self._drawing.routes[GraphLink(receiver, item.label, is_sender=False)]
+                self._put(route.branch_cell, self._glyphs.mismatch, MISMATCH_ROLE)
+                self._text_cells.add(route.branch_cell)
 
-    def rates(self) -> None:
-        columns = self._plan.columns
-        for label, rate in self._sight.rates.items():
-            row = self._plan.places.items.get(label)
+    def draw_rates(self) -> None:
+        columns = self._drawing.columns
+        for label, rate in self._view.rates.items():
+            row = self._drawing.layout.items.get(label)
             if row is not None:
                 text = rate_text(rate)
-                start = columns.item - ARROW_ROOM - 1 - len(text)
-                self._write(Cell(start, row), text, RATE)
+                start = columns.item_start - ARROW_WIDTH - 1 - len(text)
+                self._write(GraphCell(start, row), text, RATE_ROLE)
 
-    def messages(self) -> None:
-        for cell in self._sight.messages:
-            if cell not in self._words:
-                self._put(cell, self._strokes.message, MESSAGE)
+    def draw_messages(self) -> None:
+        for cell in self._view.message_cells:
+            if cell not in self._text_cells:
+                self._put(cell, self._glyphs.message, MESSAGE_ROLE)
 
-    def names(self) -> None:
-        columns, chosen = self._plan.columns, self._sight.chosen
-        first = {"sender": 0, "item": columns.item, "receiver": columns.receiver}
-        room = {"sender": columns.nodes, "item": columns.items, "receiver": columns.width - columns.receiver}
-        for spot, row in self._plan.spots().items():
-            text = _cut(spot.name, room[spot.column] - 2, self._strokes.cut)
-            is_chosen = chosen is not None and spot.name == chosen.name
-            start = first[spot.column] + 1
-            self._write(Cell(start, row), text, CHOSEN if is_chosen else NAME)
-            if is_chosen:
-                self._put(Cell(start - 1, row), "[", CHOSEN)
-                self._put(Cell(start + len(text), row), "]", CHOSEN)
+    def draw_names(self) -> None:
+        columns, selected = self._drawing.columns, self._view.selected
+        starts = {"sender": 0, "item": columns.item_start, "receiver": columns.receiver_start}
+        widths = {
+            "sender": columns.node_width,
+            "item": columns.item_width,
+            "receiver": columns.width - columns.receiver_start,
+        }
+        for element, row in self._drawing.element_rows().items():
+            text = _shorten_name(element.name, widths[element.column] - 2, self._glyphs.ellipsis)
+            is_selected = selected is not None and element.name == selected.name
+            start = starts[element.column] + 1
+            self._write(GraphCell(start, row), text, SELECTED_ROLE if is_selected else NAME_ROLE)
+            if is_selected:
+                self._put(GraphCell(start - 1, row), "[", SELECTED_ROLE)
+                self._put(GraphCell(start + len(text), row), "]", SELECTED_ROLE)
 
-    def _write(self, start: Cell, text: str, role: Role) -> None:
+    def _write(self, start: GraphCell, text: str, role: Role) -> None:
         for column, glyph in enumerate(text, start.column):
-            cell = Cell(column, start.row)
+            cell = GraphCell(column, start.row)
             self._put(cell, glyph, role)
-            self._words.add(cell)
+            self._text_cells.add(cell)
 
-    def _put(self, cell: Cell, glyph: str, role: Role) -> None:
+    def _put(self, cell: GraphCell, glyph: str, role: Role) -> None:
         rows, columns = self.frame.shape
-        row = cell.row - self._sight.top
+        row = cell.row - self._view.first_row
         if 0 <= row < rows and 0 <= cell.column < columns:
             self.frame.glyphs[row, cell.column] = np.uint32(ord(glyph))
-            self.frame.inks[row, cell.column] = role
+            self.frame.fg[row, cell.column] = role
 
 
-def _strokes_of(plan: Plan, chosen: Collection[Link], strokes: Strokes) -> Iterator[tuple[Cell, str]]:
+def _line_glyphs(
+    drawing: GraphDrawing, selected: Collection[GraphLink], glyphs: LineGlyphs
+) -> Iterator[tuple[GraphCell, str]]:
     """The character of each cell that has a line."""
-    level: dict[Cell, int] = {}
-    upright: dict[Cell, int] = {}
-    bends: dict[Cell, int] = {}
-    heavy: dict[Cell, int] = {}
-    solid: set[Cell] = set()
-    services = {item.label for item in plan.talk.items if item.is_service}
-    for link, way in plan.ways.items():
-        for cell, leads in way.cells:
-            if leads == LEVEL:
-                level[cell] = LEVEL
-            elif leads == UPRIGHT:
-                upright[cell] = UPRIGHT
+    horizontal: dict[GraphCell, int] = {}
+    vertical: dict[GraphCell, int] = {}
+    bends: dict[GraphCell, int] = {}
+    heavy: dict[GraphCell, int] = {}
+    solid: set[GraphCell] = set()
+    services = {item.label for item in drawing.graph.items if item.is_service}
+    for link, route in drawing.routes.items():
+        for cell, leads in route.cells:
+            if leads == HORIZONTAL:
+                horizontal[cell] = HORIZONTAL
+            elif leads == VERTICAL:
+                vertical[cell] = VERTICAL
             else:
                 bends[cell] = bends.get(cell, 0) | leads
-            if link in chosen:
+            if link in selected:
                 heavy[cell] = heavy.get(cell, 0) | leads
         if link.item not in services:
-            solid.update(cell for cell, leads in way.cells if leads == LEVEL)
-    for cell in level.keys() | upright.keys() | bends.keys():
+            solid.update(cell for cell, leads in route.cells if leads == HORIZONTAL)
+    for cell in horizontal.keys() | vertical.keys() | bends.keys():
         if cell in heavy:
-            yield cell, strokes.heavy[heavy[cell]]
+            yield cell, glyphs.heavy[heavy[cell]]
         elif cell in bends:  # here lines meet: whatever passes belongs to them
-            yield cell, strokes.light[bends[cell] | level.get(cell, 0) | upright.get(cell, 0)]
-        elif cell in level:
-            yield cell, (strokes.light if cell in solid else strokes.dashed)[LEVEL]
+            yield cell, glyphs.light[bends[cell] | horizontal.get(cell, 0) | vertical.get(cell, 0)]
+        elif cell in horizontal:
+            yield cell, (glyphs.light if cell in solid else glyphs.dashed)[HORIZONTAL]
         else:
-            yield cell, strokes.light[UPRIGHT]
+            yield cell, glyphs.light[VERTICAL]
 
 
-def _cut(name: str, width: int, mark: str) -> str:
+def _shorten_name(name: str, width: int, mark: str) -> str:
     """The name, or as much of its end as there is room for: the end says what it is."""
     if len(name) <= width:
         return name

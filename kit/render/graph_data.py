@@ -10,7 +10,7 @@ from kit.ros.graph.snapshot import GraphState, ServiceState, TopicState
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class GraphItem:
     """A topic, from publishers to subscriptions, or a service, from clients to servers."""
 
     label: str
@@ -19,7 +19,7 @@ class Item:
     senders: tuple[str, ...]
     receivers: tuple[str, ...]
     """Full names of nodes."""
-    broken: frozenset[tuple[str, str]] = frozenset()
+    undelivered: frozenset[tuple[str, str]] = frozenset()
     """Sender and receiver between whom nothing is delivered."""
 
     @property
@@ -28,47 +28,47 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Conversation:
+class GraphData:
     """What is to be drawn, and how much is left out."""
 
     nodes: tuple[str, ...]
-    items: tuple[Item, ...]
-    hidden: int = 0
+    items: tuple[GraphItem, ...]
+    hidden_count: int = 0
     """Topics and services left out as plumbing, or because nobody uses them; not those that were narrowed away."""
 
-    def sent_by(self, node: str) -> tuple[Item, ...]:
+    def items_sent_by(self, node: str) -> tuple[GraphItem, ...]:
         return tuple(item for item in self.items if node in item.senders)
 
-    def received_by(self, node: str) -> tuple[Item, ...]:
+    def items_received_by(self, node: str) -> tuple[GraphItem, ...]:
         return tuple(item for item in self.items if node in item.receivers)
 
 
-def conversation(state: GraphState, *, everything: bool = False, narrowed: str = "") -> Conversation:
-    """What there is to see of a graph. ``everything``: also what ROS needs for itself (parameter services,
-    ``/rosout``, ``/tf``) and services that nobody asks. ``narrowed``: only what has this text in its name, and
+def build_graph_data(state: GraphState, *, show_all: bool = False, name_filter: str = "") -> GraphData:
+    """What there is to see of a graph. ``show_all``: also what ROS needs for itself (parameter services,
+    ``/rosout``, ``/tf``) and services that nobody asks. ``name_filter``: only what has this text in its name, and
     whatever is joined to that."""
-    items = [_topic_item(topic) for topic in state.topics if everything or not topic.is_infrastructure]
-    items += [_service_item(service) for service in state.services if everything or _is_used(service)]
+    items = [_topic_item(topic) for topic in state.topics if show_all or not topic.is_infrastructure]
+    items += [_service_item(service) for service in state.services if show_all or _is_used(service)]
     hidden = len(state.topics) + len(state.services) - len(items)
-    wanted = narrowed.casefold()
-    shown = tuple(item for item in items if any(wanted in name.casefold() for name in _names(item)))
-    joined = {node for item in shown for node in (*item.senders, *item.receivers)}
-    nodes = tuple(node for node in state.nodes if node in joined or wanted in node.casefold())
-    return Conversation(nodes, shown, hidden)
+    needle = name_filter.casefold()
+    shown = tuple(item for item in items if any(needle in name.casefold() for name in _names(item)))
+    linked_nodes = {node for item in shown for node in (*item.senders, *item.receivers)}
+    nodes = tuple(node for node in state.nodes if node in linked_nodes or needle in node.casefold())
+    return GraphData(nodes, shown, hidden)
 
 
 def _is_used(service: ServiceState) -> bool:
     return bool(service.clients) and not service.is_infrastructure
 
 
-def _names(item: Item) -> Iterator[str]:
+def _names(item: GraphItem) -> Iterator[str]:
     yield item.label
     yield from item.senders
     yield from item.receivers
 
 
-def _topic_item(topic: TopicState) -> Item:
-    return Item(
+def _topic_item(topic: TopicState) -> GraphItem:
+    return GraphItem(
         topic.name,
         topic.name,
         tuple(dict.fromkeys(end.node for end in topic.publishers)),
@@ -77,5 +77,5 @@ def _topic_item(topic: TopicState) -> Item:
     )
 
 
-def _service_item(service: ServiceState) -> Item:
-    return Item(f"{service.name}()", service.name, service.clients, service.servers)
+def _service_item(service: ServiceState) -> GraphItem:
+    return GraphItem(f"{service.name}()", service.name, service.clients, service.servers)

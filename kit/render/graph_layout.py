@@ -16,118 +16,124 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
-from kit.render.graph_data import Conversation, Item
+from kit.render.graph_data import GraphData, GraphItem
 
-Rows = Mapping[str, int]
+RowNumbers = Mapping[str, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class LayoutSide:
     """The nodes of one side."""
 
-    seats: Rows = field(default_factory=dict)
+    rows: RowNumbers = field(default_factory=dict)
     """The row of each node."""
     lanes: Mapping[str, int] = field(default_factory=dict)
     """Lanes are numbered from the nodes on; a node with a single topic on its own row has none."""
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class GraphLayout:
     """Rows count from 0 at the top."""
 
-    items: Rows = field(default_factory=dict)
+    items: RowNumbers = field(default_factory=dict)
     """The row of each topic and service, by its label."""
-    senders: Side = field(default_factory=Side)
-    receivers: Side = field(default_factory=Side)
+    senders: LayoutSide = field(default_factory=LayoutSide)
+    receivers: LayoutSide = field(default_factory=LayoutSide)
 
     @property
     def height(self) -> int:
-        taken = (*self.items.values(), *self.senders.seats.values(), *self.receivers.seats.values())
+        taken = (*self.items.values(), *self.senders.rows.values(), *self.receivers.rows.values())
         return max(taken, default=-1) + 1
 
 
-def arrange(talk: Conversation, before: Places | None = None) -> Places:
+def arrange_graph(graph: GraphData, before: GraphLayout | None = None) -> GraphLayout:
     """Places for all that is there; those of ``before`` are kept."""
-    sent = {node: items for node in talk.nodes if (items := talk.sent_by(node))}
-    received = {node: items for node in talk.nodes if (items := talk.received_by(node))}
-    alone = [node for node in talk.nodes if node not in sent and node not in received]
+    sent = {node: items for node in graph.nodes if (items := graph.items_sent_by(node))}
+    received = {node: items for node in graph.nodes if (items := graph.items_received_by(node))}
+    alone = [node for node in graph.nodes if node not in sent and node not in received]
     if before is None:
-        before = _fresh(talk, sent, received)
+        before = _initial_layout(graph, sent, received)
         rows = before.items
     else:
-        rows = _kept_rows(talk, before)
-    senders = _seats({**sent, **dict.fromkeys(alone, ())}, rows, before.senders.seats)
-    receivers = _seats(received, rows, before.receivers.seats)
-    return Places(
+        rows = _extend_rows(graph, before)
+    senders = _assign_rows({**sent, **dict.fromkeys(alone, ())}, rows, before.senders.rows)
+    receivers = _assign_rows(received, rows, before.receivers.rows)
+    return GraphLayout(
         rows,
-        Side(senders, _lanes(sent, rows, senders, before.senders.lanes)),
-        Side(receivers, _lanes(received, rows, receivers, before.receivers.lanes)),
+        LayoutSide(senders, _assign_lanes(sent, rows, senders, before.senders.lanes)),
+        LayoutSide(receivers, _assign_lanes(received, rows, receivers, before.receivers.lanes)),
     )
 
 
 # Rows of topics and services
 
 
-def _fresh(
-    talk: Conversation, sent: Mapping[str, Sequence[Item]], received: Mapping[str, Sequence[Item]]
-) -> Places:
+def _initial_layout(
+    graph: GraphData, sent: Mapping[str, Sequence[GraphItem]], received: Mapping[str, Sequence[GraphItem]]
+) -> GraphLayout:
     """Each sender's topics below one another; where not every node can sit on the row of a topic of its own, an
     empty row for it; and the seats that this is meant for."""
-    order = {item.label: place for place, item in enumerate(_ordered(talk))}
-    seated = [_distinct(side, order) for side in (sent, received)]
-    guests = dict.fromkeys(order, 0)
-    for side, homes in zip((sent, received), seated, strict=True):
-        without = [min(order[item.label] for item in side[node]) for node in side if node not in homes]
-        for label, place in order.items():
-            guests[label] = max(guests[label], without.count(place))
+    item_order = {item.label: position for position, item in enumerate(_order_items(graph))}
+    matched = [_match_nodes_to_items(side, item_order) for side in (sent, received)]
+    extra_rows = dict.fromkeys(item_order, 0)
+    for side, matches in zip((sent, received), matched, strict=True):
+        unmatched = [
+            min(item_order[item.label] for item in side[node]) for node in side if node not in matches
+        ]
+        for label, position in item_order.items():
+            extra_rows[label] = max(extra_rows[label], unmatched.count(position))
     rows: dict[str, int] = {}
     row = 0
-    for label in order:
+    for label in item_order:
         rows[label] = row
-        row += 1 + guests[label]
-    senders, receivers = ({node: rows[label] for node, label in homes.items()} for homes in seated)
-    return Places(rows, Side(senders), Side(receivers))
+        row += 1 + extra_rows[label]
+    senders, receivers = ({node: rows[label] for node, label in matches.items()} for matches in matched)
+    return GraphLayout(rows, LayoutSide(senders), LayoutSide(receivers))
 
 
-def _distinct(used: Mapping[str, Sequence[Item]], order: Mapping[str, int]) -> dict[str, str]:
+def _match_nodes_to_items(
+    used: Mapping[str, Sequence[GraphItem]], order: Mapping[str, int]
+) -> dict[str, str]:
     """For as many nodes as can be an item of their own that no other node has: a maximum matching by augmenting
     paths (Kuhn 1955), which leaves a node on its first item where it can."""
-    holder: dict[str, str] = {}
+    node_of_item: dict[str, str] = {}
 
-    def find(node: str, tried: set[str]) -> bool:
+    def match(node: str, tried: set[str]) -> bool:
         for label in sorted((item.label for item in used[node]), key=order.__getitem__):
             if label not in tried:
                 tried.add(label)
-                if label not in holder or find(holder[label], tried):
-                    holder[label] = node
+                if label not in node_of_item or match(node_of_item[label], tried):
+                    node_of_item[label] = node
                     return True
         return False
 
     for node in sorted(used, key=lambda node: (len(used[node]), node)):
-        find(node, set())
-    return {node: label for label, node in holder.items()}
+        match(node, set())
+    return {node: label for label, node in node_of_item.items()}
 
 
-def _ordered(talk: Conversation) -> list[Item]:
+def _order_items(graph: GraphData) -> list[GraphItem]:
     """The items by their first sender, so that few lines cross: senders and items are moved towards the middle of
     their receivers a few times (the barycentre method of Sugiyama, Tagawa and Toda 1981)."""
-    order = sorted(talk.items, key=lambda item: (_first_sender(talk, item), item.is_service, item.label))
+    order = sorted(graph.items, key=lambda item: (_first_sender(graph, item), item.is_service, item.label))
     for _ in range(4):
         rank = {item.label: place for place, item in enumerate(order)}
-        middle = {node: _mean(rank[item.label] for item in talk.received_by(node)) for node in talk.nodes}
+        middle = {
+            node: _mean(rank[item.label] for item in graph.items_received_by(node)) for node in graph.nodes
+        }
         pull = {
             item.label: _mean(middle[node] for node in item.receivers) if item.receivers else rank[item.label]
             for item in order
         }
-        groups: dict[int, list[Item]] = {}
+        groups: dict[int, list[GraphItem]] = {}
         for item in order:
-            groups.setdefault(_first_sender(talk, item), []).append(item)
+            groups.setdefault(_first_sender(graph, item), []).append(item)
         weight = {sender: _mean(pull[item.label] for item in group) for sender, group in groups.items()}
         order = sorted(
             order,
             key=lambda item: (
-                weight[_first_sender(talk, item)],
-                _first_sender(talk, item),
+                weight[_first_sender(graph, item)],
+                _first_sender(graph, item),
                 pull[item.label],
                 item.label,
             ),
@@ -135,9 +141,9 @@ def _ordered(talk: Conversation) -> list[Item]:
     return order
 
 
-def _first_sender(talk: Conversation, item: Item) -> int:
+def _first_sender(graph: GraphData, item: GraphItem) -> int:
     """The number of the node it comes from; one more than there are if from nobody."""
-    return talk.nodes.index(item.senders[0]) if item.senders else len(talk.nodes)
+    return graph.nodes.index(item.senders[0]) if item.senders else len(graph.nodes)
 
 
 def _mean(values: Iterable[float]) -> float:
@@ -145,32 +151,32 @@ def _mean(values: Iterable[float]) -> float:
     return sum(listed) / len(listed) if listed else 0.0
 
 
-def _kept_rows(talk: Conversation, before: Places) -> Rows:
-    rows = {item.label: before.items[item.label] for item in talk.items if item.label in before.items}
-    for item in talk.items:
+def _extend_rows(graph: GraphData, before: GraphLayout) -> RowNumbers:
+    rows = {item.label: before.items[item.label] for item in graph.items if item.label in before.items}
+    for item in graph.items:
         if item.label not in rows:
             near = [
                 row
                 for side, nodes in ((before.senders, item.senders), (before.receivers, item.receivers))
                 for node in nodes
-                if (row := side.seats.get(node)) is not None
+                if (row := side.rows.get(node)) is not None
             ]
-            taken = set(rows.values()) | _foreign_seats(talk, before, item)
-            rows[item.label] = _nearest_free(near[0] if near else before.height, taken)
+            taken = set(rows.values()) | _rows_of_other_nodes(graph, before, item)
+            rows[item.label] = _nearest_free_row(near[0] if near else before.height, taken)
     return rows
 
 
-def _foreign_seats(talk: Conversation, before: Places, item: Item) -> set[int]:
+def _rows_of_other_nodes(graph: GraphData, before: GraphLayout, item: GraphItem) -> set[int]:
     """Rows on which somebody sits who does not share in the item."""
     return {
         row
         for side, nodes in ((before.senders, item.senders), (before.receivers, item.receivers))
-        for node, row in side.seats.items()
-        if node in talk.nodes and node not in nodes
+        for node, row in side.rows.items()
+        if node in graph.nodes and node not in nodes
     }
 
 
-def _nearest_free(row: int, taken: set[int]) -> int:
+def _nearest_free_row(row: int, taken: set[int]) -> int:
     """The free row nearest to a row; of two the lower."""
     return next(r for step in count() for r in (row + step, row - step) if r >= 0 and r not in taken)
 
@@ -178,16 +184,16 @@ def _nearest_free(row: int, taken: set[int]) -> int:
 # Seats
 
 
-def _seats(used: Mapping[str, Sequence[Item]], rows: Rows, before: Rows) -> Rows:
+def _assign_rows(used: Mapping[str, Sequence[GraphItem]], rows: RowNumbers, before: RowNumbers) -> RowNumbers:
     """A seat for each node, by the items it uses."""
     labels = {row: label for label, row in rows.items()}
-    sharing = _sharing(used)
-    seats: dict[str, int] = {}
-    later: list[tuple[str, str]] = []
+    sharing = _nodes_by_item(used)
+    node_rows: dict[str, int] = {}
+    nearer_pairs: list[tuple[str, str]] = []
     """Pairs of nodes of which the first needs the lane nearer to the nodes."""
 
-    def sits_well(node: str, row: int) -> bool:
-        if row in seats.values():
+    def is_allowed(node: str, row: int) -> bool:
+        if row in node_rows.values():
             return False
         label = labels.get(row)
         if label is None:
@@ -195,20 +201,20 @@ def _seats(used: Mapping[str, Sequence[Item]], rows: Rows, before: Rows) -> Rows
         if all(item.label != label for item in used[node]):
             return False
         return len(used[node]) == 1 or not any(
-            _leads_to(later, other, node) for other in sharing[label] if other != node
+            _is_reachable(nearer_pairs, other, node) for other in sharing[label] if other != node
         )
 
-    def sit(node: str, row: int) -> None:
-        seats[node] = row
+    def place_node(node: str, row: int) -> None:
+        node_rows[node] = row
         if row in labels and len(used[node]) > 1:
-            later.extend((node, other) for other in sharing[labels[row]] if other != node)
+            nearer_pairs.extend((node, other) for other in sharing[labels[row]] if other != node)
 
     for node in used:
-        if node in before and sits_well(node, before[node]):
-            sit(node, before[node])
+        if node in before and is_allowed(node, before[node]):
+            place_node(node, before[node])
     bottom = max((*rows.values(), *before.values()), default=-1) + len(used) + 1
     for node in sorted(
-        (node for node in used if node not in seats),
+        (node for node in used if node not in node_rows),
         key=lambda node: (
             len(used[node]) != 1,
             min((rows[item.label] for item in used[node]), default=bottom),
@@ -217,11 +223,11 @@ def _seats(used: Mapping[str, Sequence[Item]], rows: Rows, before: Rows) -> Rows
         own = sorted(rows[item.label] for item in used[node])
         start = own[0] if own else bottom - len(used)
         near = sorted(range(bottom + 1), key=lambda row: (abs(row - start), -row))
-        sit(node, next(row for row in (*own, *near) if sits_well(node, row)))
-    return seats
+        place_node(node, next(row for row in (*own, *near) if is_allowed(node, row)))
+    return node_rows
 
 
-def _sharing(used: Mapping[str, Sequence[Item]]) -> dict[str, list[str]]:
+def _nodes_by_item(used: Mapping[str, Sequence[GraphItem]]) -> dict[str, list[str]]:
     """The nodes that use each item."""
     sharing: dict[str, list[str]] = {}
     for node, items in used.items():
@@ -230,42 +236,47 @@ def _sharing(used: Mapping[str, Sequence[Item]]) -> dict[str, list[str]]:
     return sharing
 
 
-def _leads_to(pairs: Sequence[tuple[str, str]], start: str, end: str) -> bool:
+def _is_reachable(pairs: Sequence[tuple[str, str]], start: str, end: str) -> bool:
     """Whether the pairs, followed from ``start`` on, come to ``end``."""
-    seen, open_ends = {start}, [start]
-    while open_ends:
-        here = open_ends.pop()
+    seen, frontier = {start}, [start]
+    while frontier:
+        current = frontier.pop()
         for first, second in pairs:
-            if first == here and second not in seen:
+            if first == current and second not in seen:
                 seen.add(second)
-                open_ends.append(second)
+                frontier.append(second)
     return end in seen
 
 
 # Lanes
 
 
-def _lanes(
-    used: Mapping[str, Sequence[Item]], rows: Rows, seats: Rows, before: Mapping[str, int]
+def _assign_lanes(
+    used: Mapping[str, Sequence[GraphItem]],
+    rows: RowNumbers,
+    node_rows: RowNumbers,
+    before: Mapping[str, int],
 ) -> Mapping[str, int]:
     """A lane for each node that needs one: its own, where it stretches."""
     spans: dict[str, tuple[int, int]] = {}
     for node, items in used.items():
-        stops = [seats[node], *(rows[item.label] for item in items)]
+        stops = [node_rows[node], *(rows[item.label] for item in items)]
         if min(stops) < max(stops):
             spans[node] = min(stops), max(stops)
-    nearer = {node: _must_be_nearer(node, used, rows, seats) & spans.keys() for node in spans}
+    nearer = {node: _nodes_nearer_than(node, used, rows, node_rows) & spans.keys() for node in spans}
     kept = {node: before[node] for node in spans if node in before}
-    return _fitted_lanes(spans, nearer, kept) or _fitted_lanes(spans, nearer, {}) or {}
+    return _fit_lanes(spans, nearer, kept) or _fit_lanes(spans, nearer, {}) or {}
 
 
-def _must_be_nearer(node: str, used: Mapping[str, Sequence[Item]], rows: Rows, seats: Rows) -> set[str]:
+def _nodes_nearer_than(
+    node: str, used: Mapping[str, Sequence[GraphItem]], rows: RowNumbers, node_rows: RowNumbers
+) -> set[str]:
     """The nodes that sit on the row of an item which this one uses too (rule 2)."""
     own = {rows[item.label] for item in used[node]}
-    return {other for other in used if other != node and seats[other] in own}
+    return {other for other in used if other != node and node_rows[other] in own}
 
 
-def _fitted_lanes(
+def _fit_lanes(
     spans: Mapping[str, tuple[int, int]], nearer: Mapping[str, set[str]], kept: Mapping[str, int]
 ) -> Mapping[str, int] | None:
     """Lanes that keep both rules, the kept ones unchanged; None if that cannot be."""
@@ -277,7 +288,7 @@ def _fitted_lanes(
         least = max((lanes[other] + 1 for other in nearer[node]), default=0)
         for lane in (kept[node],) if node in kept else count(least):
             if lane >= least and not any(
-                lanes[other] == lane and _overlap(spans[node], spans[other]) for other in lanes
+                lanes[other] == lane and _spans_overlap(spans[node], spans[other]) for other in lanes
             ):
                 lanes[node] = lane
                 break
@@ -286,5 +297,5 @@ def _fitted_lanes(
     return lanes
 
 
-def _overlap(one: tuple[int, int], other: tuple[int, int]) -> bool:
+def _spans_overlap(one: tuple[int, int], other: tuple[int, int]) -> bool:
     return one[0] <= other[1] and other[0] <= one[1]

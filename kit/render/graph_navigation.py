@@ -2,47 +2,52 @@
 
 from __future__ import annotations
 
-from kit.render.graph import Column, Link, Plan, Spot
+from kit.render.graph import ColumnName, GraphDrawing, GraphElement, GraphLink
 
-_COLUMNS: tuple[Column, ...] = ("sender", "item", "receiver")
+_COLUMNS: tuple[ColumnName, ...] = ("sender", "item", "receiver")
 
 
-def first_choice(plan: Plan) -> Spot | None:
+def initial_selection(drawing: GraphDrawing) -> GraphElement | None:
     """What to look at first: something that is wrong, else the topmost topic, else a node."""
-    broken = [Spot("item", item.label) for item in plan.talk.items if item.broken]
-    rows = plan.spots()
-    return min(broken or rows, key=lambda spot: (spot.column != "item", rows[spot]), default=None)
+    mismatched = [GraphElement("item", item.label) for item in drawing.graph.items if item.undelivered]
+    rows = drawing.element_rows()
+    return min(mismatched or rows, key=lambda spot: (spot.column != "item", rows[spot]), default=None)
 
 
-def still_there(plan: Plan, spot: Spot | None, row: int) -> Spot | None:
+def kept_selection(drawing: GraphDrawing, selected: GraphElement | None, row: int) -> GraphElement | None:
     """The same choice, or whatever is nearest to its row now that it has gone."""
-    rows = plan.spots()
-    if spot is None or not rows:
-        return first_choice(plan)
-    if spot in rows:
-        return spot
-    return min(rows, key=lambda other: (other.column != spot.column, abs(rows[other] - row)))
+    rows = drawing.element_rows()
+    if selected is None or not rows:
+        return initial_selection(drawing)
+    if selected in rows:
+        return selected
+    return min(rows, key=lambda other: (other.column != selected.column, abs(rows[other] - row)))
 
 
-def along(plan: Plan, spot: Spot, steps: int) -> Spot:
+def move_vertically(drawing: GraphDrawing, selected: GraphElement, steps: int) -> GraphElement:
     """So many places further down its column, or up."""
-    rows = plan.spots()
-    column = sorted((other for other in rows if other.column == spot.column), key=lambda other: rows[other])
-    return column[min(max(column.index(spot) + steps, 0), len(column) - 1)]
+    rows = drawing.element_rows()
+    column = sorted(
+        (other for other in rows if other.column == selected.column), key=lambda other: rows[other]
+    )
+    return column[min(max(column.index(selected) + steps, 0), len(column) - 1)]
 
 
-def across(plan: Plan, spot: Spot, steps: int) -> Spot:
+def move_horizontally(drawing: GraphDrawing, selected: GraphElement, steps: int) -> GraphElement:
     """One column to the right, or left: along a line if there is one, to the nearest row."""
-    number = _COLUMNS.index(spot.column) + steps
+    number = _COLUMNS.index(selected.column) + steps
     if not 0 <= number < len(_COLUMNS):
-        return spot
-    rows = plan.spots()
+        return selected
+    rows = drawing.element_rows()
     beside = [other for other in rows if other.column == _COLUMNS[number]]
     if not beside:
-        return spot
-    return min(beside, key=lambda other: (not _joined(plan, spot, other), abs(rows[other] - rows[spot])))
+        return selected
+    return min(
+        beside,
+        key=lambda other: (not _are_linked(drawing, selected, other), abs(rows[other] - rows[selected])),
+    )
 
 
-def _joined(plan: Plan, one: Spot, other: Spot) -> bool:
+def _are_linked(drawing: GraphDrawing, one: GraphElement, other: GraphElement) -> bool:
     node, item = (other, one) if one.column == "item" else (one, other)
-    return Link(node.name, item.name, sends=node.column == "sender") in plan.ways
+    return GraphLink(node.name, item.name, is_sender=node.column == "sender") in drawing.routes

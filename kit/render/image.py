@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from kit.render.camera import Camera
-from kit.render.raster import circle, polyline
-from kit.render.roles import ROBOTS, TRAILS, Role
-from kit.render.scene import Body, Bounds, FloatArray, Scene
+from kit.render.raster import circle_corners, polyline
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.scene import FloatArray, Scene, SceneBody, SceneBounds
 
 Pixels = NDArray[np.uint8]
 """(height, width, 3), red-green-blue."""
 
 Color = tuple[int, int, int]
 
-PAPER: Color = (250, 249, 246)
+BACKGROUND: Color = (250, 249, 246)
 
-COLORS: Mapping[Role, Color] = MappingProxyType(
+ROLE_COLORS: Mapping[Role, Color] = MappingProxyType(
     {
-        Role.EMPTY: PAPER,
+        Role.EMPTY: BACKGROUND,
         Role.BEAM: (240, 222, 190),
         Role.FIELD: (120, 150, 190),
         Role.PATH: (90, 125, 180),
@@ -42,35 +42,35 @@ COLORS: Mapping[Role, Color] = MappingProxyType(
 )
 """On white paper; each differs from its neighbours in lightness too, so that print and colour-blind eyes do."""
 
-SMOOTHING = 2
+SUPERSAMPLING = 2
 """Pixels are averaged over so many by so many."""
 
 
-def image_camera(bounds: Bounds, width: int, height: int) -> Camera:
+def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:
     """The camera that shows all of ``bounds`` in a picture of this many pixels, with a small margin."""
     return Camera.fit(bounds, width, height, aspect=1.0, margin=min(width, height) / 40)
 
 
-def draw(scene: Scene, camera: Camera) -> Pixels:
+def draw_image(scene: Scene, camera: Camera) -> Pixels:
     """The scene on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
-    pen = _Pen(camera)
+    pen = _ImageCanvas(camera)
     pen.lines(scene.beams, Role.BEAM)
     for path in scene.paths:
         pen.lines(polyline(path.points), Role.PATH)
     for number, trail in enumerate(scene.trails):
-        pen.points(trail, TRAILS[number % len(TRAILS)], 1.5)
+        pen.points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)], 1.5)
     for target in scene.targets:
         pen.circle(*target, Role.TARGET)
         pen.points(np.array([target[:2]]), Role.TARGET, 2.0)
     pen.lines(scene.walls, Role.WALL, width=1.5)
     for body in scene.bodies:
-        if not body.robot:
+        if not body.is_robot:
             pen.body(body, Role.BODY)
     pen.points(scene.hits, Role.HIT, 1.5)
     pen.arrows(scene.arrows)
     robots = scene.robots
     for number, robot in enumerate(robots):
-        pen.robot(robot, ROBOTS[number % len(ROBOTS)], str(number + 1) if len(robots) > 1 else "")
+        pen.robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)], str(number + 1) if len(robots) > 1 else "")
     for x, y in scene.contacts:
         pen.cross(x, y)
     for mark in scene.marks:
@@ -78,7 +78,7 @@ def draw(scene: Scene, camera: Camera) -> Pixels:
     return pen.pixels()
 
 
-def save(path: Path, pixels: Pixels) -> None:
+def save_image(path: Path, pixels: Pixels) -> None:
     """Writes one picture; the name's ending says in which format."""
     Image.fromarray(pixels).save(path)
 
@@ -89,45 +89,47 @@ def save_animation(path: Path, frames: Iterable[Pixels], fps: float = 20.0) -> N
     first.save(path, save_all=True, append_images=others, duration=round(1000 / fps), loop=0)
 
 
-class _Pen:
+class _ImageCanvas:
     """Draws world coordinates on paper, at a finer grain than the picture will have."""
 
     def __init__(self, camera: Camera) -> None:
         self._camera = camera
-        size = camera.columns * SMOOTHING, camera.rows * SMOOTHING
-        self._paper = Image.new("RGB", size, PAPER)
-        self._draw = ImageDraw.Draw(self._paper)
+        size = camera.columns * SUPERSAMPLING, camera.rows * SUPERSAMPLING
+        self._image = Image.new("RGB", size, BACKGROUND)
+        self._draw = ImageDraw.Draw(self._image)
 
     def pixels(self) -> Pixels:
-        return np.array(self._paper.reduce(SMOOTHING))
+        return np.array(self._image.reduce(SUPERSAMPLING))
 
     def lines(self, segments: FloatArray, role: Role, width: float = 1.0) -> None:
         finite = segments[np.isfinite(segments).all(axis=1)]
         for x1, y1, x2, y2 in self._project(finite.reshape(-1, 2)).reshape(-1, 4).tolist():
-            self._draw.line((x1, y1, x2, y2), COLORS[role], round(width * SMOOTHING))
+            self._draw.line((x1, y1, x2, y2), ROLE_COLORS[role], round(width * SUPERSAMPLING))
 
     def points(self, points: FloatArray, role: Role, radius: float) -> None:
         for x, y in self._project(points[np.isfinite(points).all(axis=1)]).tolist():
-            size = radius * SMOOTHING
-            self._draw.ellipse((x - size, y - size, x + size, y + size), COLORS[role])
+            size = radius * SUPERSAMPLING
+            self._draw.ellipse((x - size, y - size, x + size, y + size), ROLE_COLORS[role])
 
     def circle(self, x: float, y: float, radius: float, role: Role, filled: bool = False) -> None:
-        self._shape(circle(x, y, radius, radius), COLORS[role], filled)
+        self._shape(circle_corners(x, y, radius, radius), ROLE_COLORS[role], filled)
 
-    def body(self, body: Body, role: Role, filled: bool = False) -> None:
+    def body(self, body: SceneBody, role: Role, filled: bool = False) -> None:
         for polygon in body.polygons:
-            self._shape(polygon, COLORS[role], filled)
+            self._shape(polygon, ROLE_COLORS[role], filled)
         for disc in body.discs:
             self.circle(*disc, role, filled)
 
-    def robot(self, robot: Body, role: Role, label: str) -> None:
+    def robot(self, robot: SceneBody, role: Role, label: str) -> None:
         """A solid shape with a bright wedge that points ahead, at least a few pixels large."""
         self.body(robot, role, filled=True)
         extent, (x, y) = robot.extent, robot.extent.middle
-        size = max(extent.width, extent.height, 6 * self._camera.cell) / 2
+        size = max(extent.width, extent.height, 6 * self._camera.cell_width) / 2
         wedge = ((x + size * 1.4, y), (x - size * 0.5, y + size * 0.6), (x - size * 0.5, y - size * 0.6))
         corners = self._project(np.array([robot.pose.transform_point(*corner) for corner in wedge])).tolist()
-        self._draw.polygon([(x, y) for x, y in corners], fill=PAPER, outline=COLORS[role], width=SMOOTHING)
+        self._draw.polygon(
+            [(x, y) for x, y in corners], fill=BACKGROUND, outline=ROLE_COLORS[role], width=SUPERSAMPLING
+        )
         if label:
             self.text(*robot.pose.transform_point(x - size * 2, y), label)
 
@@ -143,17 +145,19 @@ class _Pen:
             self.lines(np.array(((x, y, *tip), (*left, *tip), (*right, *tip))), Role.FIELD)
 
     def cross(self, x: float, y: float) -> None:
-        size = 4 * self._camera.cell
+        size = 4 * self._camera.cell_width
         strokes = ((x - size, y - size, x + size, y + size), (x - size, y + size, x + size, y - size))
         self.lines(np.array(strokes), Role.CONTACT, width=1.5)
 
     def text(self, x: float, y: float, text: str) -> None:
         ((column, row),) = self._project(np.array([(x, y)])).tolist()
-        self._draw.text((column, row), text, COLORS[Role.TEXT], anchor="mm", font_size=11 * SMOOTHING)
+        self._draw.text(
+            (column, row), text, ROLE_COLORS[Role.TEXT], anchor="mm", font_size=11 * SUPERSAMPLING
+        )
 
     def _shape(self, corners: FloatArray, ink: Color, filled: bool) -> None:
         dots = [(x, y) for x, y in self._project(corners).tolist()]
-        self._draw.polygon(dots, fill=ink if filled else None, outline=ink, width=SMOOTHING)
+        self._draw.polygon(dots, fill=ink if filled else None, outline=ink, width=SUPERSAMPLING)
 
     def _project(self, points: FloatArray) -> FloatArray:
-        return self._camera.project(points, SMOOTHING, SMOOTHING)
+        return self._camera.project(points, SUPERSAMPLING, SUPERSAMPLING)

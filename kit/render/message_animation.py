@@ -10,44 +10,44 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from kit.render.graph import Cell, Link, Plan
-from kit.render.graph_data import Conversation, Item
+from kit.render.graph import GraphCell, GraphDrawing, GraphLink
+from kit.render.graph_data import GraphData, GraphItem
 from kit.ros.graph.topic_stats import FlowStats, MessageFlow
 
-FRAMES: Final = 6
+FRAMES_PER_LEG: Final = 6
 """In which a dot goes from a node to a topic, and in which from there to the next node."""
 
-MOST: Final = 16
+MAX_DOTS: Final = 16
 """Dots that are under way at once; of more flows than that some have to wait."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Journey:
+class _MovingDot:
     flow: MessageFlow
-    legs: tuple[tuple[Link, ...], tuple[Link, ...]]
+    legs: tuple[tuple[GraphLink, ...], tuple[GraphLink, ...]]
     """First one line, or none where the sender's is not drawn, then all that lead on."""
-    backwards: bool
+    is_response: bool
     """An answer: from the server to the client."""
     frame: int = 0
 
     @property
-    def links(self) -> tuple[Link, ...]:
-        return self.legs[self.frame // FRAMES]
+    def links(self) -> tuple[GraphLink, ...]:
+        return self.legs[self.frame // FRAMES_PER_LEG]
 
 
-class Travel:
+class MessageAnimation:
     """Which dots are where. Call ``frame`` at a steady rate while it is ``busy`` or there is news."""
 
     def __init__(self) -> None:
         self._counts: dict[MessageFlow, int] | None = None
         self._waiting: dict[MessageFlow, None] = {}
-        self._journeys: list[_Journey] = []
+        self._dots: list[_MovingDot] = []
 
     @property
-    def busy(self) -> bool:
-        return bool(self._journeys or self._waiting)
+    def is_active(self) -> bool:
+        return bool(self._dots or self._waiting)
 
-    def hear(self, said: Mapping[MessageFlow, FlowStats]) -> None:
+    def update_counts(self, said: Mapping[MessageFlow, FlowStats]) -> None:
         """Takes note of what was said; what was said before the first time is over."""
         counts = {flow: heard.count for flow, heard in said.items()}
         if self._counts is not None:
@@ -55,50 +55,55 @@ class Travel:
             self._waiting |= dict.fromkeys(news)
         self._counts = counts
 
-    def frame(self, talk: Conversation) -> None:
+    def advance(self, graph: GraphData) -> None:
         """Moves each dot on, and lets new ones leave where the line is free."""
-        moved = (replace(journey, frame=journey.frame + 1) for journey in self._journeys)
-        self._journeys = [journey for journey in moved if journey.frame < 2 * FRAMES and journey.links]
-        items = {(item.name, item.is_service): item for item in talk.items}
-        leaving = {journey.flow for journey in self._journeys if journey.frame < FRAMES}
+        moved = (replace(dot, frame=dot.frame + 1) for dot in self._dots)
+        self._dots = [dot for dot in moved if dot.frame < 2 * FRAMES_PER_LEG and dot.links]
+        items = {(item.name, item.is_service): item for item in graph.items}
+        departing = {dot.flow for dot in self._dots if dot.frame < FRAMES_PER_LEG}
         waiting, self._waiting = self._waiting, {}
         for flow in waiting:
             item = items.get((flow.name, flow.is_service))
             if item is None:
                 continue
-            if flow in leaving or len(self._journeys) >= MOST:
+            if flow in departing or len(self._dots) >= MAX_DOTS:
                 self._waiting[flow] = None
-            elif (journey := _journey(flow, item)) is not None:
-                self._journeys.append(journey)
+            elif (dot := _new_dot(flow, item)) is not None:
+                self._dots.append(dot)
 
-    def cells(self, plan: Plan) -> frozenset[Cell]:
+    def cells(self, drawing: GraphDrawing) -> frozenset[GraphCell]:
         """Where the dots are."""
         return frozenset(
             cell
-            for journey in self._journeys
-            for link in journey.links
-            if (cell := _reached(journey, link, plan)) is not None
+            for dot in self._dots
+            for link in dot.links
+            if (cell := _cell_of(dot, link, drawing)) is not None
         )
 
 
-def _journey(flow: MessageFlow, item: Item) -> _Journey | None:
+def _new_dot(flow: MessageFlow, item: GraphItem) -> _MovingDot | None:
     """The way of what a node has said; None if it does not say it here any more."""
     if flow.response_to is not None:
         if flow.node not in item.receivers or flow.response_to not in item.senders:
             return None
-        first, then = Link(flow.node, item.label, sends=False), Link(flow.response_to, item.label, sends=True)
-        return _Journey(flow, ((first,), (then,)), backwards=True)
+        first, then = (
+            GraphLink(flow.node, item.label, is_sender=False),
+            GraphLink(flow.response_to, item.label, is_sender=True),
+        )
+        return _MovingDot(flow, ((first,), (then,)), is_response=True)
     if flow.node not in item.senders:
         return None
     heard = tuple(
-        Link(node, item.label, sends=False) for node in item.receivers if (flow.node, node) not in item.broken
+        GraphLink(node, item.label, is_sender=False)
+        for node in item.receivers
+        if (flow.node, node) not in item.undelivered
     )
-    return _Journey(flow, ((Link(flow.node, item.label, sends=True),), heard), backwards=False)
+    return _MovingDot(flow, ((GraphLink(flow.node, item.label, is_sender=True),), heard), is_response=False)
 
 
-def _reached(journey: _Journey, link: Link, plan: Plan) -> Cell | None:
-    if link not in plan.ways:  # it has left meanwhile
+def _cell_of(dot: _MovingDot, link: GraphLink, drawing: GraphDrawing) -> GraphCell | None:
+    if link not in drawing.routes:  # it has left meanwhile
         return None
-    path = plan.path(link)
-    place = (2 * (journey.frame % FRAMES) + 1) * len(path) // (2 * FRAMES)
-    return path[-1 - place if journey.backwards else place]
+    cells = drawing.link_cells(link)
+    position = (2 * (dot.frame % FRAMES_PER_LEG) + 1) * len(cells) // (2 * FRAMES_PER_LEG)
+    return cells[-1 - position if dot.is_response else position]

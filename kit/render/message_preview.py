@@ -12,10 +12,10 @@ from kit.msg.conversion import to_dict
 from kit.msg.message import Message
 
 INDENT: Final = "  "
-MOST_ROWS_OF_NUMBERS: Final = 4
+MAX_NUMBER_ROWS: Final = 4
 
 _PLAIN: Final = re.compile(r"[^\W\d_][\w ./-]*")
-_NO_TEXTS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n"})
+_RESERVED_WORDS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n"})
 """What YAML takes for something else."""
 
 
@@ -24,28 +24,28 @@ def message_rows(message: Message, width: int, *, compact: bool = False) -> list
 
     Long lists of numbers are cut off after a few rows, with their length.
     """
-    return [row[:width] for row in _fields(to_dict(message), width, "", compact)]
+    return [row[:width] for row in _field_rows(to_dict(message), width, "", compact)]
 
 
-def _fields(data: Mapping[str, Any], width: int, indent: str, compact: bool) -> Iterator[str]:
+def _field_rows(data: Mapping[str, Any], width: int, indent: str, compact: bool) -> Iterator[str]:
     if not data:
         yield f"{indent}{{}}"
     for name, value in data.items():
-        yield from _entry(f"{indent}{name}:", value, width, indent, compact)
+        yield from _value_rows(f"{indent}{name}:", value, width, indent, compact)
 
 
-def _entry(head: str, value: Any, width: int, indent: str, compact: bool) -> Iterator[str]:
+def _value_rows(head: str, value: Any, width: int, indent: str, compact: bool) -> Iterator[str]:
     if isinstance(value, Mapping):
-        line = f"{head} {_flow(value)}"
+        line = f"{head} {_inline(value)}"
         if compact and len(line) <= width:
             yield line
         else:
             yield head
-            yield from _fields(value, width, indent + INDENT, compact)
+            yield from _field_rows(value, width, indent + INDENT, compact)
     elif isinstance(value, list) and value and isinstance(value[0], Mapping):
         yield head
         for entry in value:
-            first, *rest = _fields(entry, width, indent + INDENT, compact)
+            first, *rest = _field_rows(entry, width, indent + INDENT, compact)
             yield f"{indent}- {first.lstrip()}"
             yield from rest
     elif isinstance(value, list):
@@ -55,20 +55,20 @@ def _entry(head: str, value: Any, width: int, indent: str, compact: bool) -> Ite
 
 
 def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:
-    text = f"{head} {_flow(values)}"
+    text = f"{head} {_inline(values)}"
     rows = textwrap.wrap(text, width, subsequent_indent=indent + INDENT) or [text]
-    if len(rows) > MOST_ROWS_OF_NUMBERS:
+    if len(rows) > MAX_NUMBER_ROWS:
         note = f" ... {len(values)} in all]"
-        rows = rows[:MOST_ROWS_OF_NUMBERS]
+        rows = rows[:MAX_NUMBER_ROWS]
         rows[-1] = rows[-1][: width - len(note)].rpartition(",")[0] + "," + note
     yield from rows
 
 
-def _flow(value: Any) -> str:
+def _inline(value: Any) -> str:
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{name}: {_flow(entry)}' for name, entry in value.items())}}}"
+        return f"{{{', '.join(f'{name}: {_inline(entry)}' for name, entry in value.items())}}}"
     if isinstance(value, list):
-        return f"[{', '.join(_flow(entry) for entry in value)}]"
+        return f"[{', '.join(_inline(entry) for entry in value)}]"
     return _scalar(value)
 
 
@@ -90,6 +90,6 @@ def _float(value: float) -> str:
 
 def _text(value: str) -> str:
     """In quotes unless it can be taken for nothing but a text."""
-    if _PLAIN.fullmatch(value) and value.lower() not in _NO_TEXTS:
+    if _PLAIN.fullmatch(value) and value.lower() not in _RESERVED_WORDS:
         return value
     return json.dumps(value, ensure_ascii=False) if value else "''"

@@ -11,18 +11,18 @@ from kit.render.camera import Camera
 from kit.render.encode import Encoder
 from kit.render.frame import Frame
 from kit.render.raster import Grid
-from kit.render.roles import ROBOTS, TRAILS, Role
-from kit.render.scene import Body, FloatArray, Path, Scene
-from kit.render.sprites import SMALLEST_OUTLINE, Stamps, rows_across
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.scene import FloatArray, Scene, SceneBody, ScenePath
+from kit.render.sprites import MIN_OUTLINE_ROWS, SpriteLayer, size_in_rows
 
-NOSE = 0.25
+HEADING_LINE_SHARE = 0.25
 """How far a robot's heading line reaches beyond its hull: this share of its length, or two characters' widths
 if that is more."""
 
-SMALLEST_HOLLOW = 4.0
+MIN_HOLLOW_ROWS = 4.0
 """A robot shorter than this many rows is filled: its outline alone would be a tangle of dots."""
 
-_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
+_DASH_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
 """Of a path's dots: so many make a period, so many of them are drawn."""
 
 
@@ -38,37 +38,37 @@ class Painter:
         self.encoder = encoder
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
-        self._static = raster.blank(0, 0)
+        self._wall_grid = raster.empty_grid(0, 0)
 
     def paint(self, scene: Scene, camera: Camera) -> Frame:
-        canvas = _Canvas(self._standing(scene, camera).copy(), camera, self.encoder)
+        canvas = _Canvas(self._static_grid(scene, camera).copy(), camera, self.encoder)
         canvas.draw_lines(scene.beams, Role.BEAM, period=3)
         for path in scene.paths:
             canvas.draw_path(path)
         for number, trail in enumerate(scene.trails):
-            canvas.draw_points(trail, TRAILS[number % len(TRAILS)])
+            canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
         canvas.draw_points(scene.hits, Role.HIT)
         for target in scene.targets:
             canvas.draw_circle(target.x, target.y, target.radius, Role.TARGET)
         for body in scene.bodies:
-            if not body.robot:
+            if not body.is_robot:
                 canvas.draw_outline(body, Role.BODY)
         for number, robot in enumerate(scene.robots):
-            canvas.draw_robot(robot, ROBOTS[number % len(ROBOTS)])
+            canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
         frame = self.encoder.encode(canvas.grid)
-        Stamps(frame, camera, self.encoder.symbols).put_all(scene)
+        SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
         return frame
 
-    def _standing(self, scene: Scene, camera: Camera) -> Grid:
+    def _static_grid(self, scene: Scene, camera: Camera) -> Grid:
         """What stands still."""
-        view = camera, _passage(scene)
+        view = camera, _narrowest_robot(scene)
         if scene.walls is not self._walls or view != self._view:
-            self._static = _draw_walls(scene.walls, *view, self.encoder)
+            self._wall_grid = _draw_walls(scene.walls, *view, self.encoder)
             self._walls, self._view = scene.walls, view
-        return self._static
+        return self._wall_grid
 
 
-def _passage(scene: Scene) -> float:
+def _narrowest_robot(scene: Scene) -> float:
     """The narrowest gap [m] that a robot of the scene fits through, to the millimetre; 0 without robots."""
     extents = [robot.extent for robot in scene.robots]
     widths = [min(extent.width, extent.height) for extent in extents]
@@ -77,12 +77,14 @@ def _passage(scene: Scene) -> float:
 
 def _draw_walls(walls: FloatArray, camera: Camera, passage: float, encoder: Encoder) -> Grid:
     # With a rim around the picture, for walls of which one face is just outside it.
-    rim_x, rim_y = math.ceil(passage / camera.cell), math.ceil(passage / camera.cell_height)
+    rim_x, rim_y = math.ceil(passage / camera.cell_width), math.ceil(passage / camera.cell_height)
     wide = camera.resized(camera.columns + 2 * rim_x, camera.rows + 2 * rim_y)
-    canvas = _Canvas(raster.blank(wide.columns * encoder.across, wide.rows * encoder.down), wide, encoder)
+    canvas = _Canvas(
+        raster.empty_grid(wide.columns * encoder.across, wide.rows * encoder.down), wide, encoder
+    )
     canvas.draw_lines(walls, Role.WALL)
     # Lines n dots apart have n - 1 dots between them.
-    across = int(passage / camera.cell * encoder.across) - 1
+    across = int(passage / camera.cell_width * encoder.across) - 1
     down = int(passage / camera.cell_height * encoder.down) - 1
     raster.close_gaps(canvas.grid, across, down, Role.WALL)
     top, left = rim_y * encoder.down, rim_x * encoder.across
@@ -97,13 +99,13 @@ class _Canvas:
         self._height, self._width = grid.shape
         self._camera = camera
         self._encoder = encoder
-        self._dot = camera.cell / encoder.across, camera.cell_height / encoder.down
+        self._dot = camera.cell_width / encoder.across, camera.cell_height / encoder.down
 
     def project(self, points: FloatArray) -> FloatArray:
         return self._camera.project(points, self._encoder.across, self._encoder.down)
 
     def draw_points(self, points: FloatArray, role: Role) -> None:
-        raster.put(self.grid, raster.point_dots(self.project(points), self._width, self._height), role)
+        raster.draw_dots(self.grid, raster.point_dots(self.project(points), self._width, self._height), role)
 
     def draw_lines(self, segments: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
         """Of every ``period`` dots along the lines, the first ``drawn``."""
@@ -111,8 +113,8 @@ class _Canvas:
             return
         self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)
 
-    def draw_path(self, path: Path) -> None:
-        self.draw_lines(raster.polyline(path.points), Role.PATH, *_PATTERNS[path.style])
+    def draw_path(self, path: ScenePath) -> None:
+        self.draw_lines(raster.polyline(path.points), Role.PATH, *_DASH_PATTERNS[path.style])
 
     def draw_circle(self, x: float, y: float, radius: float, role: Role) -> None:
         """The circle's line; nothing where it would be a dot or two: a symbol marks the place."""
@@ -123,43 +125,43 @@ class _Canvas:
             return
         # About the middle of a dot, it is as round as dots can be.
         middle = math.floor(column) + 0.5, math.floor(row) + 0.5
-        corners = raster.circle(*middle, radius / self._dot[0], radius / self._dot[1])
+        corners = raster.circle_corners(*middle, radius / self._dot[0], radius / self._dot[1])
         self._put_lines(raster.polyline(corners, closed=True), role)
 
-    def draw_outline(self, body: Body, role: Role) -> None:
+    def draw_outline(self, body: SceneBody, role: Role) -> None:
         for polygon in body.polygons:
             self.draw_lines(raster.polyline(polygon, closed=True), role)
         for disc in body.discs:
             self.draw_circle(*disc, role)
 
-    def fill(self, body: Body, role: Role) -> None:
+    def fill(self, body: SceneBody, role: Role) -> None:
         for polygon in body.polygons:
             self._fill(self.project(polygon), role)
         for disc in body.discs:
-            self._fill(self.project(raster.circle(disc.x, disc.y, disc.radius, disc.radius)), role)
+            self._fill(self.project(raster.circle_corners(disc.x, disc.y, disc.radius, disc.radius)), role)
 
-    def draw_robot(self, robot: Body, role: Role) -> None:
+    def draw_robot(self, robot: SceneBody, role: Role) -> None:
         """Its outline, where that is large enough to be made out, and a line from its middle ahead."""
-        size = rows_across(robot, self._camera)
-        if size >= SMALLEST_OUTLINE:
+        size = size_in_rows(robot, self._camera)
+        if size >= MIN_OUTLINE_ROWS:
             self.draw_outline(robot, role)
-            if size < SMALLEST_HOLLOW:
+            if size < MIN_HOLLOW_ROWS:
                 self.fill(robot, role)
-        if not self._encoder.symbols.noses:
-            self._put_lines(_nose(robot, self._camera, self._encoder), role)
+        if not self._encoder.symbols.heading_strokes:
+            self._put_lines(_heading_line(robot, self._camera, self._encoder), role)
 
     def _fill(self, corners: FloatArray, role: Role) -> None:
-        raster.put(self.grid, raster.filled_dots(corners, self._width, self._height), role)
+        raster.draw_dots(self.grid, raster.filled_dots(corners, self._width, self._height), role)
 
     def _put_lines(self, dots: FloatArray, role: Role, period: int = 1, drawn: int = 1) -> None:
         rows, columns = raster.line_dots(dots, self._width, self._height)
         if drawn < period:
             kept = np.arange(len(rows)) % period < drawn
             rows, columns = rows[kept], columns[kept]
-        raster.put(self.grid, (rows, columns), role)
+        raster.draw_dots(self.grid, (rows, columns), role)
 
 
-def _nose(robot: Body, camera: Camera, encoder: Encoder) -> FloatArray:
+def _heading_line(robot: SceneBody, camera: Camera, encoder: Encoder) -> FloatArray:
     """A robot's heading line, (1, 4) in dots: from its middle to well before its front."""
     extent = robot.extent
     middle = extent.middle
@@ -168,5 +170,5 @@ def _nose(robot: Body, camera: Camera, encoder: Encoder) -> FloatArray:
         np.array([robot.pose.transform_point(*place) for place in places]), encoder.across, encoder.down
     )
     step = (ahead - front) / np.abs(ahead - front).max()  # one dot along the longer axis
-    beyond = max(2.0, NOSE * extent.width / camera.cell) * encoder.across
+    beyond = max(2.0, HEADING_LINE_SHARE * extent.width / camera.cell_width) * encoder.across
     return np.concatenate((start, front + step * beyond))[None]

@@ -20,15 +20,15 @@ Dots = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Rows and columns, in the order in which they were drawn."""
 
 
-CORNERS = 64
+CIRCLE_CORNERS = 64
 """Of a circle: enough for one as large as the screen."""
 
 
-def blank(width: int, height: int) -> Grid:
+def empty_grid(width: int, height: int) -> Grid:
     return np.zeros((height, width), dtype=np.uint8)
 
 
-def put(grid: Grid, dots: Dots, role: int) -> None:
+def draw_dots(grid: Grid, dots: Dots, role: int) -> None:
     """Draws dots, which all lie within the grid, unless something of a higher role is there already."""
     rows, columns = dots
     grid[rows, columns] = np.maximum(grid[rows, columns], np.uint8(role))
@@ -47,7 +47,7 @@ def line_dots(segments: FloatArray, width: int, height: int) -> Dots:
     Ends are put on dots first and the line stepped along its longer axis (Bresenham's line, all lines and
     steps at once), so that an upright or level wall is drawn as evenly as it is.
     """
-    ends = _clipped(segments, width, height)
+    ends = _clip_segments(segments, width, height)
     first = np.floor(ends[:, :2]).astype(np.intp)
     last = np.floor(ends[:, 2:]).astype(np.intp)
     limit = (width - 1, height - 1)  # a line that ends on the far rim belongs to the last dot
@@ -69,9 +69,9 @@ def polyline(points: FloatArray, closed: bool = False) -> FloatArray:
     return np.concatenate((points[:-1], points[1:]), axis=1)
 
 
-def circle(x: float, y: float, radius_x: float, radius_y: float) -> FloatArray:
+def circle_corners(x: float, y: float, radius_x: float, radius_y: float) -> FloatArray:
     """The corners (k, 2) of a polygon that looks round; its radii differ where dots are oblong."""
-    angle = (np.arange(CORNERS) + 0.5) * (math.tau / CORNERS)
+    angle = (np.arange(CIRCLE_CORNERS) + 0.5) * (math.tau / CIRCLE_CORNERS)
     return np.stack((x + radius_x * np.cos(angle), y + radius_y * np.sin(angle)), axis=1)
 
 
@@ -93,11 +93,11 @@ def filled_dots(corners: FloatArray, width: int, height: int) -> Dots:
 def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
     """Fills up to so many empty dots between two drawn ones of a column, and then of a row: in this order the
     corner between two walls is filled with them."""
-    grid.T[_in_gap(grid.T > 0, down)] = role
-    grid[_in_gap(grid > 0, across)] = role
+    grid.T[_short_gaps(grid.T > 0, down)] = role
+    grid[_short_gaps(grid > 0, across)] = role
 
 
-def _in_gap(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
+def _short_gaps(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
     """Per row: the dots in a run of at most ``longest`` that are not drawn, between two that are."""
     if longest < 1 or not drawn.size:
         return np.zeros_like(drawn)
@@ -109,7 +109,7 @@ def _in_gap(drawn: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
     return gaps
 
 
-def _clipped(segments: FloatArray, width: int, height: int) -> FloatArray:
+def _clip_segments(segments: FloatArray, width: int, height: int) -> FloatArray:
     """The parts (m, 4) of the segments (n, 4) that lie on the grid (Liang and Barsky 1984)."""
     segments = segments[np.isfinite(segments).all(axis=1)]
     start = segments[:, :2]

@@ -30,86 +30,86 @@ class Role(IntEnum):
     TEXT = 13
 
 
-ROBOTS = (Role.ROBOT, Role.ROBOT_2)
+ROBOT_ROLES = (Role.ROBOT, Role.ROBOT_2)
 """The first robot's role, the second's, the third's as the first's again; their glyphs tell them apart too."""
 
-TRAILS = (Role.TRAIL, Role.TRAIL_2)
+TRAIL_ROLES = (Role.TRAIL, Role.TRAIL_2)
 
 Color = str | int | tuple[int, int, int] | None
 """A name of the 16 ANSI colours, a number of the 256, red-green-blue, or None: what the terminal writes in."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ink:
+class RoleStyle:
     color: Color = None
     bold: bool = False
     dim: bool = False
 
 
-Palette = Mapping[Role, Ink]
+Palette = Mapping[Role, RoleStyle]
 
-PLAIN = Ink()
+DEFAULT_STYLE = RoleStyle()
 
 # Walls are in the terminal's own ink: readable on dark and on light, and without a byte of escape code.
-ANSI: Palette = MappingProxyType(
+ANSI_PALETTE: Palette = MappingProxyType(
     {
-        Role.EMPTY: PLAIN,
-        Role.BEAM: Ink("yellow", dim=True),
-        Role.FIELD: Ink("blue"),
-        Role.PATH: Ink("blue"),
-        Role.TRAIL: Ink("cyan"),
-        Role.TRAIL_2: Ink("magenta"),
-        Role.WALL: PLAIN,
-        Role.BODY: Ink("blue"),
-        Role.HIT: Ink("yellow"),
-        Role.TARGET: Ink("green", bold=True),
-        Role.ROBOT_2: Ink("magenta", bold=True),
-        Role.ROBOT: Ink("cyan", bold=True),
-        Role.CONTACT: Ink("red", bold=True),
-        Role.TEXT: Ink(bold=True),
+        Role.EMPTY: DEFAULT_STYLE,
+        Role.BEAM: RoleStyle("yellow", dim=True),
+        Role.FIELD: RoleStyle("blue"),
+        Role.PATH: RoleStyle("blue"),
+        Role.TRAIL: RoleStyle("cyan"),
+        Role.TRAIL_2: RoleStyle("magenta"),
+        Role.WALL: DEFAULT_STYLE,
+        Role.BODY: RoleStyle("blue"),
+        Role.HIT: RoleStyle("yellow"),
+        Role.TARGET: RoleStyle("green", bold=True),
+        Role.ROBOT_2: RoleStyle("magenta", bold=True),
+        Role.ROBOT: RoleStyle("cyan", bold=True),
+        Role.CONTACT: RoleStyle("red", bold=True),
+        Role.TEXT: RoleStyle(bold=True),
     }
 )
 
-XTERM: Palette = MappingProxyType(
+XTERM_PALETTE: Palette = MappingProxyType(
     {
-        **ANSI,
-        Role.BEAM: Ink(94),
-        Role.FIELD: Ink(67),
-        Role.PATH: Ink(67),
-        Role.TRAIL: Ink(37),
-        Role.TRAIL_2: Ink(132),
-        Role.BODY: Ink(68),
-        Role.HIT: Ink(214),
-        Role.TARGET: Ink(77, bold=True),
-        Role.ROBOT_2: Ink(205, bold=True),
-        Role.ROBOT: Ink(44, bold=True),
-        Role.CONTACT: Ink(196, bold=True),
+        **ANSI_PALETTE,
+        Role.BEAM: RoleStyle(94),
+        Role.FIELD: RoleStyle(67),
+        Role.PATH: RoleStyle(67),
+        Role.TRAIL: RoleStyle(37),
+        Role.TRAIL_2: RoleStyle(132),
+        Role.BODY: RoleStyle(68),
+        Role.HIT: RoleStyle(214),
+        Role.TARGET: RoleStyle(77, bold=True),
+        Role.ROBOT_2: RoleStyle(205, bold=True),
+        Role.ROBOT: RoleStyle(44, bold=True),
+        Role.CONTACT: RoleStyle(196, bold=True),
     }
 )
 
-TRUECOLOR: Palette = MappingProxyType(
+TRUECOLOR_PALETTE: Palette = MappingProxyType(
     {
-        **ANSI,
-        Role.BEAM: Ink((122, 98, 48)),
-        Role.FIELD: Ink((94, 129, 172)),
-        Role.PATH: Ink((94, 129, 172)),
-        Role.TRAIL: Ink((52, 152, 170)),
-        Role.TRAIL_2: Ink((176, 96, 156)),
-        Role.BODY: Ink((108, 142, 191)),
-        Role.HIT: Ink((240, 170, 60)),
-        Role.TARGET: Ink((96, 200, 110), bold=True),
-        Role.ROBOT_2: Ink((240, 110, 190), bold=True),
-        Role.ROBOT: Ink((64, 214, 232), bold=True),
-        Role.CONTACT: Ink((240, 70, 70), bold=True),
+        **ANSI_PALETTE,
+        Role.BEAM: RoleStyle((122, 98, 48)),
+        Role.FIELD: RoleStyle((94, 129, 172)),
+        Role.PATH: RoleStyle((94, 129, 172)),
+        Role.TRAIL: RoleStyle((52, 152, 170)),
+        Role.TRAIL_2: RoleStyle((176, 96, 156)),
+        Role.BODY: RoleStyle((108, 142, 191)),
+        Role.HIT: RoleStyle((240, 170, 60)),
+        Role.TARGET: RoleStyle((96, 200, 110), bold=True),
+        Role.ROBOT_2: RoleStyle((240, 110, 190), bold=True),
+        Role.ROBOT: RoleStyle((64, 214, 232), bold=True),
+        Role.CONTACT: RoleStyle((240, 70, 70), bold=True),
     }
 )
 
-NO_COLOR: Palette = MappingProxyType(
-    {role: replace(ink, color=None, bold=ink.bold or role is Role.HIT) for role, ink in ANSI.items()}
+MONOCHROME_PALETTE: Palette = MappingProxyType(
+    {role: replace(ink, color=None, bold=ink.bold or role is Role.HIT) for role, ink in ANSI_PALETTE.items()}
 )
 """Shape and weight alone: what moves and what matters is bold."""
 
 PALETTES: Mapping[str, Palette] = MappingProxyType(
-    {"none": NO_COLOR, "16": ANSI, "256": XTERM, "truecolor": TRUECOLOR}
+    {"none": MONOCHROME_PALETTE, "16": ANSI_PALETTE, "256": XTERM_PALETTE, "truecolor": TRUECOLOR_PALETTE}
 )
 """By what the terminal can show."""

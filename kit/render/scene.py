@@ -15,14 +15,14 @@ FloatArray = NDArray[np.float64]
 
 
 @cache
-def _none(width: int) -> FloatArray:
+def _no_rows(width: int) -> FloatArray:
     """No rows; always the same array, since the walls' identity matters."""
     nothing = np.empty((0, width))
     nothing.setflags(write=False)
     return nothing
 
 
-class Bounds(NamedTuple):
+class SceneBounds(NamedTuple):
     """An upright rectangle [m]."""
 
     left: float
@@ -51,7 +51,7 @@ class Disc(NamedTuple):
     radius: float
 
 
-class Mark(NamedTuple):
+class SceneMark(NamedTuple):
     """A place with a short name, such as a start."""
 
     x: float
@@ -60,7 +60,7 @@ class Mark(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Body:
+class SceneBody:
     """One body as it lies in the world."""
 
     model: str
@@ -68,11 +68,11 @@ class Body:
     polygons: tuple[FloatArray, ...] = ()
     """Each (k, 2): the corners of one convex footprint; the last joins the first."""
     discs: tuple[Disc, ...] = ()
-    robot: bool = False
+    is_robot: bool = False
     """A robot is drawn with its heading and in its own colour; other bodies as outlines."""
 
     @property
-    def extent(self) -> Bounds:
+    def extent(self) -> SceneBounds:
         """How far it reaches in its own frame, x forward and y left."""
         rounds = np.array(self.discs, dtype=float).reshape(-1, 3)
         points = np.concatenate((*self.polygons, rounds[:, :2], np.array([self.pose[:2]])))
@@ -81,11 +81,11 @@ class Body:
         radii = np.zeros((len(local), 1))
         radii[len(local) - 1 - len(rounds) : -1, 0] = rounds[:, 2]
         (left, bottom), (right, top) = (local - radii).min(axis=0), (local + radii).max(axis=0)
-        return Bounds(float(left), float(bottom), float(right), float(top))
+        return SceneBounds(float(left), float(bottom), float(right), float(top))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Path:
+class ScenePath:
     """A line to draw: a plan, a ghost's way, a segment charge."""
 
     points: FloatArray
@@ -97,30 +97,30 @@ class Path:
 class Scene:
     """Everything that can be drawn. Robots are numbered in the order of ``bodies``, from 1."""
 
-    walls: FloatArray = field(default_factory=partial(_none, 4))
+    walls: FloatArray = field(default_factory=partial(_no_rows, 4))
     """(n, 4) ``x1 y1 x2 y2``. Hand over the same array again and it is not drawn anew: its identity is the
     key of the static layer."""
-    bodies: tuple[Body, ...] = ()
-    hits: FloatArray = field(default_factory=partial(_none, 2))
+    bodies: tuple[SceneBody, ...] = ()
+    hits: FloatArray = field(default_factory=partial(_no_rows, 2))
     """(m, 2): where laser rays ended. Rows that are not finite are left out."""
-    beams: FloatArray = field(default_factory=partial(_none, 4))
+    beams: FloatArray = field(default_factory=partial(_no_rows, 4))
     """(m, 4): the rays themselves, from the laser to the hit."""
     targets: tuple[Disc, ...] = ()
     trails: tuple[FloatArray, ...] = ()
     """One (k, 2) per robot, drawn as single dots: see ``kit.render.trail.Trail``."""
-    contacts: FloatArray = field(default_factory=partial(_none, 2))
+    contacts: FloatArray = field(default_factory=partial(_no_rows, 2))
     """(c, 2): where bodies touch."""
-    marks: tuple[Mark, ...] = ()
-    arrows: FloatArray = field(default_factory=partial(_none, 5))
+    marks: tuple[SceneMark, ...] = ()
+    arrows: FloatArray = field(default_factory=partial(_no_rows, 5))
     """(a, 5) ``x y dx dy strength``: a field; the direction need not be of unit length, strength is 0 to 1."""
-    paths: tuple[Path, ...] = ()
+    paths: tuple[ScenePath, ...] = ()
 
     @property
-    def robots(self) -> tuple[Body, ...]:
-        return tuple(body for body in self.bodies if body.robot)
+    def robots(self) -> tuple[SceneBody, ...]:
+        return tuple(body for body in self.bodies if body.is_robot)
 
     @property
-    def bounds(self) -> Bounds:
+    def bounds(self) -> SceneBounds:
         """The walls' extent, or that of everything else where there are no walls."""
         points = [self.walls.reshape(-1, 2)]
         if not len(self.walls):
@@ -133,6 +133,6 @@ class Scene:
         every = np.concatenate(points)
         every = every[np.isfinite(every).all(axis=1)]
         if not len(every):
-            return Bounds(-1.0, -1.0, 1.0, 1.0)
+            return SceneBounds(-1.0, -1.0, 1.0, 1.0)
         (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
-        return Bounds(float(left), float(bottom), float(right), float(top))
+        return SceneBounds(float(left), float(bottom), float(right), float(top))

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.render.curve import MARGIN_FROM, round_up, write
+from kit.render.curve import MIN_COLUMNS_WITH_MARGIN, nice_ceiling, write_text
 from kit.render.frame import Frame
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ChartPart:
     """One part of the whole: its name, and what it is drawn with."""
 
     name: str
@@ -27,7 +27,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shares:
+class StackedCounts:
     """What was divided, batch by batch."""
 
     x: FloatArray
@@ -36,47 +36,49 @@ class Shares:
     """(n, parts); no batch is empty."""
 
 
-def draw_shares(shares: Shares, parts: Sequence[Part], columns: int, rows: int, margin: int = 0) -> Frame:
+def draw_stacked_chart(
+    counts: StackedCounts, parts: Sequence[ChartPart], columns: int, rows: int, margin: int = 0
+) -> Frame:
     """A frame of ``columns`` x ``rows`` characters: the parts' names and newest percentages on top, below them a
     column for each stretch of steps, the first part at the bottom."""
     frame = Frame.empty(columns, rows)
     top = int(rows >= 3)
     if top:
-        _write_names(frame, shares, parts)
-    left = max(margin, 5) if columns >= MARGIN_FROM else 0
+        _write_names(frame, counts, parts)
+    left = max(margin, 5) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
     height = rows - top
     if left and height >= 2:
-        write(frame, top, 0, "100%".rjust(left - 1))
-        write(frame, rows - 1, 0, "0%".rjust(left - 1))
-    if len(shares.x) and columns > left:
-        levels = np.round(np.cumsum(_columns(shares, columns - left), axis=1) * height).astype(np.intp)
+        write_text(frame, top, 0, "100%".rjust(left - 1))
+        write_text(frame, rows - 1, 0, "0%".rjust(left - 1))
+    if len(counts.x) and columns > left:
+        levels = np.round(np.cumsum(_column_shares(counts, columns - left), axis=1) * height).astype(np.intp)
         above = np.arange(height, 0, -1)[:, None] - 1  # how many cells lie below each row
         for part in reversed(range(len(parts))):
             covered = above < levels[:, part]
-            at = frame.glyphs[top:, left : left + len(levels)], frame.inks[top:, left : left + len(levels)]
+            at = frame.glyphs[top:, left : left + len(levels)], frame.fg[top:, left : left + len(levels)]
             at[0][covered], at[1][covered] = ord(parts[part].glyph), parts[part].role
     return frame
 
 
-def _columns(shares: Shares, width: int) -> FloatArray:
+def _column_shares(stacked: StackedCounts, width: int) -> FloatArray:
     """(used columns, parts) shares that add up to 1: of all batches that end in a column, else of the one that goes
     on through it."""
-    right = round_up(float(shares.x[-1]))
-    used = max(1, int(np.ceil(shares.x[-1] / right * width)))
+    right = nice_ceiling(float(stacked.x[-1]))
+    used = max(1, int(np.ceil(stacked.x[-1] / right * width)))
     edges = np.arange(used + 1) / width * right
-    first = np.searchsorted(shares.x, edges[:-1], side="right")
-    stop = np.searchsorted(shares.x, edges[1:], side="right")
-    first = np.minimum(first, len(shares.x) - 1)
-    total = np.concatenate((np.zeros((1, shares.counts.shape[1])), np.cumsum(shares.counts, axis=0)))
+    first = np.searchsorted(stacked.x, edges[:-1], side="right")
+    stop = np.searchsorted(stacked.x, edges[1:], side="right")
+    first = np.minimum(first, len(stacked.x) - 1)
+    total = np.concatenate((np.zeros((1, stacked.counts.shape[1])), np.cumsum(stacked.counts, axis=0)))
     counts = total[np.maximum(stop, first + 1)] - total[first]
     divided: FloatArray = counts / counts.sum(axis=1, keepdims=True)
     return divided
 
 
-def _write_names(frame: Frame, shares: Shares, parts: Sequence[Part]) -> None:
-    newest = shares.counts[-1] / shares.counts[-1].sum() if len(shares.x) else np.full(len(parts), np.nan)
+def _write_names(frame: Frame, stacked: StackedCounts, parts: Sequence[ChartPart]) -> None:
+    newest = stacked.counts[-1] / stacked.counts[-1].sum() if len(stacked.x) else np.full(len(parts), np.nan)
     column = 0
     for part, share in zip(parts, newest.tolist(), strict=True):
         text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}")
-        write(frame, 0, column, text, part.role)
+        write_text(frame, 0, column, text, part.role)
         column += len(text) + 1

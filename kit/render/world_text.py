@@ -9,33 +9,33 @@ import numpy as np
 
 from kit.geometry import Pose, wrap_angle
 from kit.render.camera import Camera
-from kit.render.encode import Ascii, Encoder
+from kit.render.encode import AsciiEncoder, Encoder
 from kit.render.painter import Painter
 from kit.render.raster import polyline
-from kit.render.scene import Body, FloatArray, Scene
+from kit.render.scene import FloatArray, Scene, SceneBody
 
 SIDES = ("ahead", "ahead left", "left", "behind left", "behind", "behind right", "right", "ahead right")
 """In eighths of a turn, counter-clockwise from the heading."""
 
 
-def plain_rows(scene: Scene, columns: int, rows: int, encoder: Encoder | None = None) -> list[str]:
+def scene_rows(scene: Scene, columns: int, rows: int, encoder: Encoder | None = None) -> list[str]:
     """The whole scene as rows of characters without colours, by default in ASCII."""
-    return Painter(encoder or Ascii()).paint(scene, Camera.fit(scene.bounds, columns, rows)).rows()
+    return Painter(encoder or AsciiEncoder()).paint(scene, Camera.fit(scene.bounds, columns, rows)).rows()
 
 
-def report(scene: Scene) -> str:
+def describe_scene(scene: Scene) -> str:
     """What a sighted person would look for, robot by robot, one line each: the target's distance and bearing
     (left is positive), the nearest wall's distance from the hull and side, whether it touches something."""
     robots = scene.robots
     if not robots:
         return "no robot"
-    lines = ["; ".join(_findings(robot, scene)) for robot in robots]
+    lines = ["; ".join(_robot_facts(robot, scene)) for robot in robots]
     if len(robots) == 1:
         return lines[0]
     return "\n".join(f"{robot.model}: {line}" for robot, line in zip(robots, lines, strict=True))
 
 
-def _findings(robot: Body, scene: Scene) -> Iterator[str]:
+def _robot_facts(robot: SceneBody, scene: Scene) -> Iterator[str]:
     pose = robot.pose
     if scene.targets:
         target = min(scene.targets, key=lambda disc: math.hypot(disc.x - pose.x, disc.y - pose.y))
@@ -50,26 +50,28 @@ def _findings(robot: Body, scene: Scene) -> Iterator[str]:
     else:
         yield "no walls"
     touching = np.hypot(*(scene.contacts - pose[:2]).T) if len(scene.contacts) else np.empty(0)
-    if (touching <= _reach(robot) + 0.02).any():
+    if (touching <= _outer_radius(robot) + 0.02).any():
         yield "touching"
 
 
-def nearest_wall(robot: Body, walls: FloatArray) -> tuple[float, tuple[float, float]]:
+def nearest_wall(robot: SceneBody, walls: FloatArray) -> tuple[float, tuple[float, float]]:
     """How far [m] the hull is from the walls (n, 4), n > 0, and the wall's nearest point. The hull's corners
     against the walls and the walls' ends against the hull's edges: one of the two is the shortest way between
     shapes that do not overlap."""
     found = []
     corners = [*robot.polygons] or [np.array([robot.pose[:2]])]
     for polygon in corners:
-        found.append(_nearest(polygon, walls, on_segment=True))
-        found.append(_nearest(walls.reshape(-1, 2), polyline(polygon, closed=True), on_segment=False))
+        found.append(_nearest_point(polygon, walls, on_segment=True))
+        found.append(_nearest_point(walls.reshape(-1, 2), polyline(polygon, closed=True), on_segment=False))
     for disc in robot.discs:
-        distance, point = _nearest(np.array([disc[:2]]), walls, on_segment=True)
+        distance, point = _nearest_point(np.array([disc[:2]]), walls, on_segment=True)
         found.append((max(0.0, distance - disc.radius), point))
     return min(found)
 
 
-def _nearest(points: FloatArray, segments: FloatArray, on_segment: bool) -> tuple[float, tuple[float, float]]:
+def _nearest_point(
+    points: FloatArray, segments: FloatArray, on_segment: bool
+) -> tuple[float, tuple[float, float]]:
     """The shortest distance between points (p, 2) and segments (s, 4), and its end on the segment or, if not
     ``on_segment``, the point it starts from."""
     start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
@@ -86,6 +88,6 @@ def _bearing(pose: Pose, x: float, y: float) -> float:
     return wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
 
 
-def _reach(robot: Body) -> float:
+def _outer_radius(robot: SceneBody) -> float:
     left, bottom, right, top = robot.extent
     return math.hypot(max(-left, right), max(-bottom, top))

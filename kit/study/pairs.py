@@ -14,7 +14,7 @@ from kit.controllers import ControllerFile
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.geometry import Pose
-from kit.render.scene import Body
+from kit.render.scene import SceneBody
 from kit.render.world_text import nearest_wall
 from kit.run.episode import run_until, when, when_failed
 from kit.run.lockstep import Observer
@@ -256,7 +256,7 @@ class _PairObserver(Observer):
             if outline.model in hulls and not outline.radius:
                 hulls[outline.model].append(np.array(outline.points))
         return min(
-            nearest_wall(Body(name, simulation.pose(name), tuple(hulls[name])), self._walls)[0]
+            nearest_wall(SceneBody(name, simulation.pose(name), tuple(hulls[name])), self._walls)[0]
             for name in hulls
         )
 

@@ -19,7 +19,7 @@ from kit.fields.layout import derived_layout
 from kit.fields.minima import ForceFlow
 from kit.fields.occupancy_grid import load_occupancy_grid
 from kit.render.camera import Camera
-from kit.render.field import FieldPicture, changed, with_field
+from kit.render.field import FieldPicture, scaled_intensity, with_field
 from kit.render.scene import Scene
 from kit.run.scenario import find_scenario
 
@@ -87,7 +87,7 @@ def main() -> int:
     camera = Camera.fit(walls.bounds, 58, 20)
 
     def slide() -> None:
-        picture.intensities = changed(picture.intensities, "walls", 1.01)
+        picture.intensities = scaled_intensity(picture.intensities, "walls", 1.01)
         with_field(walls, picture, camera, picture.forces, picture.traps())
 
     print(f"an intensity changed, to the scene with its traps: {milliseconds(slide):.1f} ms")

@@ -15,9 +15,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.layers.greedy import greedy
-from kit.layers.planning import Plan, solve
-from kit.layers.requirements import Case
+from kit.layers.greedy import run_greedy
+from kit.layers.planning import LayerPlan, solve_layers
+from kit.layers.requirements import LayerCase
 from tests.layers.cases import planted, random_case, random_graph
 
 
@@ -26,7 +26,7 @@ class Kind:
     """Cases of one kind, and what is promised of them, if anything: seconds, of the mean or of each."""
 
     name: str
-    make: Callable[[random.Random], Case]
+    make: Callable[[random.Random], LayerCase]
     count: int
     mean: float | None = None
     each: float | None = None
@@ -51,12 +51,12 @@ KINDS = (
 )
 
 
-def proof(plan: Plan) -> str:
-    if not plan.optimal:
+def proof(plan: LayerPlan) -> str:
+    if not plan.is_optimal:
         return f"gap of {plan.gap} in {plan.size}"
     if plan.certificate.bound < plan.bound:
         return "search"
-    return "weights" if plan.certificate.parts else "packing"
+    return "weights" if plan.certificate.weighted_parts else "packing"
 
 
 def measure(kind: Kind) -> bool:
@@ -67,11 +67,11 @@ def measure(kind: Kind) -> bool:
     behind_at_best: list[int] = []
     for _ in range(kind.count):
         case = kind.make(rng)
-        plan = solve(case, time_limit=kind.time_limit)
+        plan = solve_layers(case, time_limit=kind.time_limit)
         plans.append(plan)
-        runs = [greedy(case)]
+        runs = [run_greedy(case)]
         if len(case.names) <= 60:
-            runs += [greedy(case, choose=random.Random(seed).choice) for seed in range(20)]
+            runs += [run_greedy(case, choose=random.Random(seed).choice) for seed in range(20)]
         behind.append(runs[0].size + len(runs[0].missed) - plan.size)
         behind_at_best.append(min(run.size + len(run.missed) for run in runs) - plan.size)
     mean, worst = statistics.mean(p.seconds for p in plans), max(p.seconds for p in plans)
@@ -89,6 +89,6 @@ def measure(kind: Kind) -> bool:
 
 
 if __name__ == "__main__":
-    solve(random_case(random.Random(0), 10, 3, 0.7))  # networkx and HiGHS are loaded once
+    solve_layers(random_case(random.Random(0), 10, 3, 0.7))  # networkx and HiGHS are loaded once
     kept = [measure(kind) for kind in KINDS]
     sys.exit(0 if all(kept) else 1)

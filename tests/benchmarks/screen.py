@@ -25,7 +25,7 @@ from textual.pilot import Pilot
 from kit.render.camera import Camera
 from kit.render.encode import ENCODERS
 from kit.render.painter import Painter
-from kit.render.roles import ANSI, TRUECOLOR
+from kit.render.roles import ANSI_PALETTE, TRUECOLOR_PALETTE
 from kit.render.scene import Scene
 from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in
@@ -46,7 +46,7 @@ class Cost:
 
 def cost(size: tuple[int, int], glyphs: str = "braille", naive: bool = False, close: bool = False) -> Cost:
     """Of ``FRAMES`` frames, with Textual's share and all."""
-    app = ViewApp(ENCODERS[glyphs](False), TRUECOLOR if naive else ANSI, cropped=not naive)
+    app = ViewApp(ENCODERS[glyphs](False), TRUECOLOR_PALETTE if naive else ANSI_PALETTE, cropped=not naive)
     if naive:
         app.theme = "textual-dark"
     scenes = list(islice(drive(), FRAMES))

@@ -6,10 +6,37 @@ import random
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
-from kit.layers.requirements import Case, Contact, Entity, Laser
+from kit.layers.assignment import LayerAssignment, NamedLayer
+from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
+
+SLIDES_ANSWER = {
+    "C1": ("Map1 M4.B1 M4.B2", ""),
+    "C2": ("M4.B1 M4.B2 M2", ""),
+    "C3": ("M2 M3.B2", ""),
+    "C4": ("M3.B2 M1", "Ls3"),
+    "C5": ("Map2 M1 M3.B1", ""),
+    "C6": ("Map2 M2 M3.B1", ""),
+    "L1": ("Map1 M4.B1", "Ls1 Ls3"),
+    "L2": ("M2 Map2", "Ls2"),
+    "L3": ("Map2 M1", "Ls2"),
+    "L4": ("Map2", "Ls1"),
+}
+"""The slides' own answer to ``slides-lasers``: the members of each layer, and the lasers that watch it."""
 
 
-def graph(edges: str, *, lasers: Mapping[str, str] | None = None, either: str = "", maps: str = "") -> Case:
+def slides_assignment() -> LayerAssignment:
+    return LayerAssignment(
+        tuple(NamedLayer(name, frozenset(members.split())) for name, (members, _) in SLIDES_ANSWER.items()),
+        {
+            laser: tuple(name for name, (_, lasers) in SLIDES_ANSWER.items() if laser in lasers.split())
+            for laser in ("Ls1", "Ls2", "Ls3")
+        },
+    )
+
+
+def graph(
+    edges: str, *, lasers: Mapping[str, str] | None = None, either: str = "", maps: str = ""
+) -> LayerCase:
     """A case from text: edges as ``a-b``, names separated by spaces."""
 
     def pairs(text: str) -> list[tuple[str, str]]:
@@ -17,71 +44,71 @@ def graph(edges: str, *, lasers: Mapping[str, str] | None = None, either: str = 
 
     seen = " ".join((lasers or {}).values()).split()
     names = dict.fromkeys([*(name for pair in (*pairs(edges), *pairs(either)) for name in pair), *seen])
-    return Case(
-        tuple(Entity(name, "map" if name in maps.split() else "bodies") for name in names),
-        tuple(Contact(a, b) for a, b in pairs(edges)),
-        frozenset(Contact(a, b) for a, b in pairs(either)),
-        tuple(Laser(name, frozenset(sees.split())) for name, sees in (lasers or {}).items()),
+    return LayerCase(
+        tuple(LayerEntity(name, "map" if name in maps.split() else "bodies") for name in names),
+        tuple(ContactRequirement(a, b) for a, b in pairs(edges)),
+        frozenset(ContactRequirement(a, b) for a, b in pairs(either)),
+        tuple(LaserEntity(name, frozenset(sees.split())) for name, sees in (lasers or {}).items()),
     )
 
 
-def complete(count: int) -> Case:
+def complete(count: int) -> LayerCase:
     return graph(" ".join(f"v{i}-v{j}" for i, j in combinations(range(count), 2)))
 
 
-def bipartite(left: int, right: int) -> Case:
+def bipartite(left: int, right: int) -> LayerCase:
     return graph(" ".join(f"a{i}-b{j}" for i in range(left) for j in range(right)))
 
 
-def cocktail_party(couples: int) -> Case:
+def cocktail_party(couples: int) -> LayerCase:
     """Everybody meets everybody but their own partner."""
     people = [f"{side}{i}" for i in range(couples) for side in "lr"]
     return graph(" ".join(f"{a}-{b}" for a, b in combinations(people, 2) if a[1:] != b[1:]))
 
 
-def random_tree(rng: random.Random, count: int) -> Case:
+def random_tree(rng: random.Random, count: int) -> LayerCase:
     return graph(" ".join(f"v{rng.randrange(i)}-v{i}" for i in range(1, count)))
 
 
-def random_graph(rng: random.Random, count: int, density: float) -> Case:
+def random_graph(rng: random.Random, count: int, density: float) -> LayerCase:
     names = [f"v{i}" for i in range(count)]
     edges = [pair for pair in combinations(names, 2) if rng.random() < density]
-    return Case(tuple(map(Entity, names)), tuple(Contact(a, b) for a, b in edges))
+    return LayerCase(tuple(map(LayerEntity, names)), tuple(ContactRequirement(a, b) for a, b in edges))
 
 
 def random_case(
     rng: random.Random, entities: int, lasers: int, density: float, *, either: float = 0.1, odd: bool = True
-) -> Case:
+) -> LayerCase:
     """Contacts at ``density``; of the rest some left open; lasers that see more or less.
 
     ``odd``: some entities are maps, ghosts, or stand for several copies.
     """
-    things = [Entity(f"e{i}", *_oddity(rng) if odd else ("bodies",)) for i in range(entities)]
-    collide: list[Contact] = []
-    open_: set[Contact] = set()
+    things = [LayerEntity(f"e{i}", *_oddity(rng) if odd else ("bodies",)) for i in range(entities)]
+    collide: list[ContactRequirement] = []
+    open_: set[ContactRequirement] = set()
     for a, b in combinations(things, 2):
         dice = rng.random()
         if a.kind == b.kind == "map":
             continue
-        if dice < density and not a.ghost and not b.ghost:
-            collide.append(Contact(a.name, b.name))
+        if dice < density and not a.is_ghost and not b.is_ghost:
+            collide.append(ContactRequirement(a.name, b.name))
         elif dice < density + either:
-            open_.add(Contact(a.name, b.name))
+            open_.add(ContactRequirement(a.name, b.name))
     for thing in things:
-        if thing.copies > 1 and not thing.ghost:
-            (collide.append if rng.random() < 0.5 else open_.add)(Contact(thing.name, thing.name))
+        if thing.copies > 1 and not thing.is_ghost:
+            (collide.append if rng.random() < 0.5 else open_.add)(ContactRequirement(thing.name, thing.name))
     eyes = []
     for i in range(lasers):
         sharp = rng.random()
         drawn = {thing.name: rng.random() for thing in things}
         eyes.append(
-            Laser(
+            LaserEntity(
                 f"l{i}",
                 frozenset(name for name, d in drawn.items() if d < sharp),
                 frozenset(name for name, d in drawn.items() if sharp <= d < sharp + either),
             )
         )
-    return Case(tuple(things), tuple(collide), frozenset(open_), tuple(eyes))
+    return LayerCase(tuple(things), tuple(collide), frozenset(open_), tuple(eyes))
 
 
 def _oddity(rng: random.Random) -> tuple[str, str, int, bool]:
@@ -89,23 +116,23 @@ def _oddity(rng: random.Random) -> tuple[str, str, int, bool]:
     return ("map" if dice < 0.15 else "bodies", "", 2 if 0.15 < dice < 0.25 else 1, dice > 0.95)
 
 
-def planted(rng: random.Random, entities: int, lasers: int, layers: int, largest: int) -> Case:
+def planted(rng: random.Random, entities: int, lasers: int, layers: int, largest: int) -> LayerCase:
     """What a world of so many layers does: a case of which one knows that ``layers`` are enough."""
     names = [f"e{i}" for i in range(entities)]
     groups = [rng.sample(names, rng.randint(2, largest)) for _ in range(layers)]
-    pairs = {Contact(a, b) for group in groups for a, b in combinations(group, 2)}
+    pairs = {ContactRequirement(a, b) for group in groups for a, b in combinations(group, 2)}
     eyes = []
     for i in range(lasers):
         watched = rng.sample(groups, min(layers, rng.randint(1, 3)))
-        eyes.append(Laser(f"l{i}", frozenset(name for group in watched for name in group)))
-    return Case(tuple(map(Entity, names)), tuple(sorted(pairs)), lasers=tuple(eyes))
+        eyes.append(LaserEntity(f"l{i}", frozenset(name for group in watched for name in group)))
+    return LayerCase(tuple(map(LayerEntity, names)), tuple(sorted(pairs)), lasers=tuple(eyes))
 
 
 Layer = tuple[int, int]
 """Members and lasers that watch, as bits."""
 
 
-def fewest_layers(case: Case) -> int:
+def fewest_layers(case: LayerCase) -> int:
     """The optimum by exhaustive search, which shares nothing with the planner but the meaning of a case.
 
     Every requirement is put into a layer: one that has it already, one that can take it, or a new one; the
@@ -114,7 +141,7 @@ def fewest_layers(case: Case) -> int:
     bit = {name: 1 << i for i, name in enumerate(case.names)}
     laser_bit = {laser.name: 1 << i for i, laser in enumerate(case.lasers)}
     apart = {bit[a]: sum(bit[b] for b in case.names if case.relation(a, b) == "apart") for a in case.names}
-    blind = {laser_bit[laser.name]: _bits(bit, case.blind(laser)) for laser in case.lasers}
+    blind = {laser_bit[laser.name]: _bits(bit, case.blind_set(laser)) for laser in case.lasers}
     contacts = [(bit[c.a] | bit[c.b], 0) for c in case.collide]
     sights = [(bit[name], laser_bit[laser.name]) for laser in case.lasers for name in laser.sees]
 

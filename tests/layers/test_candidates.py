@@ -8,9 +8,9 @@ from itertools import combinations
 
 import pytest
 
-from kit.layers.candidates import Rows, collision_graph, find_candidates, sharing_graph, visible_sets
+from kit.layers.candidates import RequirementRows, find_candidates, sharing_graph, visible_sets
 from kit.layers.examples import EXAMPLES
-from kit.layers.requirements import Case, Contact, Entity, Laser
+from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
 from tests.layers.cases import cocktail_party, graph, random_case, random_graph
 
 
@@ -18,9 +18,9 @@ def test_the_slides_have_exactly_six_maximal_cliques() -> None:
     assert len(find_candidates(EXAMPLES["slides"]).layers) == 6
 
 
-def test_the_collision_graph_has_the_twelve_edges() -> None:
-    drawn = collision_graph(EXAMPLES["slides"])
-    assert (drawn.number_of_nodes(), drawn.number_of_edges()) == (8, 12)
+def test_the_slides_case_has_eight_entities_and_twelve_edges() -> None:
+    case = EXAMPLES["slides"]
+    assert (len(case.names), len(set(case.edges()))) == (8, 12)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -28,10 +28,10 @@ def test_a_candidate_is_a_layer_that_nothing_can_join(seed: int) -> None:
     """Maximal among the cliques of what some set of lasers may see."""
     case = random_case(random.Random(seed), 7, 3, 0.4, odd=False)
     found = find_candidates(case)
-    assert found.complete
+    assert found.is_complete
     for layer in found.layers:
         assert all(case.relation(a, b) != "apart" for a, b in combinations(layer, 2))
-        watchers = [laser for laser in case.lasers if laser.sees and layer.isdisjoint(case.blind(laser))]
+        watchers = [laser for laser in case.lasers if laser.sees and layer.isdisjoint(case.blind_set(laser))]
         joining = {
             name
             for name in set(case.names) - layer
@@ -39,8 +39,8 @@ def test_a_candidate_is_a_layer_that_nothing_can_join(seed: int) -> None:
             and all(laser.sighting(name) != "blind" for laser in watchers)
         }
         # whoever could join the layer with all its lasers is told apart by a laser that no requirement needs here
-        served = Rows(case).served_by(layer)
-        assert all(Rows(case).served_by(layer | {name}) <= served for name in joining)
+        served = RequirementRows(case).served_by(layer)
+        assert all(RequirementRows(case).served_by(layer | {name}) <= served for name in joining)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -52,7 +52,7 @@ def test_every_requirement_has_a_candidate(seed: int) -> None:
 
 def test_a_layer_serves_a_sighting_only_if_the_laser_may_see_all_of_it() -> None:
     case = graph("a-b b-c", lasers={"eye": "a b"})
-    rows = Rows(case)
+    rows = RequirementRows(case)
     assert rows.served_by(frozenset("ab")) == {0, 2, 3}
     assert rows.served_by(frozenset("bc")) == {1}
 
@@ -62,10 +62,10 @@ def test_a_layer_may_use_pairs_that_are_left_open() -> None:
 
 
 def test_who_must_not_meet_its_own_copies_is_in_no_layer() -> None:
-    case = Case(
-        (Entity("a"), Entity("b"), Entity("lot", copies=2)),
-        (Contact("a", "b"),),
-        frozenset({Contact("a", "lot")}),
+    case = LayerCase(
+        (LayerEntity("a"), LayerEntity("b"), LayerEntity("lot", copies=2)),
+        (ContactRequirement("a", "b"),),
+        frozenset({ContactRequirement("a", "lot")}),
     )
     assert "lot" not in sharing_graph(case)
     assert find_candidates(case).layers == (frozenset("ab"),)
@@ -80,18 +80,18 @@ def test_lasers_with_the_same_blind_spots_are_searched_once() -> None:
 def test_a_search_cut_short_says_so_and_still_serves_everything(limits: dict[str, float]) -> None:
     case = cocktail_party(10)  # 1,024 candidates
     found = find_candidates(case, **limits)  # type: ignore[arg-type]  # one of the two, by its name
-    assert not found.complete
+    assert not found.is_complete
     assert len(found.layers) < 1024
     assert frozenset().union(*found.covers) == frozenset(range(len(case.requirements)))
 
 
 def test_very_many_different_lasers_do_not_take_for_ever() -> None:
     names = [f"e{i}" for i in range(16)]
-    lasers = tuple(Laser(f"l{i}", frozenset(names) - {name}) for i, name in enumerate(names))
-    case = Case(tuple(map(Entity, names)), (), lasers=lasers)
+    lasers = tuple(LaserEntity(f"l{i}", frozenset(names) - {name}) for i, name in enumerate(names))
+    case = LayerCase(tuple(map(LayerEntity, names)), (), lasers=lasers)
     start = time.monotonic()
     found = find_candidates(case)
-    assert not found.complete
+    assert not found.is_complete
     assert time.monotonic() - start < 20
 
 

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from kit.layers.case_sources import UnknownTask, open_task, solve_task
+from kit.layers.case_sources import UnknownPlanningTask, open_task, solve_task
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import read_requirements, written
+from kit.layers.reading import read_requirements, requirements_text
 from kit.world.problems import WorldError
 from tests.layers.conftest import WriteFiles
 
 
 def test_an_example_a_map_a_world_its_folder_and_requirements(yard: Path, tmp_path: Path) -> None:
     asked = tmp_path / "slides.yaml"
-    asked.write_text(written(EXAMPLES["slides"]))
+    asked.write_text(requirements_text(EXAMPLES["slides"]))
     assert open_task("slides").case == EXAMPLES["slides"]
     assert open_task(str(asked)).case == EXAMPLES["slides"]
     assert open_task("maze").world is not None
@@ -58,7 +58,7 @@ def test_env_in_a_world_reads_only_what_is_given(write: WriteFiles) -> None:
     ],
 )
 def test_a_name_that_means_nothing_offers_the_nearest(name: str, words: str) -> None:
-    with pytest.raises(UnknownTask, match=words):
+    with pytest.raises(UnknownPlanningTask, match=words):
         open_task(name)
 
 

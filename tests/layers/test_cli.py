@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 
 from kit.cli import main
 from kit.layers.examples import EXAMPLES
-from kit.layers.flatland.layer_lists import read_world
+from kit.layers.flatland.layer_lists import read_world_layers
 from tests.layers.conftest import YARD, WriteFiles
 
 
@@ -120,7 +120,7 @@ def test_apply_writes_checks_and_then_there_is_nothing_to_do(yard: Path) -> None
     result = kit("plan", yard, "--apply")
     assert result.exit_code == 0
     assert "Written: 3 files" in result.stdout
-    assert len(read_world(yard).layer_bits) == 4
+    assert len(read_world_layers(yard).layer_bits) == 4
     assert "nothing to change" in kit("plan", yard, "--patch").stdout.lower()
     assert kit("check", yard).exit_code == 0
 

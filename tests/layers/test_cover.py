@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kit.layers.cover import Cover, minimum_cover
+from kit.layers.cover import SetCover, minimum_cover
 
 # The affine plane of order three: twelve lines, nine points. Every line is hit by five points, not by four, but a
 # third of every point hits each line once: the fractional cover is three (Fulkerson, Nemhauser and Trotter 1974).
@@ -31,12 +31,12 @@ def matrices(draw: st.DrawFn) -> tuple[list[frozenset[int]], int]:
     return [*columns, *(frozenset({row}) for row in range(rows) if not any(row in c for c in columns))], rows
 
 
-def check(cover: Cover, columns: list[frozenset[int]], rows: int) -> None:
+def check(cover: SetCover, columns: list[frozenset[int]], rows: int) -> None:
     """Whether a cover is one, and its reasons hold for every column of the matrix."""
     assert frozenset().union(*(columns[c] for c in cover.chosen)) == frozenset(range(rows))
     assert cover.bound <= len(cover.chosen)
-    parts: list[dict[int, Fraction]] = [{row: Fraction(1)} for row in cover.packed]
-    parts += cover.weighted
+    parts: list[dict[int, Fraction]] = [{row: Fraction(1)} for row in cover.packed_rows]
+    parts += cover.row_weights
     for column in columns:
         touched = [part for part in parts if part.keys() & column]
         assert len(touched) <= 1
@@ -49,7 +49,7 @@ def test_no_choice_of_columns_is_smaller(matrix: tuple[list[frozenset[int]], int
     columns, rows = matrix
     cover = minimum_cover(columns, rows)
     check(cover, columns, rows)
-    assert cover.proved
+    assert cover.is_proved
     everything = frozenset(range(rows))
     smaller = combinations(columns, len(cover.chosen) - 1) if cover.chosen else ()
     assert not any(frozenset().union(*choice) == everything for choice in smaller)
@@ -69,15 +69,15 @@ def test_the_kind_of_reason(
     """Packed rows where they reach; weights of one half around an odd cycle."""
     cover = minimum_cover(columns, rows)
     check(cover, columns, rows)
-    assert (len(cover.chosen), cover.bound, len(cover.packed)) == (size, size, packed)
-    assert [sum(part.values()) for part in cover.weighted] == ([] if weight is None else [weight])
+    assert (len(cover.chosen), cover.bound, len(cover.packed_rows)) == (size, size, packed)
+    assert [sum(part.values()) for part in cover.row_weights] == ([] if weight is None else [weight])
 
 
 def test_where_only_the_search_proves_it() -> None:
     cover = minimum_cover(POINTS, 12)
     check(cover, POINTS, 12)
     assert (len(cover.chosen), cover.bound) == (5, 5)
-    reasons = len(cover.packed) + sum(-(-sum(part.values()) // 1) for part in cover.weighted)
+    reasons = len(cover.packed_rows) + sum(-(-sum(part.values()) // 1) for part in cover.row_weights)
     assert reasons == 3
 
 
@@ -85,7 +85,7 @@ def test_independent_parts_are_settled_one_by_one() -> None:
     columns = [frozenset(row + 5 * k for row in column) for k in range(4) for column in CYCLE]
     cover = minimum_cover(columns, 20)
     check(cover, columns, 20)
-    assert (len(cover.chosen), cover.bound, len(cover.weighted)) == (12, 12, 4)
+    assert (len(cover.chosen), cover.bound, len(cover.row_weights)) == (12, 12, 4)
 
 
 def test_a_row_that_no_column_covers_is_an_error() -> None:
@@ -101,4 +101,4 @@ def test_out_of_time_it_still_covers_and_bounds() -> None:
     check(quick, columns, 60)
     best = minimum_cover(columns, 60)
     assert quick.bound <= best.bound <= len(best.chosen) <= len(quick.chosen)
-    assert best.proved
+    assert best.is_proved

@@ -6,40 +6,40 @@ import random
 
 import pytest
 
-from kit.layers.assignment import Assignment, NamedLayer
+from kit.layers.assignment import LayerAssignment, NamedLayer
 from kit.layers.drawing import (
-    MOST_IN_PICTURE,
-    Glyphs,
-    Line,
-    Span,
+    MAX_ENTITIES_IN_PICTURE,
+    DrawingLine,
+    DrawingSpan,
+    GlyphStyle,
     draw_assignment,
     draw_case,
     draw_graph,
     draw_matrix,
-    plain,
+    to_plain_lines,
 )
 from kit.layers.examples import EXAMPLES
-from kit.layers.greedy import greedy
-from kit.layers.planning import solve
-from kit.layers.requirements import Contact
+from kit.layers.greedy import run_greedy
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement
 from tests.layers.cases import graph, random_graph
 
 SLIDES = EXAMPLES["slides-lasers"]
 
 
-def styles(lines: list[Line]) -> set[str]:
+def styles(lines: list[DrawingLine]) -> set[str]:
     return {span.style for line in lines for span in line}
 
 
-def ink(lines: list[Line], style: str) -> int:
+def ink(lines: list[DrawingLine], style: str) -> int:
     return sum(len(span.text) for line in lines for span in line if span.style == style)
 
 
 @pytest.mark.parametrize("glyphs", ["braille", "ascii"])
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_every_name_is_in_the_picture_and_the_picture_fits(name: str, glyphs: Glyphs) -> None:
+def test_every_name_is_in_the_picture_and_the_picture_fits(name: str, glyphs: GlyphStyle) -> None:
     case = EXAMPLES[name]
-    text = plain(draw_graph(case, glyphs=glyphs))
+    text = to_plain_lines(draw_graph(case, glyphs=glyphs))
     assert len(text) == 17
     assert max(map(len, text)) <= 80
     assert all(any(entity in line for line in text) for entity in case.names)
@@ -54,11 +54,13 @@ def test_it_fits_any_size(width: int, height: int) -> None:
 
 
 @pytest.mark.parametrize("glyphs", ["braille", "ascii"])
-def test_a_struck_edge_is_fainter_and_one_in_the_group_is_thicker_without_any_colour(glyphs: Glyphs) -> None:
+def test_a_struck_edge_is_fainter_and_one_in_the_group_is_thicker_without_any_colour(
+    glyphs: GlyphStyle,
+) -> None:
     case = graph("a-b")
     ways = [
-        plain(draw_graph(case, glyphs=glyphs, **marks))
-        for marks in ({}, {"struck": {Contact("a", "b")}}, {"group": {"a", "b"}})
+        to_plain_lines(draw_graph(case, glyphs=glyphs, **marks))
+        for marks in ({}, {"struck": {ContactRequirement("a", "b")}}, {"group": {"a", "b"}})
     ]
     assert len({"\n".join(way) for way in ways}) == 3
 
@@ -72,32 +74,32 @@ def test_a_struck_edge_is_fainter_and_one_in_the_group_is_thicker_without_any_co
 
 
 def test_a_step_of_the_slides_method_shows_all_three_kinds_of_edge() -> None:
-    run = greedy(SLIDES)
-    lines = draw_graph(SLIDES, struck=run.struck_before(2), group=run.collision_steps[2].layer.members)
+    run = run_greedy(SLIDES)
+    lines = draw_graph(SLIDES, struck=run.covered_before(2), group=run.collision_steps[2].layer.members)
     assert styles(lines) >= {"edge", "struck", "group edge", "group", "map", "body"}
 
 
 def test_a_laser_sends_beams() -> None:
     lines = draw_graph(SLIDES, laser="Ls3")
     assert {"beam", "laser"} <= styles(lines)
-    assert any("<Ls3>" in line for line in plain(lines))
+    assert any("<Ls3>" in line for line in to_plain_lines(lines))
 
 
 def test_few_lines_cross() -> None:
     """A ring that is listed in a bad order is drawn as a ring: no line through the middle."""
     case = graph("a-d d-b b-e e-c c-f f-a")
-    middle = plain(draw_graph(case, height=17))[8]
+    middle = to_plain_lines(draw_graph(case, height=17))[8]
     assert middle[30:50].strip() == ""
 
 
 def test_the_spans_are_the_text() -> None:
     for lines in (draw_graph(SLIDES), draw_matrix(SLIDES)):
-        assert plain(lines) == ["".join(span.text for span in line).rstrip() for line in lines]
+        assert to_plain_lines(lines) == ["".join(span.text for span in line).rstrip() for line in lines]
 
 
 def test_the_matrix_has_a_mark_for_every_pair_and_laser() -> None:
     case = graph("a-b b-c", either="a-c", lasers={"eye": "a"})
-    assert plain(draw_matrix(case, struck={Contact("a", "b")}, group={"b", "c"})) == [
+    assert to_plain_lines(draw_matrix(case, struck={ContactRequirement("a", "b")}, group={"b", "c"})) == [
         "       1 2 3",
         "1 a    \\",
         "2*b    x \\",
@@ -108,19 +110,19 @@ def test_the_matrix_has_a_mark_for_every_pair_and_laser() -> None:
 
 @pytest.mark.parametrize("count", [9, 10, 30, 60])
 def test_a_matrix_of_up_to_sixty_fits_eighty_columns(count: int) -> None:
-    lines = plain(draw_matrix(random_graph(random.Random(1), count, 0.3)))
+    lines = to_plain_lines(draw_matrix(random_graph(random.Random(1), count, 0.3)))
     assert max(map(len, lines)) <= 80
     assert len(lines) == count + len(str(count))
 
 
 def test_too_many_for_a_picture_become_a_matrix() -> None:
-    many = random_graph(random.Random(1), MOST_IN_PICTURE + 1, 0.1)
+    many = random_graph(random.Random(1), MAX_ENTITIES_IN_PICTURE + 1, 0.1)
     assert draw_case(many) == draw_matrix(many)
     assert draw_case(SLIDES) == draw_graph(SLIDES)
 
 
 def test_the_tables_name_every_layer_entity_and_laser_within_eighty_columns() -> None:
-    plan = solve(SLIDES)
+    plan = solve_layers(SLIDES)
     lines = draw_assignment(SLIDES, plan.assignment)
     assert max(map(len, lines)) <= 80
     text = "\n".join(lines)
@@ -130,7 +132,7 @@ def test_the_tables_name_every_layer_entity_and_laser_within_eighty_columns() ->
 
 def test_who_is_in_no_layer_is_told_what_to_write() -> None:
     case = graph("a-b", lasers={"eye": ""})
-    lines = draw_assignment(case, Assignment((NamedLayer("x", frozenset("a")),), {}))
+    lines = draw_assignment(case, LayerAssignment((NamedLayer("x", frozenset("a")),), {}))
     assert any(line.startswith("b") and "layers: []" in line for line in lines)
     assert any(line.startswith("eye") and "layers: []" in line for line in lines)
 
@@ -139,9 +141,12 @@ def test_the_cursor_stands_out_on_one_mark_and_changes_no_character() -> None:
     rows, columns = len(SLIDES.names), len(SLIDES.names)
     for at in ((0, 0), (3, 1), (rows - 1, columns - 1), (rows, 0), (rows + 2, columns - 1)):
         lines = draw_matrix(SLIDES, cursor=at)
-        assert plain(lines) == plain(draw_matrix(SLIDES))
+        assert to_plain_lines(lines) == to_plain_lines(draw_matrix(SLIDES))
         head = len(lines) - rows - len(SLIDES.lasers)
         marked = [number for number, line in enumerate(lines) if ink([line], "cursor")]
         assert marked == [head + at[0]]
         assert ink(lines, "cursor") == 1
-    assert draw_matrix(graph("a-b"), cursor=(1, 0))[2][1:3] == (Span("", "edge"), Span("#", "cursor"))
+    assert draw_matrix(graph("a-b"), cursor=(1, 0))[2][1:3] == (
+        DrawingSpan("", "edge"),
+        DrawingSpan("#", "cursor"),
+    )

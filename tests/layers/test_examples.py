@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.planning import solve
+from kit.layers.planning import solve_layers
 
 LAYERS = {
     "two": 1,
@@ -24,7 +24,7 @@ LAYERS = {
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_example_takes_the_layers_it_is_there_for(name: str) -> None:
-    plan = solve(EXAMPLES[name])
+    plan = solve_layers(EXAMPLES[name])
     assert plan.size == LAYERS[name]
     assert plan.certificate.bound == plan.size  # each can be proved by hand
     assert EXAMPLES[name].title

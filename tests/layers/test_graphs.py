@@ -7,16 +7,16 @@ import re
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.graphs import graphviz, mermaid
-from kit.layers.planning import solve
-from kit.layers.requirements import Case, Contact, Entity
+from kit.layers.graphs import graphviz_text, mermaid_text
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity
 from tests.layers.cases import graph
 
 SLIDES = EXAMPLES["slides-lasers"]
 
 
 def test_graphviz_has_every_vertex_edge_and_beam() -> None:
-    text = graphviz(SLIDES, solve(SLIDES).assignment)
+    text = graphviz_text(SLIDES, solve_layers(SLIDES).assignment)
     assert text.startswith("graph ")
     assert text.count("{") == text.count("}") == 1
     assert len(re.findall(r"shape=(box|ellipse)", text)) == 8
@@ -26,7 +26,7 @@ def test_graphviz_has_every_vertex_edge_and_beam() -> None:
 
 
 def test_mermaid_has_every_vertex_edge_and_beam() -> None:
-    text = mermaid(SLIDES, solve(SLIDES).assignment)
+    text = mermaid_text(SLIDES, solve_layers(SLIDES).assignment)
     assert text.startswith("graph LR\n")
     assert len(re.findall(r"^  e\d+[\[(]", text, re.MULTILINE)) == 8
     assert len(re.findall(r"^  e\d+ ---\|[CL, \d]+\| e\d+$", text, re.MULTILINE)) == 12
@@ -35,18 +35,18 @@ def test_mermaid_has_every_vertex_edge_and_beam() -> None:
 
 def test_pairs_left_open_are_dashed_and_no_plan_means_no_labels() -> None:
     case = graph("a-b", either="b-c")
-    assert "style=dashed" in graphviz(case)
-    assert "-.-" in mermaid(case)
-    assert "label" not in graphviz(case)
-    assert "|" not in mermaid(case)
+    assert "style=dashed" in graphviz_text(case)
+    assert "-.-" in mermaid_text(case)
+    assert "label" not in graphviz_text(case)
+    assert "|" not in mermaid_text(case)
 
 
 @pytest.mark.parametrize("name", ['a"b', "a\\", "a\nb", "end", "a[b]", "a|b", "ä", "a;b", "a#b", "]"])
 def test_odd_names_do_not_break_out(name: str) -> None:
-    case = Case((Entity(name), Entity("b")), (Contact(name, "b"),))
-    dot = graphviz(case)
-    assert len(dot.splitlines()) == len(graphviz(graph("a-b")).splitlines())
+    case = LayerCase((LayerEntity(name), LayerEntity("b")), (ContactRequirement(name, "b"),))
+    dot = graphviz_text(case)
+    assert len(dot.splitlines()) == len(graphviz_text(graph("a-b")).splitlines())
     assert re.sub(r'"(\\.|[^"\\])*"', "", dot).count('"') == 0
-    drawn = mermaid(case, solve(case).assignment)
+    drawn = mermaid_text(case, solve_layers(case).assignment)
     assert len(drawn.splitlines()) == 4
     assert all(re.fullmatch(r'  e\d\(\["[\w .,:#;-]*"\]\)', line) for line in drawn.splitlines()[1:3])

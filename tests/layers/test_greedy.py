@@ -8,11 +8,11 @@ from typing import TypeVar
 
 import pytest
 
-from kit.layers.assignment import breaches
+from kit.layers.assignment import find_breaches
 from kit.layers.examples import EXAMPLES
-from kit.layers.greedy import collision_step, greedy
-from kit.layers.planning import solve
-from kit.layers.requirements import Case, Contact, Entity, Sight
+from kit.layers.greedy import grow_collision_layer, run_greedy
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity, SightRequirement
 from tests.layers.cases import graph, random_case
 
 T = TypeVar("T")
@@ -21,24 +21,24 @@ SLIDES = EXAMPLES["slides-lasers"]
 
 
 def test_the_first_step_is_the_slides_first_step() -> None:
-    step = greedy(SLIDES).collision_steps[0]
-    assert step.edge == Contact("Map1", "M4.B1")
+    step = run_greedy(SLIDES).collision_steps[0]
+    assert step.edge == ContactRequirement("Map1", "M4.B1")
     assert step.choices == SLIDES.collide
     assert [(growth.added, growth.choices) for growth in step.growth] == [("M4.B2", ("M4.B2",))]
     assert step.layer.members == {"Map1", "M4.B1", "M4.B2"}
-    assert step.struck == SLIDES.collide[:3]
+    assert step.covered_edges == SLIDES.collide[:3]
 
 
 def test_a_struck_edge_is_used_again() -> None:
     """The slides say so of M4.B1 - M4.B2."""
-    second = greedy(SLIDES).collision_steps[1]
+    second = run_greedy(SLIDES).collision_steps[1]
     assert second.layer.members == {"M4.B1", "M4.B2", "M2"}
-    assert Contact("M4.B1", "M4.B2") not in second.choices
+    assert ContactRequirement("M4.B1", "M4.B2") not in second.choices
 
 
 def test_each_laser_meets_every_fate_the_slides_show() -> None:
-    run = greedy(SLIDES)
-    assert [(step.laser, [group.fate for group in step.groups]) for step in run.laser_steps] == [
+    run = run_greedy(SLIDES)
+    assert [(step.laser, [group.outcome for group in step.groups]) for step in run.laser_steps] == [
         ("Ls1", ["new layer", "inside another", "new layer", "inside another"]),
         ("Ls2", ["inside another", "new layer", "inside another", "new layer", "inside another"]),
         ("Ls3", ["known group", "inside another", "inside another", "inside another", "whole layer"]),
@@ -56,18 +56,18 @@ def test_each_laser_meets_every_fate_the_slides_show() -> None:
 
 @pytest.mark.parametrize("seed", range(300))
 def test_the_slides_case_takes_six_and_four_in_whatever_order(seed: int) -> None:
-    run = greedy(SLIDES, choose=random.Random(seed).choice)
+    run = run_greedy(SLIDES, choose=random.Random(seed).choice)
     assert (len(run.collision_steps), run.size) == (6, 10)
-    assert breaches(SLIDES, run.assignment) == ()
+    assert find_breaches(SLIDES, run.assignment) == ()
 
 
 def test_the_player_can_choose() -> None:
     def last(choices: Sequence[T], /) -> T:
         return choices[-1]
 
-    step = greedy(SLIDES, choose=last).collision_steps[0]
+    step = run_greedy(SLIDES, choose=last).collision_steps[0]
     assert step.edge == SLIDES.collide[-1]
-    assert collision_step(SLIDES, (SLIDES.collide[4],), "C9").layer.name == "C9"
+    assert grow_collision_layer(SLIDES, (SLIDES.collide[4],), "C9").layer.name == "C9"
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_the_player_can_choose() -> None:
     [("greedy-trap", 4, 3, 0), ("laser-trap", 4, 3, 0), ("unseen", 2, 3, 1), ("slides", 6, 6, 0)],
 )
 def test_where_the_method_falls_short(name: str, by_hand: int, fewest: int, missed: int) -> None:
-    run, plan = greedy(EXAMPLES[name]), solve(EXAMPLES[name])
+    run, plan = run_greedy(EXAMPLES[name]), solve_layers(EXAMPLES[name])
     assert (run.size, plan.size, len(run.missed)) == (by_hand, fewest, missed)
 
 
@@ -83,36 +83,40 @@ def test_where_the_method_falls_short(name: str, by_hand: int, fewest: int, miss
 def test_it_never_makes_a_contact_or_a_sighting_that_nobody_asked_for(seed: int) -> None:
     rng = random.Random(seed)
     case = random_case(rng, 8, 2, rng.random())
-    run = greedy(case, choose=rng.choice)
-    wrong = {breach.what: breach.wanted for breach in breaches(case, run.assignment)}
+    run = run_greedy(case, choose=rng.choice)
+    wrong = {breach.requirement: breach.is_missing for breach in find_breaches(case, run.assignment)}
     assert not any(not wanted for wanted in wrong.values())
     assert set(wrong) == set(run.missed)
-    assert run.size + len(run.missed) >= solve(case).size
+    assert run.size + len(run.missed) >= solve_layers(case).size
 
 
 def test_what_it_misses_is_what_collides_with_nothing() -> None:
     case = graph("a-b", lasers={"eye": "a lamp", "ear": "lamp"})
-    run = greedy(case)
-    assert run.missed == (Sight("eye", "lamp"), Sight("ear", "lamp"))
+    run = run_greedy(case)
+    assert run.missed == (SightRequirement("eye", "lamp"), SightRequirement("ear", "lamp"))
     assert run.assignment.watches == {"eye": ("L1",), "ear": ()}
 
 
 def test_the_edges_struck_before_a_step_are_those_of_the_steps_before() -> None:
-    run = greedy(SLIDES)
+    run = run_greedy(SLIDES)
     for number, step in enumerate(run.collision_steps):
-        assert run.struck_before(number).isdisjoint(step.choices)
-        assert run.struck_before(number) | set(step.choices) == set(SLIDES.collide)
+        assert run.covered_before(number).isdisjoint(step.choices)
+        assert run.covered_before(number) | set(step.choices) == set(SLIDES.collide)
 
 
 def test_copies_that_meet_nobody_else_get_a_layer_at_the_end() -> None:
-    case = Case(
-        (Entity("a"), Entity("b"), Entity("lot", copies=2)), (Contact("lot", "lot"), Contact("a", "b"))
+    case = LayerCase(
+        (LayerEntity("a"), LayerEntity("b"), LayerEntity("lot", copies=2)),
+        (ContactRequirement("lot", "lot"), ContactRequirement("a", "b")),
     )
-    run = greedy(case)
-    assert [step.edge for step in run.collision_steps] == [Contact("a", "b"), Contact("lot", "lot")]
-    assert breaches(case, run.assignment) == ()
+    run = run_greedy(case)
+    assert [step.edge for step in run.collision_steps] == [
+        ContactRequirement("a", "b"),
+        ContactRequirement("lot", "lot"),
+    ]
+    assert find_breaches(case, run.assignment) == ()
 
 
 def test_pairs_that_are_left_open_are_no_edges() -> None:
-    run = greedy(graph("a-b c-d", either="a-c a-d b-c b-d"))
+    run = run_greedy(graph("a-b c-d", either="a-c a-d b-c b-d"))
     assert run.size == 2

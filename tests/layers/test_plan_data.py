@@ -6,21 +6,21 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from kit.layers.certificate import Certificate
+from kit.layers.certificate import BoundCertificate
 from kit.layers.examples import EXAMPLES
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.world_case import today_case
-from kit.layers.flatland.world_patch import patch_of
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.world_case import current_case
+from kit.layers.flatland.world_patch import build_patch
 from kit.layers.flatland.world_planning import plan_world
-from kit.layers.greedy import greedy
+from kit.layers.greedy import run_greedy
 from kit.layers.plan_data import certificate_data, check_data, greedy_data, patch_data, plan_data, world_data
-from kit.layers.planning import solve
-from kit.layers.requirements import Contact, Requirement, Sight
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement, Requirement, SightRequirement
 
 
 def test_a_plan_comes_back_from_json_as_it_went() -> None:
     case = EXAMPLES["slides-lasers"]
-    plan, run = solve(case), greedy(case)
+    plan, run = solve_layers(case), run_greedy(case)
     facts = json.loads(json.dumps(plan_data(plan, run)))
     assert {layer["name"]: set(layer["holds"]) for layer in facts["layers"]} == {
         layer.name: set(layer.members) for layer in plan.assignment.layers
@@ -37,10 +37,10 @@ def test_a_plan_comes_back_from_json_as_it_went() -> None:
 
 def test_weights_are_exact() -> None:
     weights: dict[Requirement, Fraction] = {
-        Contact("a", "b"): Fraction(1, 3),
-        Sight("l", "a"): Fraction(2, 3),
+        ContactRequirement("a", "b"): Fraction(1, 3),
+        SightRequirement("l", "a"): Fraction(2, 3),
     }
-    assert certificate_data(Certificate((), (weights,))) == {
+    assert certificate_data(BoundCertificate((), (weights,))) == {
         "bound": 1,
         "apart": [],
         "weighted": [
@@ -50,14 +50,14 @@ def test_weights_are_exact() -> None:
 
 
 def test_the_slides_method_says_what_it_leaves_unseen() -> None:
-    facts = greedy_data(greedy(EXAMPLES["unseen"]))
+    facts = greedy_data(run_greedy(EXAMPLES["unseen"]))
     assert facts["unseen"] == [{"laser": "eye", "sees": "lamp"}]
 
 
 def test_a_world_and_its_patch(yard: Path) -> None:
-    plan = plan_world(today_case(slots_of(read_world(yard))))
+    plan = plan_world(current_case(find_layer_lists(read_world_layers(yard))))
     facts = json.loads(
-        json.dumps({**world_data(plan), **check_data(plan), "patch": patch_data(patch_of(plan))})
+        json.dumps({**world_data(plan), **check_data(plan), "patch": patch_data(build_patch(plan))})
     )
     assert (facts["names_today"], facts["size"], facts["needed"], facts["breaches"]) == (6, 4, 4, [])
     assert [Path(file).name for file in facts["patch"]["files"]] == [

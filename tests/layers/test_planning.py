@@ -9,10 +9,10 @@ from itertools import combinations
 
 import pytest
 
-from kit.layers.assignment import breaches
+from kit.layers.assignment import find_breaches
 from kit.layers.examples import EXAMPLES
-from kit.layers.planning import solve
-from kit.layers.requirements import Case, Contact, Sight, fit_together
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement, LayerCase, SightRequirement, layer_conflict
 from tests.layers.cases import (
     bipartite,
     cocktail_party,
@@ -31,10 +31,10 @@ def test_the_same_optimum_as_exhaustive_search_on_a_thousand_cases(seed: int) ->
     rng = random.Random(seed)
     for _ in range(100):
         case = random_case(rng, rng.randint(0, 7), rng.randint(0, 3), rng.random())
-        plan = solve(case)
-        assert plan.optimal
+        plan = solve_layers(case)
+        assert plan.is_optimal
         assert plan.size == fewest_layers(case), case
-        assert breaches(case, plan.assignment) == ()
+        assert find_breaches(case, plan.assignment) == ()
 
 
 def test_the_random_cases_are_not_all_easy() -> None:
@@ -44,7 +44,7 @@ def test_the_random_cases_are_not_all_easy() -> None:
     assert {fewest_layers(case) for case in cases} >= set(range(8))
     assert any(case.either for case in cases)
     assert any(laser.either for case in cases for laser in case.lasers)
-    assert any(e.ghost for case in cases for e in case.entities)
+    assert any(e.is_ghost for case in cases for e in case.entities)
     assert any(c.a == c.b for case in cases for c in case.collide)
 
 
@@ -66,22 +66,22 @@ def test_the_random_cases_are_not_all_easy() -> None:
         (graph("a-b b-c c-a c-d d-e e-c"), 2),
     ],
 )
-def test_families_whose_optimum_is_known(case: Case, optimum: int) -> None:
+def test_families_whose_optimum_is_known(case: LayerCase, optimum: int) -> None:
     """K_n takes one clique, a triangle-free graph one per edge, a cocktail party of n couples the least k with
     n <= binomial(k - 1, ceil(k / 2)) (Gregory and Pullman 1982)."""
-    plan = solve(case)
+    plan = solve_layers(case)
     assert (plan.size, plan.bound) == (optimum, optimum)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_tree_takes_as_many_layers_as_it_has_edges(seed: int) -> None:
     case = random_tree(random.Random(seed), 30)
-    assert solve(case).size == 29
+    assert solve_layers(case).size == 29
 
 
 def test_eight_entities_always_fit_sixteen_layers() -> None:
     rng = random.Random(3)
-    assert all(solve(random_graph(rng, 8, rng.random())).size <= 16 for _ in range(200))
+    assert all(solve_layers(random_graph(rng, 8, rng.random())).size <= 16 for _ in range(200))
 
 
 @pytest.mark.parametrize(
@@ -89,15 +89,15 @@ def test_eight_entities_always_fit_sixteen_layers() -> None:
     [("slides", False, 6), ("slides-lasers", False, 10), ("slides-lasers", True, 9)],
 )
 def test_the_slides(name: str, one_model_never_collides: bool, optimum: int) -> None:
-    case = EXAMPLES[name].with_one_model_free() if one_model_never_collides else EXAMPLES[name]
-    plan = solve(case)
+    case = EXAMPLES[name].without_self_collisions() if one_model_never_collides else EXAMPLES[name]
+    plan = solve_layers(case)
     assert (plan.size, plan.bound, plan.certificate.bound) == (optimum, optimum, optimum)
-    assert len(plan.certificate.apart) == optimum
-    assert all(fit_together(case, one, two) for one, two in combinations(plan.certificate.apart, 2))
+    assert len(plan.certificate.conflicting) == optimum
+    assert all(layer_conflict(case, one, two) for one, two in combinations(plan.certificate.conflicting, 2))
 
 
 def test_the_slides_six_maximal_cliques_are_all_needed() -> None:
-    found = {layer.members for layer in solve(EXAMPLES["slides"]).assignment.layers}
+    found = {layer.members for layer in solve_layers(EXAMPLES["slides"]).assignment.layers}
     assert found == {
         frozenset(names.split())
         for names in (
@@ -112,7 +112,7 @@ def test_the_slides_six_maximal_cliques_are_all_needed() -> None:
 
 
 def test_a_ghost_beacon_saves_the_tutorials_fourth_layer() -> None:
-    plan = solve(EXAMPLES["beacon"])
+    plan = solve_layers(EXAMPLES["beacon"])
     assert {layer.members for layer in plan.assignment.layers} == {
         frozenset({"walls", "robot"}),
         frozenset({"walls"}),
@@ -124,16 +124,16 @@ def test_a_ghost_beacon_saves_the_tutorials_fourth_layer() -> None:
 @pytest.mark.parametrize(
     "make", [lambda rng: random_case(rng, 12, 3, 0.5), lambda rng: planted(rng, 30, 4, 9, 12)]
 )
-def test_the_same_plan_every_time(make: Callable[[random.Random], Case]) -> None:
+def test_the_same_plan_every_time(make: Callable[[random.Random], LayerCase]) -> None:
     case = make(random.Random(11))
-    assert solve(case).assignment == solve(case).assignment
+    assert solve_layers(case).assignment == solve_layers(case).assignment
 
 
 def test_a_planted_plan_is_never_beaten_by_a_worse_one() -> None:
     rng = random.Random(5)
     for _ in range(10):
-        plan = solve(planted(rng, 25, 3, 8, 10))
-        assert plan.optimal
+        plan = solve_layers(planted(rng, 25, 3, 8, 10))
+        assert plan.is_optimal
         # eight groups, and for a laser at worst those it watches once more, without what it must not see
         assert plan.size <= 8 + 3 * 3
 
@@ -143,12 +143,12 @@ def test_a_planted_plan_is_never_beaten_by_a_worse_one() -> None:
     [random_graph(random.Random(1), 45, 0.5), random_case(random.Random(1), 60, 20, 0.3)],
     ids=["too many cliques", "too many lasers"],
 )
-def test_a_plan_cut_short_is_honest(case: Case) -> None:
+def test_a_plan_cut_short_is_honest(case: LayerCase) -> None:
     """Too little time: a plan that does what is asked, with a bound that is one, and no claim that it is the best."""
     start = time.monotonic()
-    plan = solve(case, time_limit=0.3)
+    plan = solve_layers(case, time_limit=0.3)
     assert time.monotonic() - start < 10  # on a machine that does much else besides
-    assert breaches(case, plan.assignment) == ()
+    assert find_breaches(case, plan.assignment) == ()
     assert 0 < plan.bound <= plan.size
     assert plan.certificate.bound <= plan.bound
     assert plan.gap == plan.size - plan.bound
@@ -156,14 +156,18 @@ def test_a_plan_cut_short_is_honest(case: Case) -> None:
 
 def test_no_time_at_all_still_gives_a_plan_and_a_bound() -> None:
     case = EXAMPLES["slides-lasers"]
-    plan = solve(case, time_limit=1e-9)
-    assert breaches(case, plan.assignment) == ()
+    plan = solve_layers(case, time_limit=1e-9)
+    assert find_breaches(case, plan.assignment) == ()
     assert plan.bound <= 10 <= plan.size
 
 
 def test_a_laser_and_a_contact_need_not_cost_two_layers() -> None:
     case = graph("a-b", lasers={"eye": "a b"})
-    plan = solve(case)
+    plan = solve_layers(case)
     assert plan.size == 1
     assert plan.assignment.watches["eye"] == ("C1",)
-    assert plan.case.requirements == (Contact("a", "b"), Sight("eye", "a"), Sight("eye", "b"))
+    assert plan.case.requirements == (
+        ContactRequirement("a", "b"),
+        SightRequirement("eye", "a"),
+        SightRequirement("eye", "b"),
+    )

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.reading import is_world, read_requirements, written
-from kit.layers.requirements import Contact, Entity, Sight
+from kit.layers.reading import is_world_file, read_requirements, requirements_text
+from kit.layers.requirements import ContactRequirement, LayerEntity, SightRequirement
 from kit.world.problems import WorldError
 from tests.layers.cases import random_case
 
@@ -44,35 +44,35 @@ def test_everything_a_file_can_say(tmp_path: Path) -> None:
     case = asked.case
     assert case.title == "A yard"
     assert case.entities == (
-        Entity("hall", "map"),
-        Entity("yard", "map"),
-        Entity("robot", model="robot"),
-        Entity("crane.hook", model="crane", ghost=True),
-        Entity("crane.base", model="crane"),
-        Entity("chair", model="chair", copies=2),
+        LayerEntity("hall", "map"),
+        LayerEntity("yard", "map"),
+        LayerEntity("robot", model="robot"),
+        LayerEntity("crane.hook", model="crane", is_ghost=True),
+        LayerEntity("crane.base", model="crane"),
+        LayerEntity("chair", model="chair", copies=2),
     )
     assert case.collide == (
-        Contact("robot", "hall"),
-        Contact("robot", "crane.base"),
-        Contact("robot", "chair"),
-        Contact("chair", "chair"),
+        ContactRequirement("robot", "hall"),
+        ContactRequirement("robot", "crane.base"),
+        ContactRequirement("robot", "chair"),
+        ContactRequirement("chair", "chair"),
     )
-    assert case.either == {Contact("chair", "hall")}
+    assert case.either == {ContactRequirement("chair", "hall")}
     assert case.laser["robot.front"].sees == {"hall", "chair"}
     assert case.laser["robot.front"].either == {"crane.hook", "crane.base"}
     assert asked.copies == {"robot": ("robot",), "crane": ("crane",), "chair": ("chair1", "chair2")}
     assert asked.bodies == {"crane.base": ("base", "wheel.0")}
     assert asked.world is None
-    assert asked.places[Contact("hall", "robot")].line == 9
-    assert asked.places[Sight("robot.front", "hall")].line == 13
+    assert asked.locations[ContactRequirement("hall", "robot")].line == 9
+    assert asked.locations[SightRequirement("robot.front", "hall")].line == 13
 
 
 def test_a_models_name_stands_for_all_its_parts(tmp_path: Path) -> None:
     text = "models: [robot, crane]\nparts: {crane: [hook, base]}\ncollide: {robot: [crane], crane: [crane]}\n"
     assert read_requirements(file(tmp_path, text)).case.collide == (
-        Contact("robot", "crane.hook"),
-        Contact("robot", "crane.base"),
-        Contact("crane.hook", "crane.base"),
+        ContactRequirement("robot", "crane.hook"),
+        ContactRequirement("robot", "crane.base"),
+        ContactRequirement("crane.hook", "crane.base"),
     )
 
 
@@ -127,7 +127,7 @@ def test_every_mistake_is_named_at_its_place(tmp_path: Path, text: str, places: 
 
 @pytest.mark.parametrize("name", ["missing.yaml", ".", "no/such/folder.yaml", "nul\0.yaml"])
 def test_what_cannot_be_read_says_why(tmp_path: Path, name: str) -> None:
-    for read in (read_requirements, is_world):
+    for read in (read_requirements, is_world_file):
         with pytest.raises(WorldError):
             read(tmp_path / name)
 
@@ -144,9 +144,9 @@ def test_a_contradiction_names_both_lines_and_the_smallest_pair(tmp_path: Path) 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_is_read_as_it_was_written(tmp_path: Path, name: str) -> None:
-    path = file(tmp_path, written(EXAMPLES[name]))
+    path = file(tmp_path, requirements_text(EXAMPLES[name]))
     assert read_requirements(path).case == EXAMPLES[name]
-    assert not is_world(path)
+    assert not is_world_file(path)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -156,7 +156,7 @@ def test_any_case_comes_back(tmp_path: Path, seed: int) -> None:
     things = sorted(case.entities, key=lambda e: e.kind == "bodies")  # maps come first in a file
     entities = tuple(replace(e, model=e.name if e.kind == "bodies" else "", copies=1) for e in things)
     case = replace(case, entities=entities)
-    back = read_requirements(file(tmp_path, written(case))).case
+    back = read_requirements(file(tmp_path, requirements_text(case))).case
     assert set(back.collide) == set(case.collide)
     assert replace(back, collide=case.collide) == case
 
@@ -167,10 +167,10 @@ def test_any_case_comes_back(tmp_path: Path, seed: int) -> None:
 def test_odd_names_survive_writing(tmp_path: Path, name: str) -> None:
     case = replace(
         EXAMPLES["two"],
-        entities=(Entity("w", "map"), Entity(name, model=name)),
-        collide=(Contact(name, "w"),),
+        entities=(LayerEntity("w", "map"), LayerEntity(name, model=name)),
+        collide=(ContactRequirement(name, "w"),),
     )
-    assert read_requirements(file(tmp_path, written(case))).case == case
+    assert read_requirements(file(tmp_path, requirements_text(case))).case == case
 
 
 @pytest.mark.parametrize(
@@ -185,4 +185,4 @@ def test_odd_names_survive_writing(tmp_path: Path, name: str) -> None:
     ],
 )
 def test_a_world_is_told_from_requirements_by_its_keys(tmp_path: Path, text: str, world: bool) -> None:
-    assert is_world(file(tmp_path, text)) == world
+    assert is_world_file(file(tmp_path, text)) == world

@@ -8,25 +8,27 @@ from itertools import combinations
 import pytest
 
 from kit.layers.examples import EXAMPLES
-from kit.layers.planning import solve
-from kit.layers.relaxation import give_up, tolerate
-from kit.layers.requirements import Contact, Sight
+from kit.layers.planning import solve_layers
+from kit.layers.relaxation import allow_unwanted, drop_requirements
+from kit.layers.requirements import ContactRequirement, SightRequirement
 from tests.layers.cases import fewest_layers, graph, random_case
 
 
 def test_twenty_edges_without_a_triangle_give_up_four() -> None:
-    found = give_up(EXAMPLES["too-many"])
+    found = drop_requirements(EXAMPLES["too-many"])
     assert found is not None
-    assert (len(found.what), found.at_least, found.fewest, found.plan.size) == (4, 4, True, 16)
+    assert (len(found.requirements), found.lower_bound, found.is_fewest, found.plan.size) == (4, 4, True, 16)
 
 
 def test_or_allow_a_single_contact() -> None:
-    found = tolerate(solve(EXAMPLES["too-many"]))
+    found = allow_unwanted(solve_layers(EXAMPLES["too-many"]))
     assert found is not None
-    assert len(found.what) == 1
+    assert len(found.requirements) == 1
     assert found.plan.size <= 16
     assert all(
-        EXAMPLES["too-many"].relation(c.a, c.b) == "apart" for c in found.what if isinstance(c, Contact)
+        EXAMPLES["too-many"].relation(c.a, c.b) == "apart"
+        for c in found.requirements
+        if isinstance(c, ContactRequirement)
     )
 
 
@@ -35,22 +37,22 @@ def test_or_allow_a_single_contact() -> None:
 def test_nothing_smaller_can_be_given_up(seed: int, limit: int) -> None:
     """Every smaller choice of requirements to give up leaves too many layers."""
     case = random_case(random.Random(seed), 4, 1, 0.6, odd=False)
-    found = give_up(case, limit=limit)
+    found = drop_requirements(case, limit=limit)
     assert found is not None
-    assert found.fewest
-    assert fewest_layers(case.without(found.what)) <= limit
-    for fewer in combinations(case.requirements, len(found.what) - 1) if found.what else ():
-        assert fewest_layers(case.without(fewer)) > limit
+    assert found.is_fewest
+    assert fewest_layers(case.without_requirements(found.requirements)) <= limit
+    for fewer in combinations(case.requirements, len(found.requirements) - 1) if found.requirements else ():
+        assert fewest_layers(case.without_requirements(fewer)) > limit
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_tolerated_is_enough(seed: int) -> None:
-    plan = solve(random_case(random.Random(seed), 6, 2, 0.5, odd=False))
-    found = tolerate(plan, limit=2)
+    plan = solve_layers(random_case(random.Random(seed), 6, 2, 0.5, odd=False))
+    found = allow_unwanted(plan, limit=2)
     assert found is not None
     assert found.plan.size <= 2
-    for what in found.what:
-        if isinstance(what, Contact):
+    for what in found.requirements:
+        if isinstance(what, ContactRequirement):
             assert plan.case.relation(what.a, what.b) == "apart"
         else:
             assert plan.case.laser[what.laser].sighting(what.entity) == "blind"
@@ -58,22 +60,22 @@ def test_what_is_tolerated_is_enough(seed: int) -> None:
 
 def test_nothing_is_sacrificed_where_everything_fits() -> None:
     case = EXAMPLES["slides-lasers"]
-    given, allowed = give_up(case), tolerate(solve(case))
+    given, allowed = drop_requirements(case), allow_unwanted(solve_layers(case))
     assert given is not None
     assert allowed is not None
-    assert given.what == allowed.what == ()
+    assert given.requirements == allowed.requirements == ()
 
 
 def test_a_layer_of_two_maps_is_never_proposed() -> None:
     case = graph("m1-a m2-a", maps="m1 m2", lasers={})
-    assert tolerate(solve(case), limit=1) is None
-    given = give_up(case, limit=1)
+    assert allow_unwanted(solve_layers(case), limit=1) is None
+    given = drop_requirements(case, limit=1)
     assert given is not None
-    assert len(given.what) == 1
+    assert len(given.requirements) == 1
 
 
 def test_a_sighting_can_be_what_is_given_up() -> None:
     case = graph("a-b", lasers={"eye": "a"})
-    given = give_up(case, limit=1)
+    given = drop_requirements(case, limit=1)
     assert given is not None
-    assert given.what in ((Contact("a", "b"),), (Sight("eye", "a"),))
+    assert given.requirements in ((ContactRequirement("a", "b"),), (SightRequirement("eye", "a"),))

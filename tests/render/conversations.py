@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from kit.render.graph_data import Conversation, Item
+from kit.render.graph_data import GraphData, GraphItem
 
 WORLD = "/flatland_server"
 
 
-def item(label: str, senders: str, receivers: str, *broken: tuple[str, str]) -> Item:
+def item(label: str, senders: str, receivers: str, *broken: tuple[str, str]) -> GraphItem:
     """``label`` with ``()`` at its end is a service."""
-    return Item(
+    return GraphItem(
         label,
         label.removesuffix("()"),
         tuple(senders.split()),
@@ -18,9 +18,9 @@ def item(label: str, senders: str, receivers: str, *broken: tuple[str, str]) -> 
     )
 
 
-def talk(*items: Item, alone: str = "") -> Conversation:
+def talk(*items: GraphItem, alone: str = "") -> GraphData:
     nodes = [node for each in items for node in (*each.senders, *each.receivers)]
-    return Conversation(tuple(dict.fromkeys((*nodes, *alone.split()))), items)
+    return GraphData(tuple(dict.fromkeys((*nodes, *alone.split()))), items)
 
 
 MAZE = talk(

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kit.geometry import Pose
-from kit.render.scene import Body, Disc, FloatArray, Mark, Scene
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody, SceneMark
 from kit.render.trail import Trail
 
 BEAMS, RANGE = 91, 10.0
@@ -59,10 +59,10 @@ def maze() -> FloatArray:
     return box_walls(BOXES)
 
 
-def robot(pose: Pose, model: str = "serp") -> Body:
+def robot(pose: Pose, model: str = "serp") -> SceneBody:
     cos, sin = math.cos(pose.theta), math.sin(pose.theta)
     turn = np.array(((cos, sin), (-sin, cos)))
-    return Body(model, pose, tuple(part @ turn + pose[:2] for part in FOOTPRINTS), robot=True)
+    return SceneBody(model, pose, tuple(part @ turn + pose[:2] for part in FOOTPRINTS), is_robot=True)
 
 
 def scan(walls: FloatArray, pose: Pose, noise: np.random.Generator | None = None) -> FloatArray:
@@ -88,7 +88,7 @@ def drive(
     """The robot along its route for ever, frame by frame, its lidar seen at ``scan_rate`` and with noise."""
     walls, noise, trail = maze(), np.random.default_rng(7), Trail()
     scene = Scene(walls)
-    targets, marks = (Disc(7.6, 4.6, 0.25),), (Mark(0.55, 0.6, "S"),)
+    targets, marks = (Disc(7.6, 4.6, 0.25),), (SceneMark(0.55, 0.6, "S"),)
     every = round(fps / scan_rate)
     for frame, pose in enumerate(_poses(fps, speed, turning)):
         trail.add(pose.x, pose.y)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.render.camera import CALM_ZONE, COARSEST_CELL, FINEST_CELL, MARGIN, Camera
-from kit.render.scene import Bounds
+from kit.render.camera import FIT_MARGIN, FOLLOW_DEAD_ZONE, MAX_CELL_WIDTH, MIN_CELL_WIDTH, Camera
+from kit.render.scene import SceneBounds
 
 places = st.floats(-50, 50)
 sizes = st.tuples(st.integers(1, 250), st.integers(1, 80))
@@ -22,7 +22,7 @@ def test_fit_shows_everything_and_wastes_one_direction_at_most(
     x: float, y: float, width: float, height: float, size: tuple[int, int], aspect: float
 ) -> None:
     columns, rows = size
-    camera = Camera.fit(Bounds(x, y, x + width, y + height), columns, rows, aspect)
+    camera = Camera.fit(SceneBounds(x, y, x + width, y + height), columns, rows, aspect)
     seen = camera.bounds
     # A picture of one character has no half of it to spare on both sides.
     if columns > 1 and rows > 1:
@@ -30,9 +30,9 @@ def test_fit_shows_everything_and_wastes_one_direction_at_most(
         assert seen.right >= x + width - 1e-9
         assert seen.bottom <= y + 1e-9
         assert seen.top >= y + height - 1e-9
-        tight_x = math.isclose(seen.width - 2 * MARGIN * camera.cell, width, rel_tol=1e-6)
-        tight_y = math.isclose(seen.height - 2 * MARGIN * camera.cell_height, height, rel_tol=1e-6)
-        assert tight_x or tight_y or camera.cell == FINEST_CELL
+        tight_x = math.isclose(seen.width - 2 * FIT_MARGIN * camera.cell_width, width, rel_tol=1e-6)
+        tight_y = math.isclose(seen.height - 2 * FIT_MARGIN * camera.cell_height, height, rel_tol=1e-6)
+        assert tight_x or tight_y or camera.cell_width == MIN_CELL_WIDTH
 
 
 @given(places, places, sizes, aspects, st.sampled_from(((1, 1), (2, 4), (1, 2))))
@@ -58,14 +58,14 @@ def test_zoom_goes_back_the_way_it_came(steps: int) -> None:
     camera = Camera(1.0, 2.0, 0.1, 80, 22)
     zoomed = camera.zoomed(steps)
     assert (zoomed.x, zoomed.y) == (1.0, 2.0)
-    assert zoomed.zoomed(-steps).cell == pytest.approx(camera.cell)
-    assert camera.zoomed(2).cell == pytest.approx(camera.cell / 2)
+    assert zoomed.zoomed(-steps).cell_width == pytest.approx(camera.cell_width)
+    assert camera.zoomed(2).cell_width == pytest.approx(camera.cell_width / 2)
 
 
 def test_zoom_has_limits() -> None:
     camera = Camera(0.0, 0.0, 0.1, 80, 22)
-    assert camera.zoomed(100).cell == FINEST_CELL
-    assert camera.zoomed(-100).cell == COARSEST_CELL
+    assert camera.zoomed(100).cell_width == MIN_CELL_WIDTH
+    assert camera.zoomed(-100).cell_width == MAX_CELL_WIDTH
 
 
 @given(places, places, st.integers(-9, 9), st.integers(-9, 9))
@@ -80,14 +80,14 @@ def test_panning_moves_by_whole_characters(x: float, y: float, right: int, up: i
 def test_a_followed_point_is_kept_in_the_calm_middle(x: float, y: float) -> None:
     camera = Camera(0.0, 0.0, 0.1, 80, 22).following(x, y)
     column, row = camera.project(np.array((x, y)))
-    assert abs(column - 40) <= 80 * CALM_ZONE / 2 + 1e-6
-    assert abs(row - 11) <= 22 * CALM_ZONE / 2 + 1e-6
+    assert abs(column - 40) <= 80 * FOLLOW_DEAD_ZONE / 2 + 1e-6
+    assert abs(row - 11) <= 22 * FOLLOW_DEAD_ZONE / 2 + 1e-6
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1))
 def test_within_the_calm_middle_nothing_moves(right: float, up: float) -> None:
     camera = Camera(0.0, 0.0, 0.1, 80, 22)
-    x, y = right * 20 * camera.cell, up * 5.5 * camera.cell_height
+    x, y = right * 20 * camera.cell_width, up * 5.5 * camera.cell_height
     assert camera.following(x, y) is camera
 
 
@@ -95,7 +95,7 @@ def test_following_a_robot_that_drives_never_moves_more_than_a_character() -> No
     camera = Camera(0.0, 0.0, 0.1, 80, 22)
     for step in range(400):
         moved = camera.following(0.02 * step, 0.01 * step)
-        assert abs(moved.x - camera.x) <= camera.cell + 1e-9
+        assert abs(moved.x - camera.x) <= camera.cell_width + 1e-9
         assert abs(moved.y - camera.y) <= camera.cell_height + 1e-9
         camera = moved
     assert camera.x > 5.0
@@ -108,6 +108,6 @@ def test_a_robot_that_is_nowhere_is_not_followed(lost: float) -> None:
 
 
 def test_no_room_at_all_is_one_character() -> None:
-    camera = Camera.fit(Bounds(0, 0, 1, 1), 0, 0)
+    camera = Camera.fit(SceneBounds(0, 0, 1, 1), 0, 0)
     assert (camera.columns, camera.rows) == (1, 1)
     assert camera.resized(0, 0).columns == 1

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.render.curve import Axes, Curve, draw_curves
-from kit.render.encode import ENCODERS, Ascii, Braille
+from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder
 from kit.render.frame import Frame
 from kit.render.roles import Role
 
@@ -19,12 +19,12 @@ def curve(values: list[float], name: str = "return", step: float = 100.0) -> Cur
 
 def heights(frame: Frame, role: Role = Role.ROBOT) -> list[float]:
     """The mean row of the curve in each column of the plot that has it, left to right."""
-    rows, columns = np.nonzero((frame.inks == role) & (np.arange(frame.shape[0]) > 0)[:, None])
+    rows, columns = np.nonzero((frame.fg == role) & (np.arange(frame.shape[0]) > 0)[:, None])
     return [float(rows[columns == column].mean()) for column in np.unique(columns)]
 
 
 def test_a_rising_curve_looks_like_this() -> None:
-    frame = draw_curves([curve([0, 1, 2, 3, 4])], Axes("episodes"), 30, 7, Ascii())
+    frame = draw_curves([curve([0, 1, 2, 3, 4])], Axes("episodes"), 30, 7, AsciiEncoder())
     assert frame.rows() == [
         "  return 4",
         "4                          @@@",
@@ -52,19 +52,19 @@ def test_the_scale_moves_seldom_while_a_run_grows() -> None:
     generator = np.random.default_rng(2)
     for step in range(400):
         values.append(np.tanh(step / 150) + generator.normal(0, 0.05))
-        frame = draw_curves([curve(values)], Axes("steps", low=0, high=1), 40, 8, Braille())
+        frame = draw_curves([curve(values)], Axes("steps", low=0, high=1), 40, 8, BrailleEncoder())
         scales.add((frame.text(1)[:4], frame.text(6)[:4], frame.text(7)))
     assert len(scales) <= 9  # 100, 200, 500, 1 000, 2 000, ... 50 000 steps
 
 
 def test_a_goal_is_a_dashed_line_with_its_value() -> None:
-    frame = draw_curves([curve([0, 1])], Axes(low=0, high=1, goal=0.5), 40, 9, Ascii())
+    frame = draw_curves([curve([0, 1])], Axes(low=0, high=1, goal=0.5), 40, 9, AsciiEncoder())
     row = next(row for row in frame.rows() if row.startswith("0.5"))
     assert 10 < row.count("-") < 25
 
 
 def test_two_curves_are_told_apart_by_number() -> None:
-    frame = draw_curves([curve([1, 2, 3], "ppo"), curve([1, 1, 1], "dqn")], Axes(), 40, 9, Braille())
+    frame = draw_curves([curve([1, 2, 3], "ppo"), curve([1, 1, 1], "dqn")], Axes(), 40, 9, BrailleEncoder())
     assert "1 ppo 3" in frame.rows()[0]
     assert "2 dqn 1" in frame.rows()[0]
     body = "".join(frame.text(row)[4:] for row in range(1, 8))
@@ -73,11 +73,15 @@ def test_two_curves_are_told_apart_by_number() -> None:
 
 
 def test_values_that_are_not_finite_are_left_out() -> None:
-    frame = draw_curves([curve([0, np.nan, 2, np.inf, 4])], Axes(), 40, 8, Ascii())
+    frame = draw_curves([curve([0, np.nan, 2, np.inf, 4])], Axes(), 40, 8, AsciiEncoder())
     assert (
         frame.rows()
         == draw_curves(
-            [Curve("return", np.array((100.0, 300, 500)), np.array((0.0, 2, 4)))], Axes(), 40, 8, Ascii()
+            [Curve("return", np.array((100.0, 300, 500)), np.array((0.0, 2, 4)))],
+            Axes(),
+            40,
+            8,
+            AsciiEncoder(),
         ).rows()
     )
 
@@ -90,12 +94,12 @@ def test_values_that_are_not_finite_are_left_out() -> None:
 )
 def test_any_data_fits_in_any_room(values: list[float], columns: int, rows: int, goal: float | None) -> None:
     for curves in ([], [curve(values)], [curve(values), curve(values[:3], "b")]):
-        frame = draw_curves(curves, Axes("steps", goal=goal), columns, rows, Braille())
+        frame = draw_curves(curves, Axes("steps", goal=goal), columns, rows, BrailleEncoder())
         assert frame.shape == (rows, columns)
 
 
 def test_five_thousand_points_are_their_means() -> None:
     generator = np.random.default_rng(3)
     noisy = list(np.linspace(0, 100, 5000) + generator.normal(0, 5, 5000))
-    found = heights(draw_curves([curve(noisy)], Axes(), 80, 20, Braille()))
+    found = heights(draw_curves([curve(noisy)], Axes(), 80, 20, BrailleEncoder()))
     assert np.mean(np.diff(found) <= 0.51) > 0.95

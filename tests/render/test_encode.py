@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.render.encode import ENCODERS, Ascii, Braille, HalfBlock
+from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, HalfBlockEncoder
 from kit.render.roles import Role
 
 grids = st.integers(0, 2**32 - 1).map(
@@ -23,7 +23,7 @@ BRAILLE_DOTS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
 
 @given(grids)
 def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None:
-    frame = Braille().encode(grid)
+    frame = BrailleEncoder().encode(grid)
     assert frame.shape == (6, 10)
     for row in range(6):
         for column in range(10):
@@ -34,15 +34,15 @@ def test_braille_shows_each_dot_that_does_not_give_way(grid: np.ndarray) -> None
             glyph = chr(frame.glyphs[row, column])
             pattern = 0 if glyph == " " else ord(glyph) - 0x2800
             assert {number for number in range(8) if pattern >> number & 1} == expected
-            assert frame.inks[row, column] == top
+            assert frame.fg[row, column] == top
 
 
 @given(grids)
 def test_half_blocks_show_both_halves_unless_they_are_thin(grid: np.ndarray) -> None:
-    frame = HalfBlock().encode(grid)
+    frame = HalfBlockEncoder().encode(grid)
     for (row, column), glyph in np.ndenumerate(frame.glyphs):
         upper, lower = grid[2 * row, column], grid[2 * row + 1, column]
-        ink, paper = frame.inks[row, column], frame.papers[row, column]
+        ink, paper = frame.fg[row, column], frame.bg[row, column]
         shown = {" ": (0, 0), "▀": (ink, paper), "▄": (paper, ink), "█": (ink, ink)}
         if chr(glyph) in shown:
             assert (upper, lower) == shown[chr(glyph)]
@@ -53,8 +53,8 @@ def test_half_blocks_show_both_halves_unless_they_are_thin(grid: np.ndarray) -> 
 
 @given(grids)
 def test_ascii_names_what_is_there(grid: np.ndarray) -> None:
-    frame = Ascii().encode(grid)
-    assert np.array_equal(frame.inks, grid)
+    frame = AsciiEncoder().encode(grid)
+    assert np.array_equal(frame.fg, grid)
     assert {chr(glyph) for glyph in frame.glyphs[grid == Role.WALL]} <= {"#"}
     assert {chr(glyph) for glyph in frame.glyphs[grid == Role.HIT]} <= {"."}
     assert all(glyph < 128 for glyph in frame.glyphs.ravel())
@@ -70,18 +70,18 @@ def test_without_colours_a_hit_still_looks_like_no_wall(name: str, other: Role) 
     hit = encoder.encode(touched)
     wall = encoder.encode(np.full(shape, Role.WALL, dtype=np.uint8))
     assert hit.glyphs[0, 0] != wall.glyphs[0, 0]
-    assert not hit.papers.any()
+    assert not hit.bg.any()
 
 
 @pytest.mark.parametrize("name", ENCODERS)
 def test_every_symbol_is_one_character_wide_and_says_which_way(name: str) -> None:
     symbols = ENCODERS[name](False).symbols
-    for arrows in (*symbols.robots, symbols.field, symbols.strong):
+    for arrows in (*symbols.robot_arrows, symbols.field_arrows, symbols.strong_field_arrows):
         assert len(arrows) in (4, 8)
         assert len(set(arrows)) == len(arrows)
-    assert len({symbols.target, symbols.contact, symbols.faint}) == 3
+    assert len({symbols.target, symbols.contact, symbols.weak_field_dot}) == 3
 
 
 def test_ascii_gives_every_role_a_shape_of_its_own() -> None:
-    assert set(Ascii.shapes) == set(Role) - {Role.EMPTY}
-    assert len(set(Ascii.shapes.values())) == len(Ascii.shapes)
+    assert set(AsciiEncoder.shapes) == set(Role) - {Role.EMPTY}
+    assert len(set(AsciiEncoder.shapes.values())) == len(AsciiEncoder.shapes)

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.render.frame import BLANK, GAP, Frame, Span, diff
+from kit.render.frame import BLANK, MERGE_GAP, CellSpan, Frame, changed_spans
 
 
 def random_frame(seed: int, shape: tuple[int, int] = (6, 40)) -> Frame:
@@ -23,7 +23,7 @@ def changed(frame: Frame, cells: list[tuple[int, int]]) -> Frame:
     glyphs = frame.glyphs.copy()
     for row, column in cells:
         glyphs[row, column] = ord("x")
-    return Frame(glyphs, frame.inks, frame.papers)
+    return Frame(glyphs, frame.fg, frame.bg)
 
 
 cells = st.lists(st.tuples(st.integers(0, 5), st.integers(0, 39)), max_size=12)
@@ -34,7 +34,7 @@ def test_the_spans_hold_every_difference_and_end_on_one(seed: int, where: list[t
     before = random_frame(seed)
     after = changed(before, where)
     covered = set()
-    for row, start, stop in diff(before, after):
+    for row, start, stop in changed_spans(before, after):
         assert before.glyphs[row, start] != after.glyphs[row, start]
         assert before.glyphs[row, stop - 1] != after.glyphs[row, stop - 1]
         covered |= {(row, column) for column in range(start, stop)}
@@ -46,30 +46,33 @@ def test_spans_of_a_row_lie_further_apart_than_the_gap(
     seed: int, where: list[tuple[int, int]], gap: int
 ) -> None:
     before = random_frame(seed)
-    spans = diff(before, changed(before, where), gap)
+    spans = changed_spans(before, changed(before, where), gap)
     for left, right in itertools.pairwise(spans):
         assert left.row < right.row or right.start - left.stop > gap
 
 
 def test_a_gap_of_eight_is_bridged_and_one_of_nine_is_not() -> None:
     before = Frame.empty(40, 1)
-    assert diff(before, changed(before, [(0, 3), (0, 12)])) == [Span(0, 3, 13)]
-    assert diff(before, changed(before, [(0, 3), (0, 13)])) == [Span(0, 3, 4), Span(0, 13, 14)]
-    assert GAP == 8
+    assert changed_spans(before, changed(before, [(0, 3), (0, 12)])) == [CellSpan(0, 3, 13)]
+    assert changed_spans(before, changed(before, [(0, 3), (0, 13)])) == [
+        CellSpan(0, 3, 4),
+        CellSpan(0, 13, 14),
+    ]
+    assert MERGE_GAP == 8
 
 
 def test_equal_frames_do_not_differ_and_frames_of_other_sizes_do_everywhere() -> None:
-    assert diff(random_frame(1), random_frame(1)) == []
-    assert diff(None, Frame.empty(7, 2)) == [Span(0, 0, 7), Span(1, 0, 7)]
-    assert diff(Frame.empty(6, 2), Frame.empty(7, 2)) == [Span(0, 0, 7), Span(1, 0, 7)]
-    assert diff(None, Frame.empty(0, 2)) == []
+    assert changed_spans(random_frame(1), random_frame(1)) == []
+    assert changed_spans(None, Frame.empty(7, 2)) == [CellSpan(0, 0, 7), CellSpan(1, 0, 7)]
+    assert changed_spans(Frame.empty(6, 2), Frame.empty(7, 2)) == [CellSpan(0, 0, 7), CellSpan(1, 0, 7)]
+    assert changed_spans(None, Frame.empty(0, 2)) == []
 
 
 def test_another_ink_or_paper_is_a_difference() -> None:
     before, after = random_frame(3), random_frame(3)
-    after.inks[2, 5] += 1
-    after.papers[4, 7] += 1
-    assert diff(before, after) == [Span(2, 5, 6), Span(4, 7, 8)]
+    after.fg[2, 5] += 1
+    after.bg[4, 7] += 1
+    assert changed_spans(before, after) == [CellSpan(2, 5, 6), CellSpan(4, 7, 8)]
 
 
 @given(st.integers(0, 1000))
@@ -78,18 +81,18 @@ def test_runs_say_the_row_with_the_look_of_every_visible_character(seed: int) ->
     for row in range(6):
         runs = list(frame.runs(row))
         assert "".join(run.text for run in runs) == frame.text(row)
-        looks = [(run.ink, run.paper) for run in runs for _ in run.text]
+        looks = [(run.fg, run.bg) for run in runs for _ in run.text]
         for column, (ink, paper) in enumerate(looks):
-            assert paper == frame.papers[row, column]
+            assert paper == frame.bg[row, column]
             if frame.glyphs[row, column] != BLANK:
-                assert ink == frame.inks[row, column]
+                assert ink == frame.fg[row, column]
         assert all(left[1:] != right[1:] for left, right in itertools.pairwise(runs))
 
 
 def test_blanks_do_not_cut_a_run() -> None:
     frame = Frame.empty(9, 1)
     for column in (2, 4, 7):
-        frame.glyphs[0, column], frame.inks[0, column] = ord("."), 3
+        frame.glyphs[0, column], frame.fg[0, column] = ord("."), 3
     assert [run.text for run in frame.runs(0)] == ["  ", ". .  . "]
 
 

@@ -7,23 +7,35 @@ from itertools import pairwise
 import pytest
 
 from kit.render.frame import Frame
-from kit.render.graph import BROKEN, CHOSEN, MESSAGE, PLAIN, Cell, Link, Plan, Sight, Spot, draw, rate_text
-from kit.render.graph_data import Conversation
-from kit.render.graph_layout import arrange
+from kit.render.graph import (
+    ASCII_LINES,
+    MESSAGE_ROLE,
+    MISMATCH_ROLE,
+    SELECTED_ROLE,
+    GraphCell,
+    GraphDrawing,
+    GraphElement,
+    GraphLink,
+    GraphView,
+    draw_graph,
+    rate_text,
+)
+from kit.render.graph_data import GraphData
+from kit.render.graph_layout import arrange_graph
 from tests.render.conversations import DOZEN, MAZE, WORLD, item, talk
 
 
-def plan(shown: Conversation, width: int = 80) -> Plan:
-    return Plan(shown, arrange(shown), width)
+def plan(shown: GraphData, width: int = 80) -> GraphDrawing:
+    return GraphDrawing(shown, arrange_graph(shown), width)
 
 
-def picture(shown: Conversation, sight: Sight | None = None, width: int = 80) -> Frame:
+def picture(shown: GraphData, sight: GraphView | None = None, width: int = 80) -> Frame:
     laid_out = plan(shown, width)
-    return draw(laid_out, sight or Sight(), laid_out.places.height)
+    return draw_graph(laid_out, sight or GraphView(), laid_out.layout.height)
 
 
 def test_the_maze() -> None:
-    sight = Sight({"/static_laser": 10.0, "/cmd_vel": 9.96}, Spot("item", "/static_laser"))
+    sight = GraphView({"/static_laser": 10.0, "/cmd_vel": 9.96}, GraphElement("item", "/static_laser"))
     assert picture(MAZE, sight).rows() == [
         " /flatland_server ┓────────────▶  /collisions ─────────────┏▶  /random_walk",
         "                  ┃────────────▶  /odom                    ┃",
@@ -37,7 +49,9 @@ def test_the_maze() -> None:
 def test_in_plain_characters() -> None:
     shown = talk(item("/scan", "/robot", "/a /b", ("/robot", "/b")), item("/ask()", "/a", "/robot"))
     laid_out = plan(shown, 60)
-    rows = draw(laid_out, Sight(chosen=Spot("sender", "/a")), laid_out.places.height, PLAIN).rows()
+    rows = draw_graph(
+        laid_out, GraphView(selected=GraphElement("sender", "/a")), laid_out.layout.height, ASCII_LINES
+    ).rows()
     assert rows == [
         " /robot ---------------->  /scan =============X> [/a]",
         "                                              +>  /b",
@@ -54,15 +68,15 @@ def test_a_dozen_nodes_at_eighty_columns_keep_their_names() -> None:
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 132])
-@pytest.mark.parametrize("shown", [MAZE, DOZEN, Conversation((), ())], ids=["maze", "dozen", "nobody"])
-def test_every_width_has_room_for_something(shown: Conversation, width: int) -> None:
+@pytest.mark.parametrize("shown", [MAZE, DOZEN, GraphData((), ())], ids=["maze", "dozen", "nobody"])
+def test_every_width_has_room_for_something(shown: GraphData, width: int) -> None:
     laid_out = plan(shown, width)
-    frame = draw(laid_out, Sight(), 10)
+    frame = draw_graph(laid_out, GraphView(), 10)
     assert frame.shape == (10, width)
 
 
 def test_what_is_chosen_is_in_brackets_and_its_lines_are_thick() -> None:
-    frame = picture(MAZE, Sight(chosen=Spot("receiver", "/random_walk")))
+    frame = picture(MAZE, GraphView(selected=GraphElement("receiver", "/random_walk")))
     rows = frame.rows()
     text = "\n".join(rows)
     assert text.count("[/random_walk]") == 2  # as a sender and as a receiver
@@ -70,59 +84,63 @@ def test_what_is_chosen_is_in_brackets_and_its_lines_are_thick() -> None:
     assert "/static_laser ━━" in text
     to_odom = next(line.partition("/odom")[0] for line in rows if "/odom" in line)
     assert not set(to_odom) & set("━┃┏┓┗┛┣┫")
-    assert CHOSEN in frame.inks
-    assert CHOSEN not in picture(MAZE).inks
+    assert SELECTED_ROLE in frame.fg
+    assert SELECTED_ROLE not in picture(MAZE).fg
 
 
 def test_a_broken_line_is_marked_where_it_leaves_the_common_one() -> None:
     shown = talk(item("/scan", WORLD, "/good /bad", (WORLD, "/bad")))
     frame = picture(shown)
     marks = [(row, line.index("✗")) for row, line in enumerate(frame.rows()) if "✗" in line]
-    joint = plan(shown).ways[Link("/bad", "/scan", sends=False)].joint
+    joint = plan(shown).routes[GraphLink("/bad", "/scan", is_sender=False)].branch_cell
     assert marks == [(joint.row, joint.column)]
-    assert frame.inks[marks[0]] == BROKEN
+    assert frame.fg[marks[0]] == MISMATCH_ROLE
 
 
 def test_messages_are_dots_on_the_lines_and_hide_no_word() -> None:
     laid_out = plan(MAZE)
-    path = laid_out.path(Link(WORLD, "/static_laser", sends=True))
-    without = draw(laid_out, Sight({"/static_laser": 100.0}), laid_out.places.height)
+    path = laid_out.link_cells(GraphLink(WORLD, "/static_laser", is_sender=True))
+    without = draw_graph(laid_out, GraphView({"/static_laser": 100.0}), laid_out.layout.height)
     shown = 0
     for cell in path:
-        frame = draw(laid_out, Sight({"/static_laser": 100.0}, messages={cell}), laid_out.places.height)
-        assert "100 Hz" in frame.text(laid_out.places.items["/static_laser"])
+        frame = draw_graph(
+            laid_out, GraphView({"/static_laser": 100.0}, message_cells={cell}), laid_out.layout.height
+        )
+        assert "100 Hz" in frame.text(laid_out.layout.items["/static_laser"])
         changed = int((frame.glyphs != without.glyphs).sum())
         assert changed == (chr(frame.glyphs[cell.row, cell.column]) == "●")
-        assert (MESSAGE in frame.inks) == bool(changed)
+        assert (MESSAGE_ROLE in frame.fg) == bool(changed)
         shown += changed
     assert shown == len(path) - len("100 Hz")
 
 
 def test_a_path_leads_from_the_sender_to_the_receiver_step_by_step() -> None:
     laid_out = plan(DOZEN)
-    for link in laid_out.ways:
-        path = laid_out.path(link)
-        side = laid_out.places.senders if link.sends else laid_out.places.receivers
-        ends = [side.seats[link.node], laid_out.places.items[link.item]]
-        assert [path[0].row, path[-1].row] == (ends if link.sends else ends[::-1])
+    for link in laid_out.routes:
+        path = laid_out.link_cells(link)
+        side = laid_out.layout.senders if link.is_sender else laid_out.layout.receivers
+        ends = [side.rows[link.node], laid_out.layout.items[link.item]]
+        assert [path[0].row, path[-1].row] == (ends if link.is_sender else ends[::-1])
         for one, next_one in pairwise(path):
             assert abs(one.row - next_one.row) + next_one.column - one.column == 1
 
 
 def test_only_the_rows_from_the_top_on_are_shown() -> None:
     laid_out = plan(DOZEN)
-    whole = draw(laid_out, Sight(), laid_out.places.height).rows()
-    assert draw(laid_out, Sight(top=5, messages=[Cell(0, 0)]), 4).rows() == whole[5:9]
+    whole = draw_graph(laid_out, GraphView(), laid_out.layout.height).rows()
+    assert (
+        draw_graph(laid_out, GraphView(first_row=5, message_cells=[GraphCell(0, 0)]), 4).rows() == whole[5:9]
+    )
 
 
 def test_columns_stay_where_they_are_when_somebody_joins() -> None:
     before = plan(MAZE)
     joined = talk(*MAZE.items, item("/map", "/mapper", "/random_walk /planner"))
-    after = Plan(joined, arrange(joined, before.places), 80)
-    assert after.columns.item == before.columns.item
-    assert after.columns.receiver == before.columns.receiver
-    names = before.spots()
-    assert {spot: after.spots()[spot] for spot in names} == names
+    after = GraphDrawing(joined, arrange_graph(joined, before.layout), 80)
+    assert after.columns.item_start == before.columns.item_start
+    assert after.columns.receiver_start == before.columns.receiver_start
+    names = before.element_rows()
+    assert {spot: after.element_rows()[spot] for spot in names} == names
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
-from kit.render.graph_data import conversation
+from kit.render.graph_data import build_graph_data
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
 from kit.ros.node.node import create_graph_node
@@ -26,28 +26,28 @@ def state() -> GraphState:
 
 
 def test_what_ros_needs_for_itself_and_what_nobody_asks_is_hidden(state: GraphState) -> None:
-    shown = conversation(state)
+    shown = build_graph_data(state)
     assert [item.label for item in shown.items] == ["/words", "/used()"]
-    assert shown.hidden == 1 + 2 * 6 + 2  # a service, parameter services, /rosout and /parameter_events
-    everything = conversation(state, everything=True)
-    assert everything.hidden == 0
-    assert len(everything.items) == 2 + shown.hidden
+    assert shown.hidden_count == 1 + 2 * 6 + 2  # a service, parameter services, /rosout and /parameter_events
+    everything = build_graph_data(state, show_all=True)
+    assert everything.hidden_count == 0
+    assert len(everything.items) == 2 + shown.hidden_count
 
 
 def test_a_line_on_which_nothing_arrives_is_broken(state: GraphState) -> None:
-    words = conversation(state).items[0]
-    assert words.broken == {("/talker", "/listener")}
+    words = build_graph_data(state).items[0]
+    assert words.undelivered == {("/talker", "/listener")}
 
 
 def test_narrowing_keeps_what_is_joined_to_the_name(state: GraphState) -> None:
-    by_topic = conversation(state, narrowed="WORD")
+    by_topic = build_graph_data(state, name_filter="WORD")
     assert [item.label for item in by_topic.items] == ["/words"]
     assert by_topic.nodes == ("/talker", "/listener")
-    assert conversation(state, narrowed="talker").items == conversation(state).items
-    assert conversation(state, narrowed="nothing of that name").nodes == ()
+    assert build_graph_data(state, name_filter="talker").items == build_graph_data(state).items
+    assert build_graph_data(state, name_filter="nothing of that name").nodes == ()
 
 
 def test_a_node_without_anything_to_say_is_there_all_the_same() -> None:
     graph = Graph(log_sink=lambda record: None)
     create_graph_node(graph, "silent")
-    assert conversation(snapshot(graph)).nodes == ("/silent",)
+    assert build_graph_data(snapshot(graph)).nodes == ("/silent",)

@@ -14,7 +14,7 @@ from kit.msg.message import Message
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Float32, String
 from kit.msg.std_srvs import Empty, SetBool
-from kit.render.message_preview import MOST_ROWS_OF_NUMBERS, message_rows
+from kit.render.message_preview import MAX_NUMBER_ROWS, message_rows
 
 
 def twist() -> Twist:
@@ -70,10 +70,10 @@ def test_long_lists_are_cut_with_their_length() -> None:
     rows = message_rows(scan, 60)
     assert max(map(len, rows)) <= 60
     first = next(number for number, row in enumerate(rows) if row.startswith("ranges"))
-    ranges = rows[first : first + MOST_ROWS_OF_NUMBERS]
+    ranges = rows[first : first + MAX_NUMBER_ROWS]
     assert ranges[0].startswith("ranges: [0.0, 1.0, ")
     assert ranges[-1].endswith(" ... 91 in all]")
-    assert rows[first + MOST_ROWS_OF_NUMBERS] == "intensities: []"
+    assert rows[first + MAX_NUMBER_ROWS] == "intensities: []"
 
 
 @pytest.mark.parametrize("width", [8, 20, 40])

@@ -12,14 +12,16 @@ import pytest
 from kit.geometry import Pose
 from kit.render import painter as painter_module
 from kit.render.camera import Camera
-from kit.render.encode import ENCODERS, Ascii, Braille, Encoder, HalfBlock
+from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, HalfBlockEncoder
 from kit.render.frame import BLANK, Frame
 from kit.render.painter import Painter
 from kit.render.roles import Role
-from kit.render.scene import Body, Bounds, Disc, Mark, Path, Scene
+from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 from tests.render.scenes import box_walls, maze, robot, scan
 
-every_encoder = pytest.mark.parametrize("encoder", [Braille(), HalfBlock(), Ascii()], ids=list(ENCODERS))
+every_encoder = pytest.mark.parametrize(
+    "encoder", [BrailleEncoder(), HalfBlockEncoder(), AsciiEncoder()], ids=list(ENCODERS)
+)
 
 
 def room() -> Scene:
@@ -35,7 +37,7 @@ def room() -> Scene:
         targets=(Disc(1.9, 0.8, 0.2),),
         trails=(np.array([(0.2 + 0.1 * i, 0.6) for i in range(4)]),),
         contacts=np.array([(1.2, 0.3)]),
-        marks=(Mark(0.2, 0.25, "S"),),
+        marks=(SceneMark(0.2, 0.25, "S"),),
     )
 
 
@@ -83,7 +85,7 @@ def test_a_room_looks_like_this(name: str) -> None:
 def test_a_large_robot_has_its_shape_and_its_nose(encoder: Encoder) -> None:
     scene = Scene(bodies=(robot(Pose(0, 0, 0)),))
     frame = Painter(encoder).paint(scene, Camera(0.0, 0.0, 0.005, 60, 24))
-    rows, columns = np.nonzero(np.isin(frame.inks, (Role.ROBOT,)))
+    rows, columns = np.nonzero(np.isin(frame.fg, (Role.ROBOT,)))
     # 0.165 m from -0.117 to 0.048, and the nose beyond; 0.17 m across.
     assert columns.min() == math.floor(30 - 0.117 / 0.005)
     assert columns.max() > 30 + 0.048 / 0.005
@@ -100,11 +102,11 @@ def test_a_large_robot_has_its_shape_and_its_nose(encoder: Encoder) -> None:
 def test_a_small_robot_is_an_arrow_with_a_nose_ahead(encoder: Encoder, eighth: int) -> None:
     theta = eighth * math.tau / 8
     frame = Painter(encoder).paint(Scene(bodies=(robot(Pose(0, 0, theta)),)), Camera(0, 0, 0.2, 21, 11))
-    arrows = encoder.symbols.robots[0]
+    arrows = encoder.symbols.robot_arrows[0]
     expected = arrows[round(theta / math.tau * len(arrows)) % len(arrows)]
     row, column = np.argwhere(frame.glyphs == ord(expected))[0].tolist()
     assert (row, column) == (5, 10) or (abs(row - 5) <= 1 and abs(column - 10) <= 1)
-    others = np.argwhere((frame.inks == Role.ROBOT) & (frame.glyphs != ord(expected)))
+    others = np.argwhere((frame.fg == Role.ROBOT) & (frame.glyphs != ord(expected)))
     ahead = others - (row, column)
     assert len(ahead)
     along = ahead[:, 1] * math.cos(theta) - 2 * ahead[:, 0] * math.sin(theta)
@@ -126,7 +128,7 @@ def test_several_robots_differ_by_number_and_not_only_by_colour(encoder: Encoder
 
 def test_two_robots_have_different_arrows() -> None:
     scene = Scene(bodies=(robot(Pose(-2, 0, 0)), robot(Pose(2, 0, 0))))
-    text = "".join(Painter(Braille()).paint(scene, Camera(0, 0, 0.2, 41, 11)).rows())
+    text = "".join(Painter(BrailleEncoder()).paint(scene, Camera(0, 0, 0.2, 41, 11)).rows())
     assert "►" in text
     assert "▷" in text
 
@@ -139,7 +141,7 @@ def test_a_contact_is_seen_even_where_the_robots_arrow_is(
     pose = Pose(0.0345, 0.0, 0.0)  # its middle at the origin
     scene = Scene(bodies=(robot(pose),), contacts=np.array([toward]))
     frame = Painter(encoder).paint(scene, Camera(0, 0, 0.4, 21, 11))
-    ((row, column),) = np.argwhere(frame.inks == Role.CONTACT).tolist()
+    ((row, column),) = np.argwhere(frame.fg == Role.CONTACT).tolist()
     assert chr(frame.glyphs[row, column]) == encoder.symbols.contact
     (arrow_row, arrow_column) = 5, 10
     assert (column - arrow_column) * toward[0] - (row - arrow_row) * toward[1] > 0
@@ -154,9 +156,9 @@ def test_a_wall_is_seen_where_it_is(encoder: Encoder) -> None:
         for share in np.linspace(0, 1, 30):
             column, row = camera.project(np.array((x1 + share * (x2 - x1), y1 + share * (y2 - y1))))
             if 1 <= column < 39 and 1 <= row < 19:
-                near = frame.inks[int(row) - 1 : int(row) + 2, int(column) - 1 : int(column) + 2]
+                near = frame.fg[int(row) - 1 : int(row) + 2, int(column) - 1 : int(column) + 2]
                 assert (near == Role.WALL).any()
-        for row, column in np.argwhere(frame.inks).tolist():
+        for row, column in np.argwhere(frame.fg).tolist():
             x, y = (column + 0.5 - 20) * 0.1, (10 - row - 0.5) * 0.2
             length = math.hypot(x2 - x1, y2 - y1)
             share = min(max(((x - x1) * (x2 - x1) + (y - y1) * (y2 - y1)) / length**2, 0), 1)
@@ -170,7 +172,7 @@ def test_panning_shifts_the_picture_and_changes_nothing_else(encoder: Encoder) -
     still = Painter(encoder).paint(scene, camera)
     moved = Painter(encoder).paint(scene, camera.panned(7, -3))
     assert np.array_equal(still.glyphs[3:, 7:], moved.glyphs[:-3, :-7])
-    assert np.array_equal(still.inks[3:, 7:], moved.inks[:-3, :-7])
+    assert np.array_equal(still.fg[3:, 7:], moved.fg[:-3, :-7])
 
 
 @every_encoder
@@ -182,15 +184,15 @@ def test_any_view_has_its_size_and_single_characters(encoder: Encoder, steps: in
         frame = Painter(encoder).paint(scene, camera)
         assert frame.shape == (size[1], size[0])
         assert all(len(frame.text(row)) == size[0] for row in range(size[1]))
-        assert (frame.inks[frame.glyphs != BLANK] > 0).all()
-        assert frame.inks.max() <= Role.TEXT
+        assert (frame.fg[frame.glyphs != BLANK] > 0).all()
+        assert frame.fg.max() <= Role.TEXT
 
 
 @every_encoder
 def test_nothing_that_is_out_of_sight_is_drawn(encoder: Encoder) -> None:
     scene = replace(full_scene(), walls=maze())
     frame = Painter(encoder).paint(scene, Camera(100.0, 100.0, 0.1, 80, 22))
-    assert not frame.inks.any()
+    assert not frame.fg.any()
     assert (frame.glyphs == BLANK).all()
 
 
@@ -199,15 +201,15 @@ def test_what_is_nowhere_is_left_out(encoder: Encoder) -> None:
     nan = math.nan
     scene = Scene(
         np.array([(nan, 0, 1, 1)]),
-        (robot(Pose(nan, 0, 0)), robot(Pose(0, 0, nan)), Body("ball", Pose(), discs=(Disc(nan, 0, 1),))),
+        (robot(Pose(nan, 0, 0)), robot(Pose(0, 0, nan)), SceneBody("ball", Pose(), discs=(Disc(nan, 0, 1),))),
         hits=np.array([(nan, 1.0)]),
         targets=(Disc(nan, 0, 0.3), Disc(0, 0, nan)),
         contacts=np.array([(nan, nan)]),
         arrows=np.array([(nan, 0, 1, 1, 1.0)]),
-        marks=(Mark(math.inf, 0, "S"),),
+        marks=(SceneMark(math.inf, 0, "S"),),
     )
     frame = Painter(encoder).paint(scene, Camera(5.0, 5.0, 0.1, 20, 10))
-    assert not frame.inks.any()
+    assert not frame.fg.any()
 
 
 def test_standing_walls_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -219,8 +221,8 @@ def test_standing_walls_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return draw_walls(*args)
 
     monkeypatch.setattr(painter_module, "_draw_walls", counted)
-    painter, walls = Painter(Braille()), maze()
-    camera = Camera.fit(Bounds(0, 0, 8.25, 5.175), 80, 22)
+    painter, walls = Painter(BrailleEncoder()), maze()
+    camera = Camera.fit(SceneBounds(0, 0, 8.25, 5.175), 80, 22)
     frames = [
         painter.paint(Scene(walls, (robot(Pose(1, 1, turn)),)), camera) for turn in np.linspace(0, 6, 40)
     ]
@@ -238,7 +240,7 @@ def test_the_faces_of_a_thin_wall_are_one_wall_at_every_scale_that_is_not_coarse
         for x in (0.0, 0.013, 0.027):
             camera = Camera(x, 0.0, cell, 60, 5)
             scene = Scene(walls, (robot(Pose(50, 50, 0.3)),))
-            dots = Painter(Ascii())._standing(scene, camera)
+            dots = Painter(AsciiEncoder())._static_grid(scene, camera)
             row = dots[2] > 0
             if row.any():
                 first, last = np.flatnonzero(row)[[0, -1]]
@@ -251,9 +253,9 @@ def test_a_gap_a_robot_fits_through_stays_open() -> None:
     walls = box_walls(((0, 0, 1, 0.1), (1.2, 0, 2.2, 0.1)))
     scene = Scene(walls, (robot(Pose(0.5, 0.5, 0)),))
     for columns in (40, 60, 80, 200):
-        frame = Painter(Braille()).paint(scene, Camera(1.1, 0.05, 3 / columns, columns, 5))
+        frame = Painter(BrailleEncoder()).paint(scene, Camera(1.1, 0.05, 3 / columns, columns, 5))
         column = int((1.1 - 1.1 + 1.5) / 3 * columns)
-        assert (frame.inks[:, column] == Role.EMPTY).any()
+        assert (frame.fg[:, column] == Role.EMPTY).any()
 
 
 def test_a_field_gives_way_to_what_is_there() -> None:
@@ -263,7 +265,7 @@ def test_a_field_gives_way_to_what_is_there() -> None:
             [(-0.5, 0.0, 1, 0, 1), (0.5, 0.6, 0, 1, 0.4), (1, 0.6, 0, -1, 1), (0, -0.6, 1, 0, 0)]
         ),
     )
-    frame = Painter(Braille()).paint(scene, Camera(0, 0, 0.1, 30, 12))
+    frame = Painter(BrailleEncoder()).paint(scene, Camera(0, 0, 0.1, 30, 12))
     text = "".join(frame.rows())
     assert not {"→", "⇒"} & set(text)
     assert "↑" in text
@@ -275,22 +277,24 @@ def test_paths_are_solid_dashed_or_dotted() -> None:
     line = np.array([(-1.4, 0.0), (1.4, 0.0)])
     drawn = []
     for style in ("solid", "dashed", "dotted"):
-        scene = Scene(paths=(Path(line, style),))
-        drawn.append(int((Painter(Ascii()).paint(scene, Camera(0, 0, 0.1, 30, 3)).inks == Role.PATH).sum()))
+        scene = Scene(paths=(ScenePath(line, style),))
+        drawn.append(
+            int((Painter(AsciiEncoder()).paint(scene, Camera(0, 0, 0.1, 30, 3)).fg == Role.PATH).sum())
+        )
     assert drawn == sorted(drawn, reverse=True)
     assert len(set(drawn)) == 3
 
 
 def full_scene() -> Scene:
     scene = room()
-    ball = Body("ball", Pose(0.5, 0.3, 0), discs=(Disc(0.5, 0.3, 0.1),))
-    box = Body("box", Pose(0.9, 0.9, 0), (np.array([(0.8, 0.8), (1.0, 0.8), (1.0, 1.0)]),))
+    ball = SceneBody("ball", Pose(0.5, 0.3, 0), discs=(Disc(0.5, 0.3, 0.1),))
+    box = SceneBody("box", Pose(0.9, 0.9, 0), (np.array([(0.8, 0.8), (1.0, 0.8), (1.0, 1.0)]),))
     return replace(
         scene,
         bodies=(*scene.bodies, robot(Pose(1.6, 0.4, -2.0), "two"), ball, box),
         beams=np.concatenate((np.broadcast_to((0.6, 0.6), scene.hits.shape), scene.hits), axis=1),
         arrows=np.array([(0.3, 0.9, 1.0, 0.5, 1.0)]),
-        paths=(Path(np.array([(0.2, 0.2), (2.0, 1.0)]), "dotted"),),
+        paths=(ScenePath(np.array([(0.2, 0.2), (2.0, 1.0)]), "dotted"),),
     )
 
 

@@ -96,7 +96,7 @@ def test_points_outside_are_left_out() -> None:
 
 @given(st.floats(2, 30), st.floats(-5, 45), st.floats(-5, 30))
 def test_a_circle_is_round(radius: float, x: float, y: float) -> None:
-    corners = raster.circle(x, y, radius, radius)
+    corners = raster.circle_corners(x, y, radius, radius)
     for column, row in dots(raster.line_dots(raster.polyline(corners, closed=True), WIDTH, HEIGHT)):
         assert abs(math.hypot(column + 0.5 - x, row + 0.5 - y) - radius) <= 1.6
 
@@ -117,11 +117,11 @@ def test_a_polygon_is_filled_where_it_is(turn: float, x: float, y: float, size: 
 
 
 def test_the_more_important_stays_on_top() -> None:
-    grid = raster.blank(4, 1)
+    grid = raster.empty_grid(4, 1)
     row = np.zeros(4, dtype=np.intp)
-    raster.put(grid, (row, np.arange(4)), 5)
-    raster.put(grid, (row[:2], np.arange(2)), 3)
-    raster.put(grid, (row[:1], np.arange(1)), 9)
+    raster.draw_dots(grid, (row, np.arange(4)), 5)
+    raster.draw_dots(grid, (row[:2], np.arange(2)), 3)
+    raster.draw_dots(grid, (row[:1], np.arange(1)), 9)
     assert grid.tolist() == [[9, 5, 5, 5]]
 
 

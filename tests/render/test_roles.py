@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.render.roles import PALETTES, ROBOTS, Role
+from kit.render.roles import PALETTES, ROBOT_ROLES, Role
 
 
 @pytest.mark.parametrize("name", PALETTES)
@@ -22,7 +22,9 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
 
 @pytest.mark.parametrize("name", ["16", "256", "truecolor"])
 def test_what_matters_differs_in_colour_too(name: str) -> None:
-    inks = [PALETTES[name][role].color for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOTS)]
+    inks = [
+        PALETTES[name][role].color for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES)
+    ]
     assert len(set(inks)) == len(inks)
 
 

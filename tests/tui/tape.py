@@ -14,7 +14,7 @@ from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
 from kit.render.encode import Encoder
-from kit.render.roles import ANSI, Palette
+from kit.render.roles import ANSI_PALETTE, Palette
 from kit.tui.textual_patches import ASK_CURSOR, CroppingCompositor
 from kit.tui.widgets.world_view import WorldView
 
@@ -50,7 +50,7 @@ class ViewApp(App[None]):
     def __init__(
         self,
         encoder: Encoder | None = None,
-        palette: Palette = ANSI,
+        palette: Palette = ANSI_PALETTE,
         *,
         cropped: bool = True,
         clock: Callable[[], float] | None = None,

@@ -9,7 +9,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.render.curve import Axes, Curve
-from kit.render.encode import Ascii
+from kit.render.encode import AsciiEncoder
 from kit.tui.widgets.learning_curve import LearningCurveView
 from tests.tui.tape import Display, TapeDriver, painted, run_in
 
@@ -72,7 +72,7 @@ def test_no_data_and_little_room_are_no_trouble() -> None:
 
 def test_glyphs_can_be_chosen() -> None:
     app = CurveApp()
-    app.view = LearningCurveView(encoder=Ascii())
+    app.view = LearningCurveView(encoder=AsciiEncoder())
 
     async def script(pilot: Pilot[None]) -> None:
         app.view.show(learning(20))

@@ -12,70 +12,75 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import combinations, product
 from typing import Final, TypeVar
 
-from kit.layers.flatland.layer_lists import LaserSlot, Slot, Slots, Spot
+from kit.layers.flatland.layer_lists import FootprintUse, LaserLayerList, LayerList, LayerLists
 from kit.layers.requirements import Relation, Sighting
 from kit.world.problems import Problem, WorldError
 from kit.world.records import LaserMount as View
 
 T = TypeVar("T", Relation, Sighting)
-L = TypeVar("L", str, Spot)
+L = TypeVar("L", str, FootprintUse)
 
-PairWish = Callable[[Spot, Spot], Relation]
+PairRelation = Callable[[FootprintUse, FootprintUse], Relation]
 """What is asked of two spots that can meet."""
 
-ViewWish = Callable[[LaserSlot, tuple[str, View], Spot], Sighting]
+LaserRelation = Callable[[LaserLayerList, tuple[str, View], FootprintUse], Sighting]
 """What is asked of a laser of one model and a spot that it can see."""
 
 
-class Table:
+class RelationTable:
     """The relations of all slots, before any are put together. ``rows``: the maps, then the bodies."""
 
-    def __init__(self, slots: Slots, pair: PairWish, view: ViewWish) -> None:
-        self._slots, self._pair, self._view = slots, pair, view
-        self.rows: tuple[Slot, ...] = (*slots.maps, *slots.bodies)
+    def __init__(self, slots: LayerLists, pair: PairRelation, view: LaserRelation) -> None:
+        self._layer_lists, self._relation_of_pair, self._relation_of_laser = slots, pair, view
+        self.rows: tuple[LayerList, ...] = (*slots.maps, *slots.bodies)
         count = len(self.rows)
         self.relation: list[list[Relation]] = [["either"] * count for _ in range(count)]
         for i in range(count):
             for j in range(i + 1):
-                self.relation[i][j] = self.relation[j][i] = self._between(i, j)
+                self.relation[i][j] = self.relation[j][i] = self._pair_relation(i, j)
         self.sighting: list[list[Sighting]] = [
-            [self._seen(laser, slot) for slot in self.rows] for laser in slots.lasers
+            [self._laser_relation(laser, slot) for slot in self.rows] for laser in slots.lasers
         ]
 
-    def _between(self, i: int, j: int) -> Relation:
+    def _pair_relation(self, i: int, j: int) -> Relation:
         a, b = self.rows[i], self.rows[j]
         if not a.models and not b.models:  # maps: each needs a name, and a name belongs to one of them
             return "collide" if i == j else "apart"
-        pairs = combinations(a.spots, 2) if i == j else product(a.spots, b.spots)
-        wishes = ((self._pair(p, q), p, q) for p, q in pairs if self._slots.can_meet(p, q))
-        return _agreed(
-            "either", wishes, lambda p, q, wish: f"{p.address} {_MUST[wish]} collide with {q.address}", a
-        )
-
-    def _seen(self, laser: LaserSlot, slot: Slot) -> Sighting:
+        pairs = combinations(a.uses, 2) if i == j else product(a.uses, b.uses)
         wishes = (
-            (self._view(laser, use, spot), use[0], spot)
-            for use, spot in product(laser.uses, slot.spots)
-            if self._slots.can_see(use, spot)
+            (self._relation_of_pair(p, q), p, q) for p, q in pairs if self._layer_lists.can_collide(p, q)
         )
-        return _agreed(
+        return _combine(
             "either",
             wishes,
-            lambda model, spot, wish: f"{model}/{laser.plugin} {_MUST[wish]} see {spot.address}",
+            lambda p, q, wish: f"{p.address} {_MODAL_VERBS[wish]} collide with {q.address}",
+            a,
+        )
+
+    def _laser_relation(self, laser: LaserLayerList, slot: LayerList) -> Sighting:
+        wishes = (
+            (self._relation_of_laser(laser, use, spot), use[0], spot)
+            for use, spot in product(laser.uses, slot.uses)
+            if self._layer_lists.can_see(use, spot)
+        )
+        return _combine(
+            "either",
+            wishes,
+            lambda model, spot, wish: f"{model}/{laser.plugin} {_MODAL_VERBS[wish]} see {spot.address}",
             slot,
         )
 
-    def merged(self) -> list[list[int]]:
+    def merge_lists(self) -> list[list[int]]:
         """The slots in groups of equal needs, first the neediest of each group."""
         groups = {i: [i] for i in range(len(self.rows))}
         families: defaultdict[tuple[object, int], list[int]] = defaultdict(list)
         for i, slot in enumerate(self.rows):
             if models := slot.models:
-                families[models, self._slots.kept_bits(slot)].append(i)
+                families[models, self._layer_lists.kept_bits(slot)].append(i)
         for family in families.values():
             while pair := self._mergeable(family, groups):
                 strong, weak = pair
-                self._join(strong, weak)
+                self._merge_needs(strong, weak)
                 groups[strong] += groups.pop(weak)
                 family.remove(weak)
         return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
@@ -85,7 +90,7 @@ class Table:
         pairs = ((strong, weak) for weak in reversed(family) for strong in family if strong != weak)
         return next((pair for pair in pairs if self._can_absorb(*pair, groups)), None)
 
-    def _join(self, strong: int, weak: int) -> None:
+    def _merge_needs(self, strong: int, weak: int) -> None:
         """Makes the needs of ``strong`` those of both."""
         for relation in ("apart", "collide"):
             if relation in (self.relation[strong][weak], self.relation[weak][weak]):
@@ -99,7 +104,7 @@ class Table:
 
     def _can_absorb(self, strong: int, weak: int, groups: Mapping[int, list[int]]) -> bool:
         """Whether ``weak`` asks nothing that ``strong`` does not ask as well, and the two may be together."""
-        if self._asks_nothing(strong) and self._asks_nothing(weak):
+        if self._has_no_needs(strong) and self._has_no_needs(weak):
             return True  # both have an empty list, and keep it
         own, shared = self.relation[weak][weak], self.relation[strong][weak]
         if shared == "apart" or (
@@ -111,13 +116,13 @@ class Table:
             seen[weak] in ("either", seen[strong]) for seen in self.sighting
         )
 
-    def _asks_nothing(self, i: int) -> bool:
-        if any(spot.category for spot in self.rows[i].spots):
+    def _has_no_needs(self, i: int) -> bool:
+        if any(spot.category for spot in self.rows[i].uses):
             return False
         return "collide" not in self.relation[i] and all(seen[i] != "sees" for seen in self.sighting)
 
 
-_MUST: Final[Mapping[Relation | Sighting, str]] = {
+_MODAL_VERBS: Final[Mapping[Relation | Sighting, str]] = {
     "collide": "must",
     "apart": "must not",
     "sees": "must",
@@ -126,11 +131,14 @@ _MUST: Final[Mapping[Relation | Sighting, str]] = {
 }
 
 
-def _agreed(
-    open_: T, wishes: Iterable[tuple[T, L, Spot]], in_words: Callable[[L, Spot, T], str], slot: Slot
+def _combine(
+    open_: T,
+    wishes: Iterable[tuple[T, L, FootprintUse]],
+    in_words: Callable[[L, FootprintUse, T], str],
+    slot: LayerList,
 ) -> T:
     """What all wishes come to: yes or no, if any says so. Raises WorldError if some say the one and some the other."""
-    said: dict[T, tuple[L, Spot]] = {}
+    said: dict[T, tuple[L, FootprintUse]] = {}
     for wish, who, spot in wishes:
         if wish != open_:
             said.setdefault(wish, (who, spot))
@@ -139,5 +147,5 @@ def _agreed(
         problem = (
             f"contradiction: {words}, but one list of layers serves both: give one of them a file of its own"
         )
-        raise WorldError([Problem(slot.place, problem)])
+        raise WorldError([Problem(slot.location, problem)])
     return next(iter(said), open_)

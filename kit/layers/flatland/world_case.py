@@ -11,11 +11,19 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 
-from kit.layers.assignment import Assignment, Breach, NamedLayer
-from kit.layers.flatland.grouping import PairWish, Table, ViewWish
-from kit.layers.flatland.layer_lists import LaserSlot, Slot, Slots, Spot
-from kit.layers.reading import Requirements
-from kit.layers.requirements import Case, CaseError, Contact, Entity, Laser, Relation, Sight
+from kit.layers.assignment import LayerAssignment, NamedLayer, RequirementBreach
+from kit.layers.flatland.grouping import LaserRelation, PairRelation, RelationTable
+from kit.layers.flatland.layer_lists import FootprintUse, LaserLayerList, LayerList, LayerLists
+from kit.layers.reading import RequirementsFile
+from kit.layers.requirements import (
+    ContactRequirement,
+    LaserEntity,
+    LayerCase,
+    LayerCaseError,
+    LayerEntity,
+    Relation,
+    SightRequirement,
+)
 from kit.world.problems import Problem, WorldError
 from kit.world.records import ALL_LAYERS, SourceLocation
 
@@ -24,20 +32,20 @@ from kit.world.records import ALL_LAYERS, SourceLocation
 class WorldCase:
     """A case, and the lists in a world's files that its answer is written to."""
 
-    slots: Slots
-    case: Case
-    entities: Mapping[str, tuple[Slot, ...]]
+    layer_lists: LayerLists
+    case: LayerCase
+    entities: Mapping[str, tuple[LayerList, ...]]
     """For every entity of the case, the lists that get its layers."""
-    lasers: Mapping[str, LaserSlot]
-    today: Assignment
+    lasers: Mapping[str, LaserLayerList]
+    current_assignment: LayerAssignment
     """What the files say now."""
-    wrong: tuple[Breach, ...]
+    current_breaches: tuple[RequirementBreach, ...]
     """In which the files, list by list, differ from what is asked."""
 
 
-def today_case(slots: Slots, *, grouped: bool = True) -> WorldCase:
+def current_case(slots: LayerLists, *, grouped: bool = True) -> WorldCase:
     """What happens today is what shall happen. ``grouped``: as in ``case_of``."""
-    return case_of(
+    return build_case(
         slots,
         lambda a, b: "collide" if a.category & b.category else "apart",
         lambda laser, use, spot: "sees" if use[1].bits & spot.category else "blind",
@@ -46,53 +54,55 @@ def today_case(slots: Slots, *, grouped: bool = True) -> WorldCase:
     )
 
 
-def case_of(
-    slots: Slots, pair: PairWish, view: ViewWish, *, title: str = "", grouped: bool = True
+def build_case(
+    slots: LayerLists, pair: PairRelation, view: LaserRelation, *, title: str = "", grouped: bool = True
 ) -> WorldCase:
     """The case in which wishes about spots have become relations of entities, each a group of slots.
 
     ``grouped``: slots with equal needs are one entity; otherwise each is one, which takes as many layers. Raises
     WorldError where a list would have to do two things at once.
     """
-    table = Table(slots, pair, view)
+    table = RelationTable(slots, pair, view)
     asked = deepcopy(table.relation)
-    groups = table.merged() if grouped else [[i] for i in range(len(table.rows))]
-    names = _names(slots, groups)
+    groups = table.merge_lists() if grouped else [[i] for i in range(len(table.rows))]
+    names = _group_names(slots, groups)
     everything = [(name, group) for name, group in zip(names, groups, strict=True)]
     try:
-        case = _case(slots, table, everything, title)
-    except CaseError as error:
+        case = _merged_case(slots, table, everything, title)
+    except LayerCaseError as error:
         raise WorldError([Problem(SourceLocation(slots.world.file), str(error))]) from error
     entities = {name: tuple(table.rows[i] for i in group) for name, group in everything}
     lasers = dict(zip((laser.name for laser in case.lasers), slots.lasers, strict=True))
-    wrong = _wrong(slots, asked, table, everything, list(lasers))
-    return WorldCase(slots, case, entities, lasers, _today(slots, entities, lasers), wrong)
+    wrong = _current_breaches(slots, asked, table, everything, list(lasers))
+    return WorldCase(slots, case, entities, lasers, _current_assignment(slots, entities, lasers), wrong)
 
 
-def as_requirements(world_case: WorldCase) -> Requirements:
+def to_requirements_file(world_case: WorldCase) -> RequirementsFile:
     """The case as requirements that can be written down, edited, and laid over the same world again."""
-    slots, case = world_case.slots, world_case.case
+    slots, case = world_case.layer_lists, world_case.case
     bodies = [entity for entity in case.entities if entity.kind == "bodies"]
     lists = world_case.entities
-    return Requirements(
+    return RequirementsFile(
         slots.world.file,
         case,
         slots.world.file,
         {entity.model: lists[entity.name][0].models for entity in bodies},
         {
-            entity.name: _bodies_meant(slots, [spot for slot in lists[entity.name] for spot in slot.spots])
+            entity.name: _body_names(slots, [spot for slot in lists[entity.name] for spot in slot.uses])
             for entity in bodies
             if entity.name != entity.model
         },
     )
 
 
-def _case(slots: Slots, table: Table, groups: list[tuple[str, list[int]]], title: str) -> Case:
+def _merged_case(
+    slots: LayerLists, table: RelationTable, groups: list[tuple[str, list[int]]], title: str
+) -> LayerCase:
     entities = tuple(
-        Entity(
+        LayerEntity(
             name,
             kind="bodies" if table.rows[group[0]].models else "map",
-            model=_owner(slots, table.rows[group[0]].models),
+            model=_owner_name(slots, table.rows[group[0]].models),
             copies=max(1, len(table.rows[group[0]].models)),
         )
         for name, group in groups
@@ -100,16 +110,16 @@ def _case(slots: Slots, table: Table, groups: list[tuple[str, list[int]]], title
     shared = {entity.name for entity in entities if entity.copies > 1}
     heads = [(name, group[0]) for name, group in groups]
     pairs = [((a, i), (b, j)) for k, (a, i) in enumerate(heads) for b, j in heads[k:]]
-    relations = {Contact(a, b): table.relation[i][j] for (a, i), (b, j) in pairs}
+    relations = {ContactRequirement(a, b): table.relation[i][j] for (a, i), (b, j) in pairs}
     lasers = tuple(
-        Laser(
+        LaserEntity(
             name,
             frozenset(entity for entity, i in heads if seen[i] == "sees"),
             frozenset(entity for entity, i in heads if seen[i] == "either"),
         )
         for name, seen in zip(_laser_names(slots), table.sighting, strict=True)
     )
-    return Case(
+    return LayerCase(
         entities,
         tuple(contact for contact, relation in relations.items() if relation == "collide"),
         frozenset(
@@ -122,37 +132,41 @@ def _case(slots: Slots, table: Table, groups: list[tuple[str, list[int]]], title
     )
 
 
-def _wrong(
-    slots: Slots,
+def _current_breaches(
+    slots: LayerLists,
     asked: list[list[Relation]],
-    table: Table,
+    table: RelationTable,
     groups: list[tuple[str, list[int]]],
     lasers: list[str],
-) -> tuple[Breach, ...]:
+) -> tuple[RequirementBreach, ...]:
     """Where the lists of today do not do what is asked of them, before any were put together."""
     name = {i: entity for entity, group in groups for i in group}
-    bits = [slot.spots[0].category for slot in table.rows]
-    found: dict[Breach, None] = {}
+    bits = [slot.uses[0].category for slot in table.rows]
+    found: dict[RequirementBreach, None] = {}
     for i in range(len(bits)):
         for j in range(i + 1):
             shared = bits[i] & bits[j]
             if asked[i][j] == ("apart" if shared else "collide"):
-                contact = Contact(name[j], name[i])
-                found[Breach(contact, wanted=not shared, layers=_layer_names(slots, shared))] = None
+                contact = ContactRequirement(name[j], name[i])
+                found[
+                    RequirementBreach(contact, is_missing=not shared, layers=_layer_names(slots, shared))
+                ] = None
     for laser, seen, slot in zip(lasers, table.sighting, slots.lasers, strict=True):
         for i, sighting in enumerate(seen):
             shared = bits[i] & slot.uses[0][1].bits
             if sighting == ("blind" if shared else "sees"):
-                sight = Sight(laser, name[i])
-                found[Breach(sight, wanted=not shared, layers=_layer_names(slots, shared))] = None
+                sight = SightRequirement(laser, name[i])
+                found[RequirementBreach(sight, is_missing=not shared, layers=_layer_names(slots, shared))] = (
+                    None
+                )
     return tuple(found)
 
 
-def _layer_names(slots: Slots, bits: int) -> tuple[str, ...]:
+def _layer_names(slots: LayerLists, bits: int) -> tuple[str, ...]:
     return tuple(name for name, bit in slots.world.layer_bits.items() if bit & bits)
 
 
-def _owner(slots: Slots, models: tuple[str, ...]) -> str:
+def _owner_name(slots: LayerLists, models: tuple[str, ...]) -> str:
     """What to call the instances that share a list: by name if it is one, else by their file."""
     if len(models) < 2:
         return models[0] if models else ""
@@ -163,17 +177,17 @@ def _owner(slots: Slots, models: tuple[str, ...]) -> str:
     return stem if all(model.name != stem for model in slots.world.models) else f"{stem}+"
 
 
-def _names(slots: Slots, groups: list[list[int]]) -> list[str]:
+def _group_names(slots: LayerLists, groups: list[list[int]]) -> list[str]:
     """A name for each group: the map's, the model's, or the model's and what of it is meant."""
     rows = (*slots.maps, *slots.bodies)
     names: list[str] = []
     for group in groups:
-        spots = [spot for i in group for spot in rows[i].spots]
+        spots = [spot for i in group for spot in rows[i].uses]
         if not spots[0].model:
-            name = spots[0].thing.body
+            name = spots[0].body.body
         else:
-            owner = _owner(slots, rows[group[0]].models)
-            part = _part(_bodies_meant(slots, spots))
+            owner = _owner_name(slots, rows[group[0]].models)
+            part = _bodies_label(_body_names(slots, spots))
             name = owner if _is_everything(slots, spots) else f"{owner}.{part}"
             if name == owner and name in names:  # a map is called so
                 name += ".all"
@@ -183,45 +197,45 @@ def _names(slots: Slots, groups: list[list[int]]) -> list[str]:
     return names
 
 
-def _is_everything(slots: Slots, spots: list[Spot]) -> bool:
+def _is_everything(slots: LayerLists, spots: list[FootprintUse]) -> bool:
     models = {spot.model for spot in spots}
-    return sum(spot.model in models for slot in slots.bodies for spot in slot.spots) == len(spots)
+    return sum(spot.model in models for slot in slots.bodies for spot in slot.uses) == len(spots)
 
 
-def _part(bodies: tuple[str, ...]) -> str:
+def _bodies_label(bodies: tuple[str, ...]) -> str:
     """A short name for a few bodies."""
     return "+".join(bodies) if len(bodies) < 3 else f"{bodies[0]}+{len(bodies) - 1}"
 
 
-def _bodies_meant(slots: Slots, spots: list[Spot]) -> tuple[str, ...]:
+def _body_names(slots: LayerLists, spots: list[FootprintUse]) -> tuple[str, ...]:
     """``body``, or ``body.0`` for the first footprint of a body that is not meant as a whole."""
     first = spots[0].model
     meant: list[str] = []
-    for body in dict.fromkeys(spot.thing.body for spot in spots if spot.model == first):
-        numbers = {spot.number for spot in spots if spot.model == first and spot.thing.body == body}
+    for body in dict.fromkeys(spot.body.body for spot in spots if spot.model == first):
+        numbers = {spot.number for spot in spots if spot.model == first and spot.body.body == body}
         has = {
             spot.number
             for slot in slots.bodies
-            for spot in slot.spots
-            if spot.model == first and spot.thing.body == body
+            for spot in slot.uses
+            if spot.model == first and spot.body.body == body
         }
         meant += [body] if numbers == has else [f"{body}.{number}" for number in sorted(numbers)]
     return tuple(meant)
 
 
-def _laser_names(slots: Slots) -> list[str]:
+def _laser_names(slots: LayerLists) -> list[str]:
     names: list[str] = []
     for laser in slots.lasers:
-        name = f"{_owner(slots, tuple(dict.fromkeys(model for model, _ in laser.uses)))}.{laser.plugin}"
+        name = f"{_owner_name(slots, tuple(dict.fromkeys(model for model, _ in laser.uses)))}.{laser.plugin}"
         while name in names:
             name += "'"
         names.append(name)
     return names
 
 
-def _today(
-    slots: Slots, entities: Mapping[str, tuple[Slot, ...]], lasers: Mapping[str, LaserSlot]
-) -> Assignment:
+def _current_assignment(
+    slots: LayerLists, entities: Mapping[str, tuple[LayerList, ...]], lasers: Mapping[str, LaserLayerList]
+) -> LayerAssignment:
     """What the files say now, of every entity the first of its lists, which is the neediest.
 
     A world that names no layer can still have things in all of them: they meet in one called "all".
@@ -229,10 +243,10 @@ def _today(
     bits = dict(slots.world.layer_bits) or {"all": ALL_LAYERS}
     layers = []
     for name, bit in bits.items():
-        members = [entity for entity, lists in entities.items() if lists[0].spots[0].category & bit]
+        members = [entity for entity, lists in entities.items() if lists[0].uses[0].category & bit]
         layers.append(NamedLayer(name, frozenset(members)))
     watches = {
         name: tuple(layer for layer, bit in bits.items() if laser.uses[0][1].bits & bit)
         for name, laser in lasers.items()
     }
-    return Assignment(tuple(layers), watches)
+    return LayerAssignment(tuple(layers), watches)

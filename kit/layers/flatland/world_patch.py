@@ -17,11 +17,19 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from kit.layers.flatland.layer_lists import slots_of
-from kit.layers.flatland.requirement_binding import bind
+from kit.layers.flatland.layer_lists import find_layer_lists
+from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_planning import WorldPlan
-from kit.layers.flatland.yaml_edits import AddItem, Change, DropItem, SetList, Unsafe, edited, flow
-from kit.layers.reading import Requirements
+from kit.layers.flatland.yaml_edits import (
+    AddListItem,
+    RemoveListItem,
+    SetNameList,
+    UnsafeEdit,
+    YamlChange,
+    apply_changes,
+    format_flow_list,
+)
+from kit.layers.reading import RequirementsFile
 from kit.workspace import write_atomically
 from kit.world.collision_rules import CollisionRules
 from kit.world.documents import MAX_YAML_BYTES
@@ -29,8 +37,8 @@ from kit.world.files import UnusableFile, read_bytes
 from kit.world.problems import WorldError
 from kit.world.records import SourceLocation, World
 
-_ALL: Final = ("all",)
-_MAX_NEIGHBOURS: Final = 2000
+_ALL_LAYERS: Final = ("all",)
+_MAX_SEARCHED_FILES: Final = 2000
 
 
 class PatchError(Exception):
@@ -47,7 +55,7 @@ class FilePatch:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftAlone:
+class SkippedFile:
     """One file that is not patched: why, and what to write in it by hand."""
 
     path: Path
@@ -56,65 +64,65 @@ class LeftAlone:
 
 
 @dataclass(frozen=True, slots=True)
-class Patch:
+class WorldPatch:
     files: tuple[FilePatch, ...]
-    left_alone: tuple[LeftAlone, ...]
+    skipped: tuple[SkippedFile, ...]
 
     def diff(self) -> str:
         """What would change, as a unified diff. Line ends as in the files."""
-        return "".join(_diff(file) for file in self.files)
+        return "".join(_file_diff(file) for file in self.files)
 
 
 @dataclass(frozen=True, slots=True)
-class _Wanted:
+class _PlannedChange:
     """One change, where it belongs, what to do in words, and why the planner cannot do it, if it cannot."""
 
-    place: SourceLocation
-    change: Change
-    words: str
+    location: SourceLocation
+    change: YamlChange
+    text: str
     objection: str = ""
 
 
-def patch_of(plan: WorldPlan, *, root: Path | None = None, also_shared: bool = False) -> Patch:
+def build_patch(plan: WorldPlan, *, root: Path | None = None, also_shared: bool = False) -> WorldPatch:
     """The patch that makes a world's files say what a plan says.
 
     ``root``: where else to look for worlds that share a model file. ``also_shared``: patch such files as well.
     """
-    if plan.changes_nothing:
-        return Patch((), ())
-    by_file: defaultdict[Path, list[_Wanted]] = defaultdict(list)
-    for wanted in _wanted(plan):
-        by_file[wanted.place.file].append(wanted)
-    world = plan.world_case.slots.world
+    if plan.is_unchanged:
+        return WorldPatch((), ())
+    by_file: defaultdict[Path, list[_PlannedChange]] = defaultdict(list)
+    for wanted in _planned_changes(plan):
+        by_file[wanted.location.file].append(wanted)
+    world = plan.world_case.layer_lists.world
     files: list[FilePatch] = []
-    left: list[LeftAlone] = []
+    left: list[SkippedFile] = []
     for path, changes in sorted(by_file.items()):
         try:
-            if path != world.file and not also_shared and (others := _other_users(path, world, root)):
-                raise Unsafe(
+            if path != world.file and not also_shared and (others := _other_world_files(path, world, root)):
+                raise UnsafeEdit(
                     f"{', '.join(map(str, others[:3]))} names it too, and would change along with it"
                 )
             if objections := [wanted.objection for wanted in changes if wanted.objection]:
-                raise Unsafe(objections[0])
+                raise UnsafeEdit(objections[0])
             files.append(_file_patch(path, [wanted.change for wanted in changes]))
-        except Unsafe as reason:
-            left.append(LeftAlone(path, str(reason), tuple(wanted.words for wanted in changes)))
-    return Patch(tuple(files), tuple(left))
+        except UnsafeEdit as reason:
+            left.append(SkippedFile(path, str(reason), tuple(wanted.text for wanted in changes)))
+    return WorldPatch(tuple(files), tuple(left))
 
 
-def apply(patch: Patch, wrong: Callable[[], Sequence[str]]) -> None:
+def apply_patch(patch: WorldPatch, wrong: Callable[[], Sequence[str]]) -> None:
     """Writes every file of the patch, each atomically, then asks ``wrong`` what is not as it should be.
 
     If anything is, or a file cannot be written or has changed meanwhile, every file gets its old content back and
     PatchError says why. A patch that leaves a file alone is not applied. (A kill between two files leaves each
     of them whole, the earlier new and the later old: the preview says which.)
     """
-    if patch.left_alone:
-        raise PatchError(f"{patch.left_alone[0].path} has to be changed by hand, so no file was written")
+    if patch.skipped:
+        raise PatchError(f"{patch.skipped[0].path} has to be changed by hand, so no file was written")
     done: list[FilePatch] = []
     try:
         for file in patch.files:
-            if _content(file.path) != file.before:
+            if _read_content(file.path) != file.before:
                 raise PatchError(f"{file.path} has changed since it was read")
             done.append(file)
             _write(file.path, file.after)
@@ -124,15 +132,17 @@ def apply(patch: Patch, wrong: Callable[[], Sequence[str]]) -> None:
             problems = [str(error)]
         if problems:
             raise PatchError(f"the result would not do what was asked: {problems[0]}")
-    except (OSError, Unsafe) as error:
-        _take_back(done)
+    except (OSError, UnsafeEdit) as error:
+        _restore_files(done)
         raise PatchError(f"{error}: nothing was changed") from error
     except BaseException:
-        _take_back(done)
+        _restore_files(done)
         raise
 
 
-def differences(before: World, after: World, *, one_model_never_collides: bool = False) -> list[str]:
+def behaviour_differences(
+    before: World, after: World, *, one_model_never_collides: bool = False
+) -> list[str]:
     """In what two states of a world differ: who touches whom, which laser sees whom, which walls there are."""
     found = []
     old, new = CollisionRules(before), CollisionRules(after)
@@ -149,23 +159,23 @@ def differences(before: World, after: World, *, one_model_never_collides: bool =
     return found
 
 
-def recheck(
-    plan: WorldPlan, reread: Callable[[], World], *, requirements: Requirements | None = None
+def make_recheck(
+    plan: WorldPlan, reread: Callable[[], World], *, requirements: RequirementsFile | None = None
 ) -> Callable[[], Sequence[str]]:
     """The check of what the files say by then: what was asked, with as many names as planned.
 
     ``reread`` loads the world again. Asked is what the requirements say; without any, that the world behaves as it did.
     """
-    slots = plan.world_case.slots
+    slots = plan.world_case.layer_lists
     never = slots.one_model_never_collides
 
     def wrong() -> Sequence[str]:
         world = reread()
         if requirements is None:
-            found = differences(slots.world, world, one_model_never_collides=never)
+            found = behaviour_differences(slots.world, world, one_model_never_collides=never)
         else:
-            now = bind(requirements, slots_of(world, one_model_never_collides=never))
-            found = [str(breach) for breach in now.wrong]
+            now = bind_requirements(requirements, find_layer_lists(world, one_model_never_collides=never))
+            found = [str(breach) for breach in now.current_breaches]
         if len(world.layer_bits) != plan.size:
             found.append(f"the world names {len(world.layer_bits)} layers, not {plan.size}")
         return found
@@ -176,36 +186,36 @@ def recheck(
 # What has to be written
 
 
-def _wanted(plan: WorldPlan) -> Iterator[_Wanted]:
+def _planned_changes(plan: WorldPlan) -> Iterator[_PlannedChange]:
     case, assignment = plan.world_case.case, plan.assignment
     every = frozenset(layer.name for layer in assignment.layers)
     for entity in case.entities:
         for slot in plan.world_case.entities[entity.name]:
             key = "name" if entity.kind == "map" else "layers"
-            yield from _set_list(slot.place, key, slot.written, assignment.layers_of(entity.name), every)
+            yield from _list_change(slot.location, key, slot.names, assignment.layers_of(entity.name), every)
     for name, laser in plan.world_case.lasers.items():
-        yield from _set_list(laser.place, "layers", laser.written, assignment.watches[name], every)
-    yield from _free_layers(plan)
+        yield from _list_change(laser.location, "layers", laser.names, assignment.watches[name], every)
+    yield from _mapless_layer_changes(plan)
 
 
-def _set_list(
+def _list_change(
     place: SourceLocation, key: str, written: tuple[str, ...], names: tuple[str, ...], every: frozenset[str]
-) -> Iterator[_Wanted]:
-    means = every if written == _ALL and key == "layers" else frozenset(written)
-    if means == frozenset(names) and (names or written != _ALL):
+) -> Iterator[_PlannedChange]:
+    means = every if written == _ALL_LAYERS and key == "layers" else frozenset(written)
+    if means == frozenset(names) and (names or written != _ALL_LAYERS):
         return
     objection = ""
-    if names == _ALL and key == "layers":
+    if names == _ALL_LAYERS and key == "layers":
         objection = 'a layer is called "all", which by itself means every layer: give it another name'
     stay = [name for name in written if name in names]
     ordered = (*stay, *(name for name in names if name not in stay))
-    change = SetList((place.line, place.column), key, ordered)
-    yield _Wanted(place, change, f"{place}: {key}: {flow(ordered)}", objection)
+    change = SetNameList((place.line, place.column), key, ordered)
+    yield _PlannedChange(place, change, f"{place}: {key}: {format_flow_list(ordered)}", objection)
 
 
-def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:
+def _mapless_layer_changes(plan: WorldPlan) -> Iterator[_PlannedChange]:
     """Entries without a map: what is planned for them, what is no longer needed, what is missing."""
-    world = plan.world_case.slots.world
+    world = plan.world_case.layer_lists.world
     maps = {entity.name for entity in plan.world_case.case.entities if entity.kind == "map"}
     free = [layer.name for layer in plan.assignment.layers if layer.members.isdisjoint(maps)]
     entries = [layer for layer in world.layers if layer.walls is None]
@@ -216,40 +226,40 @@ def _free_layers(plan: WorldPlan) -> Iterator[_Wanted]:
         fresh = ()
         place = entry.location
         if not names:
-            yield _Wanted(
-                place, DropItem((place.line, place.column)), f"{place}: remove this entry of layers"
+            yield _PlannedChange(
+                place, RemoveListItem((place.line, place.column)), f"{place}: remove this entry of layers"
             )
         else:
-            yield from _set_list(place, "name", entry.names, names, frozenset())
+            yield from _list_change(place, "name", entry.names, names, frozenset())
     if fresh:
-        yield _Wanted(
+        yield _PlannedChange(
             SourceLocation(world.file),
-            AddItem("layers", fresh),
-            f"{world.file}: add to layers: - name: {flow(fresh)}",
+            AddListItem("layers", fresh),
+            f"{world.file}: add to layers: - name: {format_flow_list(fresh)}",
         )
 
 
 # Files
 
 
-def _file_patch(path: Path, changes: Sequence[Change]) -> FilePatch:
-    before = _content(path)
+def _file_patch(path: Path, changes: Sequence[YamlChange]) -> FilePatch:
+    before = _read_content(path)
     try:
         text = before.decode("utf-8")
     except UnicodeDecodeError as error:
-        raise Unsafe("it is not a text in UTF-8") from error
+        raise UnsafeEdit("it is not a text in UTF-8") from error
     mark = "\ufeff" if text.startswith("\ufeff") else ""
-    after = mark + edited(text.removeprefix(mark), changes)
+    after = mark + apply_changes(text.removeprefix(mark), changes)
     if not os.access(path, os.W_OK):
-        raise Unsafe("it may not be written")
+        raise UnsafeEdit("it may not be written")
     return FilePatch(path, before, after.encode("utf-8"))
 
 
-def _content(path: Path) -> bytes:
+def _read_content(path: Path) -> bytes:
     try:
         return read_bytes(path, MAX_YAML_BYTES)
     except UnusableFile as error:
-        raise Unsafe(str(error)) from error
+        raise UnsafeEdit(str(error)) from error
 
 
 def _write(path: Path, content: bytes) -> None:
@@ -258,12 +268,12 @@ def _write(path: Path, content: bytes) -> None:
     path.chmod(mode)
 
 
-def _take_back(done: Sequence[FilePatch]) -> None:
+def _restore_files(done: Sequence[FilePatch]) -> None:
     for file in done:
         _write(file.path, file.before)
 
 
-def _other_users(path: Path, world: World, root: Path | None) -> list[Path]:
+def _other_world_files(path: Path, world: World, root: Path | None) -> list[Path]:
     """Other world files nearby that name a file: beside the world, beside the file, and in the folders below these."""
     folders = dict.fromkeys(folder for folder in (world.file.parent, path.parent, root) if folder is not None)
     near = (
@@ -275,7 +285,7 @@ def _other_users(path: Path, world: World, root: Path | None) -> list[Path]:
     named = re.compile(rb"(?<![\w.-])" + re.escape(path.name.encode()))
     own = {world.file.resolve(), path.resolve()}
     found = []
-    for file in dict.fromkeys(candidate.resolve() for candidate in islice(near, _MAX_NEIGHBOURS)):
+    for file in dict.fromkeys(candidate.resolve() for candidate in islice(near, _MAX_SEARCHED_FILES)):
         if file not in own:
             try:
                 text = read_bytes(file, MAX_YAML_BYTES)
@@ -286,7 +296,7 @@ def _other_users(path: Path, world: World, root: Path | None) -> list[Path]:
     return sorted(found)
 
 
-def _diff(file: FilePatch) -> str:
+def _file_diff(file: FilePatch) -> str:
     before, after = (
         content.decode("utf-8").splitlines(keepends=True) for content in (file.before, file.after)
     )

@@ -15,70 +15,70 @@ from typing import Final, TypeAlias
 
 import yaml
 
-Spot: TypeAlias = tuple[int, int]
+MappingStart: TypeAlias = tuple[int, int]
 """Line and column of a mapping's beginning, from 1: how ``kit.world`` names it."""
 
 
-class Unsafe(Exception):
+class UnsafeEdit(Exception):
     """The text cannot be edited without a guess; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
-class SetList:
+class SetNameList:
     """``key`` of the mapping that begins at ``at`` shall be this list of names."""
 
-    at: Spot
+    at: MappingStart
     key: str
     names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class DropItem:
+class RemoveListItem:
     """The mapping that begins at ``at``, an item of a list, shall go."""
 
-    at: Spot
+    at: MappingStart
 
 
 @dataclass(frozen=True, slots=True)
-class AddItem:
+class AddListItem:
     """The list at ``key`` of the file's own mapping shall have one more item, ``name: [names]``."""
 
     key: str
     names: tuple[str, ...]
 
 
-Change: TypeAlias = SetList | DropItem | AddItem
+YamlChange: TypeAlias = SetNameList | RemoveListItem | AddListItem
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class _Edit:
+class _TextEdit:
     start: int
     end: int
     text: str
 
 
-Plain: TypeAlias = "str | tuple[Plain, ...] | frozenset[tuple[str, Plain]]"
+PlainValue: TypeAlias = "str | tuple[PlainValue, ...] | frozenset[tuple[str, PlainValue]]"
 """A node as a value that can be compared: a scalar's text, a list, a mapping without order."""
 
 
-def edited(text: str, changes: Sequence[Change]) -> str:
+def apply_changes(text: str, changes: Sequence[YamlChange]) -> str:
     """The text with the changes made. Raises Unsafe, and then nothing has been done."""
     try:
-        document = _Document(text)
+        document = _YamlDocument(text)
         edits = sorted(edit for change in changes for edit in document.edits_of(change))
         for before, after in itertools.pairwise(edits):
             if before.end > after.start:
-                raise Unsafe("two changes meet in one place")
+                raise UnsafeEdit("two changes meet in one place")
         for edit in reversed(edits):
             text = text[: edit.start] + edit.text + text[edit.end :]
-        if _Document(text).plain() != document.plain(changes):
-            raise Unsafe("the edited text would not say exactly what it should")
+        if _YamlDocument(text).plain_value() != document.plain_value(changes):
+            raise UnsafeEdit("the edited text would not say exactly what it should")
     except (yaml.YAMLError, RecursionError) as error:
-        raise Unsafe("it is not YAML that can be edited") from error
+        raise UnsafeEdit("it is not YAML that can be edited") from error
     return text
 
 
-class _Document:
+class _YamlDocument:
     """One YAML text as nodes with marks."""
 
     def __init__(self, text: str) -> None:
@@ -86,14 +86,14 @@ class _Document:
         self._newline = "\r\n" if "\r\n" in text else "\n"
         root = yaml.compose(text, Loader=yaml.SafeLoader)
         if not isinstance(root, yaml.MappingNode):
-            raise Unsafe("it does not hold a mapping")
+            raise UnsafeEdit("it does not hold a mapping")
         self._root = root
         self._uses: dict[int, int] = {}
-        self._mappings: dict[Spot, list[yaml.MappingNode]] = {}
+        self._mappings: dict[MappingStart, list[yaml.MappingNode]] = {}
         self._lists: dict[int, yaml.SequenceNode] = {}
-        self._look_at(root)
+        self._index_node(root)
 
-    def _look_at(self, node: yaml.Node) -> None:
+    def _index_node(self, node: yaml.Node) -> None:
         self._uses[id(node)] = self._uses.get(id(node), 0) + 1
         if self._uses[id(node)] > 1:
             return
@@ -101,22 +101,22 @@ class _Document:
             at = (node.start_mark.line + 1, node.start_mark.column + 1)
             self._mappings.setdefault(at, []).append(node)
             for key, value in node.value:
-                self._look_at(key)
-                self._look_at(value)
+                self._index_node(key)
+                self._index_node(value)
         elif isinstance(node, yaml.SequenceNode):
             for item in node.value:
                 self._lists[id(item)] = node
-                self._look_at(item)
+                self._index_node(item)
 
     # What the text shall say
 
-    def plain(self, changes: Sequence[Change] = ()) -> Plain:
+    def plain_value(self, changes: Sequence[YamlChange] = ()) -> PlainValue:
         """What the text says, or shall say after the changes."""
-        sets = {(id(self._mapping(c.at)), c.key): c.names for c in changes if isinstance(c, SetList)}
-        drops = {id(self._mapping(c.at)) for c in changes if isinstance(c, DropItem)}
-        adds = {id(self._top_list(c.key)): c.names for c in changes if isinstance(c, AddItem)}
+        sets = {(id(self._mapping(c.at)), c.key): c.names for c in changes if isinstance(c, SetNameList)}
+        drops = {id(self._mapping(c.at)) for c in changes if isinstance(c, RemoveListItem)}
+        adds = {id(self._top_list(c.key)): c.names for c in changes if isinstance(c, AddListItem)}
 
-        def said(node: yaml.Node) -> Plain:
+        def said(node: yaml.Node) -> PlainValue:
             if isinstance(node, yaml.MappingNode):
                 pairs = {str(key.value): said(value) for key, value in node.value}
                 wanted = {key: names for (mapping, key), names in sets.items() if mapping == id(node)}
@@ -132,56 +132,58 @@ class _Document:
 
     # How the text comes to say it
 
-    def edits_of(self, change: Change) -> Iterator[_Edit]:
-        if isinstance(change, SetList):
+    def edits_of(self, change: YamlChange) -> Iterator[_TextEdit]:
+        if isinstance(change, SetNameList):
             mapping = self._mapping(change.at)
             pairs = {str(key.value): (key, value) for key, value in mapping.value}
             if change.key in pairs:
                 yield from self._replace(*pairs[change.key], change.names)
             else:
                 yield self._insert_key(mapping, change.key, change.names)
-        elif isinstance(change, DropItem):
+        elif isinstance(change, RemoveListItem):
             yield self._drop(self._mapping(change.at))
         else:
             yield self._add(self._top_list(change.key), change.names)
 
-    def _mapping(self, at: Spot) -> yaml.MappingNode:
+    def _mapping(self, at: MappingStart) -> yaml.MappingNode:
         found = self._mappings.get(at, [])
         if len(found) != 1:
-            raise Unsafe(f"what begins in line {at[0]} is not written there as a mapping of its own")
+            raise UnsafeEdit(f"what begins in line {at[0]} is not written there as a mapping of its own")
         return found[0]
 
     def _top_list(self, key: str) -> yaml.SequenceNode:
         for name, value in self._root.value:
             if name.value == key and isinstance(value, yaml.SequenceNode):
                 return value
-        raise Unsafe(f"it has no list of {key}")
+        raise UnsafeEdit(f"it has no list of {key}")
 
-    def _replace(self, key: yaml.Node, value: yaml.Node, names: Sequence[str]) -> Iterator[_Edit]:
+    def _replace(self, key: yaml.Node, value: yaml.Node, names: Sequence[str]) -> Iterator[_TextEdit]:
         """The edits that make the value of a key a list of names."""
         start, end = value.start_mark.index, value.end_mark.index
-        shared = any(self._uses[id(node)] > 1 for node in (value, *_leaves(value)))
+        shared = any(self._uses[id(node)] > 1 for node in (value, *_scalar_nodes(value)))
         if shared or self._text[start] in "&*!":
-            raise Unsafe(f"the list in line {value.start_mark.line + 1} has an anchor, an alias or a tag")
-        if any(_COMPUTED.match(leaf.value) for leaf in _leaves(value)):
-            raise Unsafe(f"the list in line {value.start_mark.line + 1} is computed ($include, env or $eval)")
+            raise UnsafeEdit(f"the list in line {value.start_mark.line + 1} has an anchor, an alias or a tag")
+        if any(_COMPUTED.match(leaf.value) for leaf in _scalar_nodes(value)):
+            raise UnsafeEdit(
+                f"the list in line {value.start_mark.line + 1} is computed ($include, env or $eval)"
+            )
         if isinstance(value, yaml.SequenceNode) and not value.flow_style:
             yield from self._replace_block(key, value, names)
         elif isinstance(value, yaml.MappingNode) or getattr(value, "style", None) in ("|", ">"):
-            raise Unsafe(f"the list in line {value.start_mark.line + 1} is not written as one")
+            raise UnsafeEdit(f"the list in line {value.start_mark.line + 1} is not written as one")
         elif "#" in self._text[start:end]:
-            raise Unsafe(f"the list in line {value.start_mark.line + 1} has comments inside")
+            raise UnsafeEdit(f"the list in line {value.start_mark.line + 1} has comments inside")
         else:
-            yield _Edit(start, end, flow(names))
+            yield _TextEdit(start, end, format_flow_list(names))
 
     def _replace_block(
         self, key: yaml.Node, value: yaml.SequenceNode, names: Sequence[str]
-    ) -> Iterator[_Edit]:
+    ) -> Iterator[_TextEdit]:
         """A list with one name to a line: lines of names that stay are kept, with their comments."""
         kept = [item.value for item in value.value if item.value in names]
         wanted = [*kept, *(name for name in names if name not in kept)]
         if wanted != list(names):
-            raise Unsafe(f"the list in line {value.start_mark.line + 1} would change its order")
+            raise UnsafeEdit(f"the list in line {value.start_mark.line + 1} would change its order")
         for item in value.value:
             line = self._line_of(item)
             before, after = (
@@ -189,11 +191,11 @@ class _Document:
                 self._text[item.end_mark.index : line.end],
             )
             if not re.fullmatch(r"[ ]*-[ ]+", before) or not re.fullmatch(r"[ \t\r]*(#[^\n]*)?", after):
-                raise Unsafe(f"line {item.start_mark.line + 1} holds more than one name")
+                raise UnsafeEdit(f"line {item.start_mark.line + 1} holds more than one name")
             if item.value not in names:
                 comment = after.strip()
                 indent = before[: before.index("-")]
-                yield _Edit(
+                yield _TextEdit(
                     line.start,
                     min(line.end + 1, len(self._text)),
                     f"{indent}{comment}{self._newline}" if comment else "",
@@ -202,81 +204,91 @@ class _Document:
         indent = self._text[last.start : value.value[-1].start_mark.index]
         fresh = [name for name in names if name not in kept]
         if fresh:
-            yield self._new_lines(last, [indent + scalar(name) for name in fresh])
+            yield self._new_lines(last, [indent + format_scalar(name) for name in fresh])
         if not names:
             colon = re.compile(r"[ \t]*:").match(self._text, key.end_mark.index)
             if colon is None:
-                raise Unsafe(f"line {key.start_mark.line + 1} is not written as key: value")
-            yield _Edit(colon.end(), colon.end(), " []")
+                raise UnsafeEdit(f"line {key.start_mark.line + 1} is not written as key: value")
+            yield _TextEdit(colon.end(), colon.end(), " []")
 
-    def _insert_key(self, mapping: yaml.MappingNode, key: str, names: Sequence[str]) -> _Edit:
+    def _insert_key(self, mapping: yaml.MappingNode, key: str, names: Sequence[str]) -> _TextEdit:
         """One more ``key: [names]`` at the end of a mapping."""
         last = mapping.value[-1][1]
         if mapping.flow_style:
-            return _Edit(last.end_mark.index, last.end_mark.index, f", {key}: {flow(names)}")
+            return _TextEdit(last.end_mark.index, last.end_mark.index, f", {key}: {format_flow_list(names)}")
         for _, value in reversed(mapping.value):
             line = self._line_of(value)
             one_line = not isinstance(value, yaml.CollectionNode) or value.flow_style
             if one_line and re.fullmatch(r"[ \t\r]*(#[^\n]*)?", self._text[value.end_mark.index : line.end]):
-                return self._new_lines(line, [f"{' ' * mapping.start_mark.column}{key}: {flow(names)}"])
-        raise Unsafe(f"the mapping in line {mapping.start_mark.line + 1} leaves no line to write {key} after")
+                return self._new_lines(
+                    line, [f"{' ' * mapping.start_mark.column}{key}: {format_flow_list(names)}"]
+                )
+        raise UnsafeEdit(
+            f"the mapping in line {mapping.start_mark.line + 1} leaves no line to write {key} after"
+        )
 
-    def _drop(self, item: yaml.MappingNode) -> _Edit:
+    def _drop(self, item: yaml.MappingNode) -> _TextEdit:
         """An item goes, with its own lines; comments after it stay."""
         within = self._lists.get(id(item))
         if within is None or self._uses[id(item)] > 1:
-            raise Unsafe(f"what begins in line {item.start_mark.line + 1} is not an item of one list")
+            raise UnsafeEdit(f"what begins in line {item.start_mark.line + 1} is not an item of one list")
         if len(within.value) == 1:
-            raise Unsafe(f"the list in line {within.start_mark.line + 1} would become empty")
+            raise UnsafeEdit(f"the list in line {within.start_mark.line + 1} would become empty")
         if within.flow_style:
             return self._drop_from_flow(within, item)
         first, last = self._line(item.start_mark.index), self._line(_content_end(item))
         if not re.fullmatch(r"[ ]*-[ ]+", self._text[first.start : item.start_mark.index]):
-            raise Unsafe(f"line {item.start_mark.line + 1} holds more than the item")
-        return _Edit(first.start, min(last.end + 1, len(self._text)), "")
+            raise UnsafeEdit(f"line {item.start_mark.line + 1} holds more than the item")
+        return _TextEdit(first.start, min(last.end + 1, len(self._text)), "")
 
-    def _drop_from_flow(self, within: yaml.SequenceNode, item: yaml.MappingNode) -> _Edit:
+    def _drop_from_flow(self, within: yaml.SequenceNode, item: yaml.MappingNode) -> _TextEdit:
         place = within.value.index(item)
         if place + 1 < len(within.value):
             start, end = item.start_mark.index, within.value[place + 1].start_mark.index
         else:
             start, end = within.value[place - 1].end_mark.index, item.end_mark.index
         if "#" in self._text[start:end]:
-            raise Unsafe(f"the item in line {item.start_mark.line + 1} has comments inside")
-        return _Edit(start, end, "")
+            raise UnsafeEdit(f"the item in line {item.start_mark.line + 1} has comments inside")
+        return _TextEdit(start, end, "")
 
-    def _add(self, within: yaml.SequenceNode, names: Sequence[str]) -> _Edit:
+    def _add(self, within: yaml.SequenceNode, names: Sequence[str]) -> _TextEdit:
         """One more item at the end of a list."""
         if not within.value:
-            return _Edit(within.start_mark.index, within.end_mark.index, f"[{{name: {flow(names)}}}]")
+            return _TextEdit(
+                within.start_mark.index, within.end_mark.index, f"[{{name: {format_flow_list(names)}}}]"
+            )
         last = within.value[-1]
         if within.flow_style:
-            return _Edit(last.end_mark.index, last.end_mark.index, f", {{name: {flow(names)}}}")
+            return _TextEdit(
+                last.end_mark.index, last.end_mark.index, f", {{name: {format_flow_list(names)}}}"
+            )
         line = self._line(last.start_mark.index)
         indent = re.match(r"[ ]*-[ ]+", self._text[line.start : last.start_mark.index])
         if indent is None:
-            raise Unsafe(f"line {last.start_mark.line + 1} holds more than an item of a list")
-        return self._new_lines(self._line(_content_end(last)), [f"{indent[0]}name: {flow(names)}"])
+            raise UnsafeEdit(f"line {last.start_mark.line + 1} holds more than an item of a list")
+        return self._new_lines(
+            self._line(_content_end(last)), [f"{indent[0]}name: {format_flow_list(names)}"]
+        )
 
-    def _new_lines(self, after: _Line, lines: Sequence[str]) -> _Edit:
+    def _new_lines(self, after: _LineSpan, lines: Sequence[str]) -> _TextEdit:
         """Whole lines after a line, which may be the last and without an end."""
         text = self._newline.join(lines)
         if after.end >= len(self._text):
-            return _Edit(after.end, after.end, self._newline + text)
-        return _Edit(after.end + 1, after.end + 1, text + self._newline)
+            return _TextEdit(after.end, after.end, self._newline + text)
+        return _TextEdit(after.end + 1, after.end + 1, text + self._newline)
 
-    def _line_of(self, node: yaml.Node) -> _Line:
+    def _line_of(self, node: yaml.Node) -> _LineSpan:
         """The line on which a node ends."""
         return self._line(node.end_mark.index)
 
-    def _line(self, index: int) -> _Line:
+    def _line(self, index: int) -> _LineSpan:
         """The line of a character; ``end`` is where its newline stands."""
         end = self._text.find("\n", index)
-        return _Line(self._text.rfind("\n", 0, index) + 1, len(self._text) if end < 0 else end)
+        return _LineSpan(self._text.rfind("\n", 0, index) + 1, len(self._text) if end < 0 else end)
 
 
 @dataclass(frozen=True, slots=True)
-class _Line:
+class _LineSpan:
     start: int
     end: int
 
@@ -289,29 +301,29 @@ def _content_end(node: yaml.Node) -> int:
     return int(node.end_mark.index)
 
 
-def _leaves(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
+def _scalar_nodes(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
     if isinstance(node, yaml.ScalarNode):
         yield node
     elif isinstance(node, yaml.SequenceNode):
         for item in node.value:
-            yield from _leaves(item)
+            yield from _scalar_nodes(item)
 
 
 _COMPUTED: Final = re.compile(r"\s*(\$|env\s*\(|param\s*\()")
 _PLAIN: Final = re.compile(r"[A-Za-z_][\w./+-]*(?<![.])", re.ASCII)
-_WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
+_RESERVED_WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
 _ESCAPES: Final[Mapping[str, str]] = {'"': '\\"', "\\": "\\\\"}
 
 
-def scalar(text: str) -> str:
+def format_scalar(text: str) -> str:
     """A YAML scalar that every reader takes for this text."""
-    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
+    if _PLAIN.fullmatch(text) and text.lower() not in _RESERVED_WORDS:
         return text
     return (
         '"' + "".join(_ESCAPES.get(c) or (c if c.isprintable() else f"\\U{ord(c):08x}") for c in text) + '"'
     )
 
 
-def flow(names: Iterable[str]) -> str:
+def format_flow_list(names: Iterable[str]) -> str:
     """``[a, b]``"""
-    return f"[{', '.join(scalar(name) for name in names)}]"
+    return f"[{', '.join(format_scalar(name) for name in names)}]"

@@ -6,7 +6,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.render.scene import Body, Disc, FloatArray, Scene
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody
 
 ROBOT_NAMES = ("left", "right")
 
@@ -18,14 +18,14 @@ def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...
     poses = [Pose(*pose) for pose in state.pose[world].tolist()]
     names = (card.robot,) if len(poses) == 1 else ROBOT_NAMES
     bodies = tuple(
-        Body(
+        SceneBody(
             name,
             pose,
             tuple(
                 np.array([pose.transform_point(*corner) for corner in corners])
                 for corners in batch_map.robot.hull
             ),
-            robot=True,
+            is_robot=True,
         )
         for name, pose in zip(names, poses, strict=True)
     )

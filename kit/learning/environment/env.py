@@ -14,9 +14,9 @@ from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, UnknownTask
 from kit.plain_text import quoted, suggestion
-from kit.render.image import draw, image_camera
+from kit.render.image import draw_image, image_camera
 from kit.render.trail import Trail
-from kit.render.world_text import plain_rows, report
+from kit.render.world_text import describe_scene, scene_rows
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
@@ -93,8 +93,8 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             return None
         scene = build_batch_scene(self._batch, 0, tuple(trail.points for trail in self._trails))
         if self.render_mode == "rgb_array":
-            return draw(scene, image_camera(scene.bounds, *IMAGE_SIZE))
-        return "\n".join((*plain_rows(scene, *TEXT_SIZE), report(scene), ""))
+            return draw_image(scene, image_camera(scene.bounds, *IMAGE_SIZE))
+        return "\n".join((*scene_rows(scene, *TEXT_SIZE), describe_scene(scene), ""))
 
     def _get_batch(self, seed: int | None) -> BatchEnv:
         """The world, which is built when it is first needed: an unseeded one by a seed of chance."""

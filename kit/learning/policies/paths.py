@@ -13,7 +13,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsR
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.policies import Policy
-from kit.render.scene import Disc, Mark, Path, Scene
+from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard, MapCase
 
 
@@ -67,7 +67,7 @@ def build_paths_scene(card: MapCard, case: MapCase, ways: tuple[EpisodePath, ...
     the target."""
     mine = [way for way in ways if way.case == case.name]
     paths = tuple(
-        Path(way.poses[:, robot, :2], "solid" if way.outcome is EpisodeOutcome.REACHED else "dotted")
+        ScenePath(way.poses[:, robot, :2], "solid" if way.outcome is EpisodeOutcome.REACHED else "dotted")
         for way in mine
         for robot in range(way.poses.shape[1])
     )
@@ -78,5 +78,5 @@ def build_paths_scene(card: MapCard, case: MapCase, ways: tuple[EpisodePath, ...
         targets=(Disc(*case.target, radius),),
         paths=paths,
         contacts=np.array(contacts).reshape(-1, 2),
-        marks=(Mark(case.start.x, case.start.y, "S"),),
+        marks=(SceneMark(case.start.x, case.start.y, "S"),),
     )

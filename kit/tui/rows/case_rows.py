@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.drawing import MOST_IN_PICTURE, Glyphs, Line, draw_graph
-from kit.layers.guided_tour import Page
-from kit.layers.requirements import Case
+from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, DrawingLine, GlyphStyle, draw_graph
+from kit.layers.guided_tour import TourPage
+from kit.layers.requirements import LayerCase
 from kit.tui.widgets.text_rows import PLAIN, Row, row
 
 LEAST_WORDS: Final = 34
@@ -25,20 +25,20 @@ def words_width(width: int) -> int:
     return max(LEAST_WORDS, width * 7 // 16)
 
 
-def drawn(lines: Iterable[Line]) -> list[Row]:
+def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
     """A drawing in the screen's styles."""
     return [tuple((span.text, _LOOKS.get(span.style, PLAIN)) for span in line) for line in lines]
 
 
-def picture(case: Case, page: Page, width: int, height: int, glyphs: Glyphs) -> list[Row]:
+def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
     """The collision graph with what a page points at."""
     if not case.names:
         return [row(), row(("nobody is here yet: e to edit, x for examples", "dim"))]
-    if len(case.names) > MOST_IN_PICTURE:
+    if len(case.names) > MAX_ENTITIES_IN_PICTURE:
         return [row(), row((f"{len(case.names)} are too many for a picture", "dim"))]
     lines = draw_graph(
         case,
-        struck=page.struck,
+        struck=page.covered_edges,
         group=page.group,
         laser=page.laser,
         width=max(1, width),

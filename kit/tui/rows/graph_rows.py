@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
 from kit.msg.message import Message
-from kit.render.graph import Spot, rate_text
-from kit.render.graph_data import Conversation
+from kit.render.graph import GraphElement, rate_text
+from kit.render.graph_data import GraphData
 from kit.render.message_preview import message_rows
 from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
 from kit.ros.graph.topic_stats import FlowStats, MessageFlow
@@ -15,15 +15,15 @@ from kit.tui.graph_listener import GraphUpdate
 from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
 
 
-def heading(title: str, talk: Conversation, heard: GraphUpdate, name_filter: str, width: int) -> Row:
+def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, width: int) -> Row:
     """Whose graph, how much of it is shown, and what is wrong in it."""
     services = sum(item.is_service for item in talk.items)
     parts = [_count(len(talk.nodes), "node"), _count(len(talk.items) - services, "topic")]
     parts += [_count(services, "service")] if services else []
     text = "  ".join(parts)
-    hidden = f"  {talk.hidden} hidden" if talk.hidden else ""
+    hidden = f"  {talk.hidden_count} hidden" if talk.hidden_count else ""
     only = f"  only: {name_filter}" if name_filter else ""
-    broken = sum(len(item.broken) for item in talk.items)
+    broken = sum(len(item.undelivered) for item in talk.items)
     state = row(
         (f"{_count(broken, 'broken line')} " if broken else "", "bad"),
         ("paused" if heard.paused else "", "warn"),
@@ -41,7 +41,9 @@ def rates(said: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
     return found
 
 
-def about(spot: Spot | None, heard: GraphUpdate, width: int, *, full: bool = False) -> tuple[Row, ...]:
+def about(
+    spot: GraphElement | None, heard: GraphUpdate, width: int, *, full: bool = False
+) -> tuple[Row, ...]:
     """What is known of a topic, a service or a node, its name first. ``full``: all of it, however many rows."""
     if spot is None:
         return (row(("nobody is here", "dim")),)

@@ -12,20 +12,20 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.widgets import Input
 
-from kit.layers.case_table import Editing, Kind
-from kit.layers.drawing import Glyphs, draw_matrix, plain
-from kit.layers.guided_tour import Page as Step
-from kit.layers.requirements import Case, CaseError
+from kit.layers.case_table import CaseTable, RowKind
+from kit.layers.drawing import GlyphStyle, draw_matrix, to_plain_lines
+from kit.layers.guided_tour import TourPage as Step
+from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.case_rows import drawn, picture, words_width
 from kit.tui.screens.layers_keys import EDIT_HELP, EDIT_KEYS
 from kit.tui.screens.message_dialog import MessageDialog
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows, row, spread
 
-KINDS: dict[Kind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
+KINDS: dict[RowKind, str] = {"map": "map", "body": "body, or part as MODEL.PART", "laser": "laser"}
 
 
-class CaseEditor(ActivePaintScreen[Case]):
+class CaseEditor(ActivePaintScreen[LayerCase]):
     """Returns the case as it is when it is left."""
 
     AUTO_FOCUS = ""
@@ -52,16 +52,16 @@ class CaseEditor(ActivePaintScreen[Case]):
     CaseEditor Input, CaseEditor Input:focus { border: none; padding: 0; height: 1; background: transparent; }
     """
 
-    def __init__(self, case: Case, glyphs: Glyphs) -> None:
+    def __init__(self, case: LayerCase, glyphs: GlyphStyle) -> None:
         super().__init__()
-        self._editing = Editing(case)
+        self._editing = CaseTable(case)
         self._glyphs = glyphs
-        self._kind: Kind = "body"
+        self._kind: RowKind = "body"
         self._problem = ""
         self._top = 0
 
     @property
-    def editing(self) -> Editing:
+    def editing(self) -> CaseTable:
         """The case, and where the cursor is."""
         return self._editing
 
@@ -89,9 +89,9 @@ class CaseEditor(ActivePaintScreen[Case]):
     def _show(self) -> None:
         editing, case = self._editing, self._editing.case
         rows = max(1, self.size.height - 3)
-        table = draw_matrix(case, cursor=(editing.row, editing.column) if editing.pair else None)
+        table = draw_matrix(case, cursor=(editing.row, editing.column) if editing.cell_names else None)
         head = len(table) - editing.rows
-        wide = max([words_width(self.size.width), *(len(line) + 1 for line in plain(table))])
+        wide = max([words_width(self.size.width), *(len(line) + 1 for line in to_plain_lines(table))])
         room = self.size.width - wide - 1
         beside = self._rows("picture")
         beside.display = room >= 24
@@ -102,14 +102,14 @@ class CaseEditor(ActivePaintScreen[Case]):
             laser = editing.laser
             step = Step("case", "", (), laser=None if laser is None else laser.name)
             beside.show(picture(case, step, room, rows, self._glyphs))
-        assumed = row(("bodies of one model never meet", "warn")) if editing.never else row()
+        assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
         self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
-        self._rows("said").show([row((self._problem, "bad")) if self._problem else row(editing.meaning)])
+        self._rows("said").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
 
-    def _change(self, change: Callable[[Editing], Editing]) -> None:
+    def _change(self, change: Callable[[CaseTable], CaseTable]) -> None:
         try:
             self._editing, self._problem = change(self._editing), ""
-        except CaseError as error:
+        except LayerCaseError as error:
             self._problem = str(error)
         self._show()
 
@@ -120,21 +120,21 @@ class CaseEditor(ActivePaintScreen[Case]):
         return action != "add" or (self.is_mounted and self.focused is None)
 
     def action_move(self, down: int, right: int) -> None:
-        self._change(lambda editing: editing.moved(down, right))
+        self._change(lambda editing: editing.with_cursor_moved(down, right))
 
     def action_turn(self) -> None:
-        self._change(Editing.turned)
+        self._change(CaseTable.with_mark_toggled)
 
     def action_delete(self) -> None:
-        self._change(Editing.without_row)
+        self._change(CaseTable.with_row_removed)
 
     def action_undo(self) -> None:
-        self._change(Editing.undone)
+        self._change(CaseTable.undo)
 
     def action_one_model(self) -> None:
-        self._change(lambda editing: replace(editing, never=not editing.never))
+        self._change(lambda editing: replace(editing, ignore_self_collisions=not editing.ignore_self_collisions))
 
-    def action_add(self, kind: Kind) -> None:
+    def action_add(self, kind: RowKind) -> None:
         self._ask(kind)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -142,11 +142,11 @@ class CaseEditor(ActivePaintScreen[Case]):
         if self.focused is None:
             return  # a second Enter that came with the first
         if name:
-            self._change(lambda editing: editing.with_new(kind, name))
+            self._change(lambda editing: editing.with_row_added(kind, name))
         if not self._problem:
             self._ask(None)
 
-    def _ask(self, kind: Kind | None) -> None:
+    def _ask(self, kind: RowKind | None) -> None:
         """The field for a name in place of the keys, or the keys. At once: the next letters may be here already."""
         field = self.query_one(Input)
         field.display, self._rows("keys").display = kind is not None, kind is None

@@ -19,7 +19,7 @@ from kit.fields.minima import Trap
 from kit.fields.planner import Unreachable
 from kit.geometry import Pose
 from kit.render.camera import Camera
-from kit.render.field import FieldPicture, changed, with_field
+from kit.render.field import FieldPicture, scaled_intensity, with_field
 from kit.render.scene import FloatArray, Scene
 from kit.tui.screens.fields_keys import FIELDS_HELP, FIELDS_KEYS
 from kit.tui.screens.play import PlayScreen
@@ -107,7 +107,7 @@ class FieldsScreen(PlayScreen):
         opened = self._opened
         if opened is not None:
             picture = opened.picture
-            picture.intensities = changed(picture.intensities, self._names[self._chosen], times)
+            picture.intensities = scaled_intensity(picture.intensities, self._names[self._chosen], times)
             self._traps = picture.traps()
             self.host.post(self._attend)
             self._show()

@@ -13,11 +13,11 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.render.graph import BOX, PLAIN, Plan, Sight, Spot, draw
-from kit.render.graph_data import Conversation, conversation
-from kit.render.graph_layout import Places, arrange
-from kit.render.graph_navigation import across, along, still_there
-from kit.render.message_animation import Travel
+from kit.render.graph import ASCII_LINES, UNICODE_LINES, GraphDrawing, GraphElement, GraphView, draw_graph
+from kit.render.graph_data import GraphData, build_graph_data
+from kit.render.graph_layout import GraphLayout, arrange_graph
+from kit.render.graph_navigation import kept_selection, move_horizontally, move_vertically
+from kit.render.message_animation import MessageAnimation
 from kit.tui.graph_listener import GraphListener, GraphUpdate
 from kit.tui.rows.graph_rows import about, heading, rates, ruled
 from kit.tui.screens.graph_keys import GRAPH_HELP, GRAPH_KEYS, MESSAGE_KEYS
@@ -80,17 +80,17 @@ class GraphScreen(ActivePaintScreen[None]):
         self._host = host
         self._title = title
         self._rule = "-" if theme.terminal.glyphs.value == "ascii" else "─"
-        self._strokes = PLAIN if theme.terminal.glyphs.value == "ascii" else BOX
+        self._strokes = ASCII_LINES if theme.terminal.glyphs.value == "ascii" else UNICODE_LINES
         self._picture = FrameView(theme.palette)
         self._listener = GraphListener(self._arrived)
         self._announced = False
         self._heard: GraphUpdate | None = None
-        self._talk = Conversation((), ())
-        self._places: Places | None = None
-        self._plan: Plan | None = None
-        self._travel = Travel()
+        self._talk = GraphData((), ())
+        self._places: GraphLayout | None = None
+        self._plan: GraphDrawing | None = None
+        self._travel = MessageAnimation()
         self._rates: Mapping[str, float] = {}
-        self._chosen: Spot | None = None
+        self._chosen: GraphElement | None = None
         self._chosen_row = self._top = self._scrolled = 0
         self._everything = False
         self._narrowed = ""
@@ -135,7 +135,7 @@ class GraphScreen(ActivePaintScreen[None]):
         self._announced = False
         heard = self._heard
         if heard is not None and self.is_active:
-            self._travel.hear(heard.said)
+            self._travel.update_counts(heard.said)
             self._is_stale = True
             if self._clock is None:
                 self._frame()
@@ -143,11 +143,11 @@ class GraphScreen(ActivePaintScreen[None]):
     def _frame(self) -> None:
         """Moves the dots on, and comes back as long as there is anything to move or to read."""
         self._clock = None
-        self._travel.frame(self._talk)
+        self._travel.advance(self._talk)
         if self._is_stale and time.monotonic() - self._read >= CALM:
             self._read_anew()
         self._draw()
-        if self._travel.busy or self._is_stale:
+        if self._travel.is_active or self._is_stale:
             self._clock = self.set_timer(FRAME, self._frame)
 
     # What is shown
@@ -162,33 +162,33 @@ class GraphScreen(ActivePaintScreen[None]):
         self._lay_out(self._places)
         self._say()
 
-    def _lay_out(self, before: Places | None) -> None:
+    def _lay_out(self, before: GraphLayout | None) -> None:
         """Places for all that is to be seen; with the places before, nothing jumps."""
         heard = self._heard
         if heard is None or not self.size.width:
             return
-        talk = conversation(heard.state, everything=self._everything, narrowed=self._narrowed)
+        talk = build_graph_data(heard.state, show_all=self._everything, name_filter=self._narrowed)
         if self._plan is None or talk != self._talk or before is None or self._plan.width != self.size.width:
-            self._talk, self._places = talk, arrange(talk, before)
-            self._plan = Plan(talk, self._places, self.size.width)
-        self._choose(still_there(self._plan, self._chosen, self._chosen_row))
+            self._talk, self._places = talk, arrange_graph(talk, before)
+            self._plan = GraphDrawing(talk, self._places, self.size.width)
+        self._choose(kept_selection(self._plan, self._chosen, self._chosen_row))
 
-    def _choose(self, spot: Spot | None) -> None:
+    def _choose(self, spot: GraphElement | None) -> None:
         if spot != self._chosen:
             self._scrolled = 0
         self._chosen = spot
         self._listener.chosen = spot.name.removesuffix("()") if spot and spot.column == "item" else None
         if spot is not None and self._plan is not None:
-            self._chosen_row = self._plan.spots()[spot]
+            self._chosen_row = self._plan.element_rows()[spot]
             rows = max(1, self._picture.size.height)
             self._top = min(max(self._top, self._chosen_row - rows + 1), self._chosen_row)
-            self._top = max(0, min(self._top, self._plan.places.height - rows))
+            self._top = max(0, min(self._top, self._plan.layout.height - rows))
 
     def _draw(self) -> None:
         rows = self._picture.size.height
         if self._plan is not None and rows:
-            sight = Sight(self._rates, self._chosen, self._travel.cells(self._plan), self._top)
-            self._picture.show_frame(draw(self._plan, sight, rows, self._strokes))
+            sight = GraphView(self._rates, self._chosen, self._travel.cells(self._plan), self._top)
+            self._picture.show_frame(draw_graph(self._plan, sight, rows, self._strokes))
 
     def _say(self) -> None:
         heard = self._heard
@@ -223,13 +223,13 @@ class GraphScreen(ActivePaintScreen[None]):
             self._scrolled += steps
             self._say()
         elif self._plan is not None and self._chosen is not None:
-            self._move_to(along(self._plan, self._chosen, steps))
+            self._move_to(move_vertically(self._plan, self._chosen, steps))
 
     def action_across(self, steps: int) -> None:
         if not self._shows_details and self._plan is not None and self._chosen is not None:
-            self._move_to(across(self._plan, self._chosen, steps))
+            self._move_to(move_horizontally(self._plan, self._chosen, steps))
 
-    def _move_to(self, spot: Spot) -> None:
+    def _move_to(self, spot: GraphElement) -> None:
         self._choose(spot)
         self._say()
         self._draw()

@@ -14,14 +14,14 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input
 
-from kit.layers.case_sources import Task, UnknownTask, open_task, solve_task
-from kit.layers.drawing import MOST_IN_PICTURE, Glyphs
+from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
+from kit.layers.drawing import MAX_ENTITIES_IN_PICTURE, GlyphStyle
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.world_planning import WorldPlan
-from kit.layers.guided_tour import Method, Part, case_page, method_pages, plan_pages
-from kit.layers.guided_tour import Page as Step
-from kit.layers.planning import Plan
-from kit.layers.requirements import Case
+from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages, plan_pages
+from kit.layers.guided_tour import TourPage as Step
+from kit.layers.planning import LayerPlan
+from kit.layers.requirements import LayerCase
 from kit.tui.rows.case_rows import picture, scrolled, words_width
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers_keys import WALK_HELP, WALK_KEYS
@@ -34,18 +34,18 @@ from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError
 
-PARTS: Final[tuple[Part, ...]] = ("case", "method", "fewest", "proof")
+PARTS: Final[tuple[TourPart, ...]] = ("case", "method", "fewest", "proof")
 
 LEAST_PICTURE: Final = 30
 """Columns; with fewer the words take all."""
 
-Solution = tuple[Plan, WorldPlan | None]
+Solution = tuple[LayerPlan, WorldPlan | None]
 
 
 class Solved(Message):
     """The planner is done with a task."""
 
-    def __init__(self, task: Task, solution: Solution) -> None:
+    def __init__(self, task: PlanningTask, solution: Solution) -> None:
         super().__init__()
         self.task = task
         self.solution = solution
@@ -78,12 +78,12 @@ class LayersScreen(ActivePaintScreen[None]):
     LayersScreen Input, LayersScreen Input:focus { border: none; padding: 0; height: 1; background: transparent; }
     """
 
-    def __init__(self, theme: Theme, task: Task, title: str, *, saved_to: Path) -> None:
+    def __init__(self, theme: Theme, task: PlanningTask, title: str, *, saved_to: Path) -> None:
         super().__init__()
-        self._glyphs: Glyphs = "ascii" if theme.terminal.glyphs.value == "ascii" else "braille"
+        self._glyphs: GlyphStyle = "ascii" if theme.terminal.glyphs.value == "ascii" else "braille"
         self._folder = saved_to
         self._asked, self._title = task, title
-        self._method = self._usual = Method(task.case)
+        self._method = self._usual = GreedyTour(task.case)
         self._solution: Solution | None = None
         self._steps: tuple[Step, ...] = ()
         self._at = self._top = 0
@@ -119,10 +119,10 @@ class LayersScreen(ActivePaintScreen[None]):
 
     # The case and its plan
 
-    def open(self, task: Task, title: str) -> None:
+    def open(self, task: PlanningTask, title: str) -> None:
         """Another case, from its first page on."""
         self._asked, self._title = task, title
-        self._method = self._usual = Method(task.case)
+        self._method = self._usual = GreedyTour(task.case)
         self._solution = None
         self._at = self._top = 0
         self._remark = row()
@@ -163,7 +163,7 @@ class LayersScreen(ActivePaintScreen[None]):
     @property
     def _picture_width(self) -> int:
         room = self.size.width - words_width(self.size.width) - 1
-        return room if room >= LEAST_PICTURE and len(self._asked.case.names) <= MOST_IN_PICTURE else 0
+        return room if room >= LEAST_PICTURE and len(self._asked.case.names) <= MAX_ENTITIES_IN_PICTURE else 0
 
     @property
     def _words_width(self) -> int:
@@ -179,7 +179,7 @@ class LayersScreen(ActivePaintScreen[None]):
         if beside.display:
             beside.show(picture(self._asked.case, step, self._picture_width, rows, self._glyphs))
         self._rows("words").styles.width = self._words_width
-        words, self._top = scrolled(step.words, self._top, rows)
+        words, self._top = scrolled(step.lines, self._top, rows)
         self._rows("words").show(words)
         self._rows("heading").show([self._heading(step)])
         self._rows("said").show([self._remark])
@@ -198,7 +198,7 @@ class LayersScreen(ActivePaintScreen[None]):
     def action_go(self, steps: int) -> None:
         self._turn_to(min(max(self._at + steps, 0), len(self._steps) - 1))
 
-    def action_part(self, part: Part) -> None:
+    def action_part(self, part: TourPart) -> None:
         self._turn_to(next((i for i, step in enumerate(self._steps) if step.part == part), self._at))
 
     def _turn_to(self, at: int) -> None:
@@ -222,7 +222,7 @@ class LayersScreen(ActivePaintScreen[None]):
 
         def begin_with(chosen: str | None) -> None:
             if chosen is not None:
-                self._method = self._method.beginning_with(number, edges[chosen])
+                self._method = self._method.with_edge(number, edges[chosen])
                 self._lay_out()
                 self._say(f"From here on anew: the method now ends with {self._method.run.size} layers.")
 
@@ -231,10 +231,12 @@ class LayersScreen(ActivePaintScreen[None]):
     def action_edit(self) -> None:
         self.app.push_screen(CaseEditor(self._asked.case, self._glyphs), self._edited)
 
-    def _edited(self, case: Case | None) -> None:
+    def _edited(self, case: LayerCase | None) -> None:
         if case is not None and case != self._asked.case:
             is_new = self._title in EXAMPLES  # and so is what it is about
-            self.open(Task(replace(case, title="") if is_new else case), "mine" if is_new else self._title)
+            self.open(
+                PlanningTask(replace(case, title="") if is_new else case), "mine" if is_new else self._title
+            )
 
     def action_examples(self) -> None:
         choices = [PickerItem(name, name, case.title) for name, case in EXAMPLES.items()]
@@ -248,7 +250,7 @@ class LayersScreen(ActivePaintScreen[None]):
             return
         try:
             self.open(open_task(name), name)
-        except (WorldError, UnknownTask) as error:
+        except (WorldError, UnknownPlanningTask) as error:
             self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

@@ -12,8 +12,8 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from kit.render.frame import Frame, diff
-from kit.render.roles import ANSI, Color, Ink, Palette, Role
+from kit.render.frame import Frame, changed_spans
+from kit.render.roles import ANSI_PALETTE, Color, Palette, Role, RoleStyle
 from kit.tui.textual_patches import crop_left
 
 
@@ -24,7 +24,7 @@ class FrameView(Widget):
 
     def __init__(
         self,
-        palette: Palette = ANSI,
+        palette: Palette = ANSI_PALETTE,
         *,
         id: str | None = None,  # noqa: A002 - Textual's own name
         classes: str | None = None,
@@ -45,7 +45,7 @@ class FrameView(Widget):
 
     def show_frame(self, frame: Frame) -> bool:
         """Shows a frame from now on; says whether anything looks different."""
-        spans = diff(self._frame, frame)
+        spans = changed_spans(self._frame, frame)
         if self._frame is None or self._frame.shape != frame.shape:
             self._strips.clear()
         self._frame = frame
@@ -82,7 +82,7 @@ class FrameView(Widget):
         width = self.size.width
         if self._frame is None or y >= self._frame.shape[0]:
             return Strip([Segment(" " * width, self._style(0, 0))], width)
-        segments = [Segment(run.text, self._style(run.ink, run.paper)) for run in self._frame.runs(y)]
+        segments = [Segment(run.text, self._style(run.fg, run.bg)) for run in self._frame.runs(y)]
         return Strip(segments, self._frame.shape[1]).adjust_cell_length(width, self._style(0, 0))
 
     def _style(self, ink: int, paper: int) -> Style | None:
@@ -91,7 +91,7 @@ class FrameView(Widget):
             self._styles[look] = self._made_style(self._palette[Role(ink)], self._palette[Role(paper)])
         return self._styles[look]
 
-    def _made_style(self, ink: Ink, paper: Ink) -> Style | None:
+    def _made_style(self, ink: RoleStyle, paper: RoleStyle) -> Style | None:
         """None, which costs no bytes, for the terminal's own ink on its own paper."""
         style = Style(
             color=_rich(ink.color), bgcolor=_rich(paper.color), bold=ink.bold or None, dim=ink.dim or None

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from textual import events
 
 from kit.render.curve import Axes, Curve, draw_curves
-from kit.render.encode import Braille, Encoder
-from kit.render.roles import ANSI, Palette
+from kit.render.encode import BrailleEncoder, Encoder
+from kit.render.roles import ANSI_PALETTE, Palette
 from kit.tui.widgets.frame_view import FrameView
 
 
@@ -21,14 +21,14 @@ class LearningCurveView(FrameView):
         self,
         axes: Axes | None = None,
         encoder: Encoder | None = None,
-        palette: Palette = ANSI,
+        palette: Palette = ANSI_PALETTE,
         *,
         id: str | None = None,  # noqa: A002 - Textual's own name
         classes: str | None = None,
     ) -> None:
         super().__init__(palette, id=id, classes=classes)
         self._axes = axes or Axes()
-        self._encoder = encoder or Braille()
+        self._encoder = encoder or BrailleEncoder()
         self._curves: Sequence[Curve] = ()
 
     def show(self, curves: Sequence[Curve], axes: Axes | None = None) -> bool:

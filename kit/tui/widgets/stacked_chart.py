@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from textual import events
 
-from kit.render.roles import ANSI, Palette
-from kit.render.stacked_chart import Part, Shares, draw_shares
+from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 from kit.tui.widgets.frame_view import FrameView
 
 
@@ -18,8 +18,8 @@ class StackedChartView(FrameView):
 
     def __init__(
         self,
-        parts: Sequence[Part],
-        palette: Palette = ANSI,
+        parts: Sequence[ChartPart],
+        palette: Palette = ANSI_PALETTE,
         *,
         margin: int = 0,
         id: str | None = None,  # noqa: A002 - Textual's own name
@@ -27,9 +27,9 @@ class StackedChartView(FrameView):
         super().__init__(palette, id=id)
         self._parts = parts
         self._margin = margin
-        self._shares: Shares | None = None
+        self._shares: StackedCounts | None = None
 
-    def show(self, shares: Shares) -> bool:
+    def show(self, shares: StackedCounts) -> bool:
         """Draws these shares from now on; says whether anything looks different."""
         self._shares = shares
         return self._redraw()
@@ -41,4 +41,4 @@ class StackedChartView(FrameView):
         columns, rows = self.size
         if not columns or not rows or self._shares is None:
             return False
-        return self.show_frame(draw_shares(self._shares, self._parts, columns, rows, self._margin))
+        return self.show_frame(draw_stacked_chart(self._shares, self._parts, columns, rows, self._margin))

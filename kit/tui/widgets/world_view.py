@@ -10,9 +10,9 @@ from textual.message import Message
 from textual.timer import Timer
 
 from kit.render.camera import Camera
-from kit.render.encode import Braille, Encoder
+from kit.render.encode import BrailleEncoder, Encoder
 from kit.render.painter import Painter
-from kit.render.roles import ANSI, Palette
+from kit.render.roles import ANSI_PALETTE, Palette
 from kit.render.scene import FloatArray, Scene
 from kit.tui.frame_throttle import FrameThrottle
 from kit.tui.textual_patches import ask_cursor
@@ -39,7 +39,7 @@ class WorldView(FrameView):
     def __init__(
         self,
         encoder: Encoder | None = None,
-        palette: Palette = ANSI,
+        palette: Palette = ANSI_PALETTE,
         *,
         clock: Callable[[], float] = time.monotonic,
         id: str | None = None,  # noqa: A002 - Textual's own name
@@ -47,7 +47,7 @@ class WorldView(FrameView):
     ) -> None:
         super().__init__(palette, id=id, classes=classes)
         self.throttle = FrameThrottle()
-        self._painter = Painter(encoder or Braille())
+        self._painter = Painter(encoder or BrailleEncoder())
         self._clock = clock
         self._scene: Scene | None = None
         self._camera: Camera | None = None

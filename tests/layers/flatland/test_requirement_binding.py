@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from kit.layers.assignment import Breach
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.requirement_binding import bind
+from kit.layers.assignment import RequirementBreach
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import WorldCase
-from kit.layers.planning import solve
+from kit.layers.planning import solve_layers
 from kit.layers.reading import read_requirements
-from kit.layers.requirements import Contact, Sight
+from kit.layers.requirements import ContactRequirement, SightRequirement
 from kit.world.problems import WorldError
 from tests.layers.conftest import YARD, WriteFiles
 
@@ -34,13 +34,13 @@ lasers:
 def laid(world: Path, text: str) -> WorldCase:
     asked = world.with_name("asked.yaml")
     asked.write_text(text)
-    return bind(read_requirements(asked), slots_of(read_world(world)))
+    return bind_requirements(read_requirements(asked), find_layer_lists(read_world_layers(world)))
 
 
 def test_what_the_yard_does_is_what_is_asked(yard: Path) -> None:
     bound = laid(yard, ASKED)
-    assert bound.wrong == ()
-    assert solve(bound.case).size == 4
+    assert bound.current_breaches == ()
+    assert solve_layers(bound.case).size == 4
     assert set(bound.lasers) == {"robot.lidar", "beacon.eye"}
 
 
@@ -50,25 +50,39 @@ def test_what_the_yard_does_is_what_is_asked(yard: Path) -> None:
         (
             "solid: [robot, chair]",
             "solid: [chair]",
-            Breach(Contact("solid", "robot"), False, ("solid", "both")),
+            RequirementBreach(ContactRequirement("solid", "robot"), False, ("solid", "both")),
         ),
-        ("fence: [chair]", "fence: [chair, robot]", Breach(Contact("fence", "robot"), True)),
-        ("eye: [robot]", "eye: [robot, chair]", Breach(Sight("beacon.eye", "chair"), True)),
-        ("lidar: [solid]", "lidar: []", Breach(Sight("robot.lidar", "solid"), False, ("seen",))),
+        (
+            "fence: [chair]",
+            "fence: [chair, robot]",
+            RequirementBreach(ContactRequirement("fence", "robot"), True),
+        ),
+        (
+            "eye: [robot]",
+            "eye: [robot, chair]",
+            RequirementBreach(SightRequirement("beacon.eye", "chair"), True),
+        ),
+        (
+            "lidar: [solid]",
+            "lidar: []",
+            RequirementBreach(SightRequirement("robot.lidar", "solid"), False, ("seen",)),
+        ),
     ],
 )
-def test_where_the_world_differs_from_what_is_asked(yard: Path, old: str, new: str, breach: Breach) -> None:
-    assert laid(yard, ASKED.replace(old, new)).wrong == (breach,)
+def test_where_the_world_differs_from_what_is_asked(
+    yard: Path, old: str, new: str, breach: RequirementBreach
+) -> None:
+    assert laid(yard, ASKED.replace(old, new)).current_breaches == (breach,)
 
 
 def test_one_list_of_several_that_does_not_is_found(write: WriteFiles) -> None:
     """The base is right; the bumper, which the base does not make up for, is in no layer."""
     robot = YARD["robot.model.yaml"].replace("layers: [solid, both, tracked]}  # in front", "layers: []}")
-    wrong = laid(write({"robot.model.yaml": robot}), ASKED).wrong
-    assert {breach.what for breach in wrong if breach.wanted} == {
-        Contact("solid", "robot"),
-        Contact("robot", "chair"),
-        Sight("beacon.eye", "robot"),
+    wrong = laid(write({"robot.model.yaml": robot}), ASKED).current_breaches
+    assert {breach.requirement for breach in wrong if breach.is_missing} == {
+        ContactRequirement("solid", "robot"),
+        ContactRequirement("robot", "chair"),
+        SightRequirement("beacon.eye", "robot"),
     }
 
 
@@ -139,5 +153,5 @@ bodies:
     )
     asked = asked.replace("fence: [chair]", "fence: [chair.wide]")
     bound = laid(write({"chair.model.yaml": chair}), asked)
-    assert bound.wrong == ()
+    assert bound.current_breaches == ()
     assert {"chair.seat.0", "chair.seat.1"} <= set(bound.case.names)

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from kit.layers.assignment import breaches
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.world_case import as_requirements, today_case
-from kit.layers.planning import solve
-from kit.layers.reading import read_requirements, written
-from kit.layers.requirements import Contact
+from kit.layers.assignment import find_breaches
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.world_case import current_case, to_requirements_file
+from kit.layers.planning import solve_layers
+from kit.layers.reading import read_requirements, requirements_text
+from kit.layers.requirements import ContactRequirement
 from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.layers.cases import fewest_layers
 from tests.layers.conftest import YARD, WriteFiles
@@ -20,29 +20,29 @@ from tests.layers.worlds import random_world
 
 
 def test_the_yards_entities_are_those_a_person_would_draw(yard: Path) -> None:
-    world_case = today_case(slots_of(read_world(yard)))
+    world_case = current_case(find_layer_lists(read_world_layers(yard)))
     case = world_case.case
     assert case.names == ("solid", "fence", "robot", "chair", "beacon")
     assert [(e.kind, e.copies) for e in case.entities] == [("map", 1)] * 2 + [
         ("bodies", n) for n in (1, 2, 1)
     ]
     assert set(case.edges()) == {
-        Contact("solid", "robot"),
-        Contact("solid", "chair"),
-        Contact("fence", "chair"),
-        Contact("robot", "chair"),
+        ContactRequirement("solid", "robot"),
+        ContactRequirement("solid", "chair"),
+        ContactRequirement("fence", "chair"),
+        ContactRequirement("robot", "chair"),
     }
-    assert Contact("chair", "chair") in case.must
+    assert ContactRequirement("chair", "chair") in case.required_contacts
     assert case.laser["robot.lidar"].sees == {"solid"}
     assert case.laser["beacon.eye"].sees == {"robot"}
     assert case.laser["beacon.eye"].either == {"beacon"}
-    assert world_case.wrong == ()
+    assert world_case.current_breaches == ()
 
 
 def test_a_hull_around_the_laser_asks_less_than_what_sticks_out_and_goes_with_it(yard: Path) -> None:
     """Base and bumper are one entity, though only the bumper can be seen by the robot's own laser."""
-    world_case = today_case(slots_of(read_world(yard)))
-    addresses = [spot.address for slot in world_case.entities["robot"] for spot in slot.spots]
+    world_case = current_case(find_layer_lists(read_world_layers(yard)))
+    addresses = [spot.address for slot in world_case.entities["robot"] for spot in slot.uses]
     assert addresses == ["robot/bumper[0]", "robot/base[0]"]
 
 
@@ -50,7 +50,7 @@ def test_bodies_with_different_needs_stay_apart(write: WriteFiles) -> None:
     robot = YARD["robot.model.yaml"].replace(
         "layers: [solid, both, tracked]}  # in front", "layers: [solid, both]}"
     )
-    case = today_case(slots_of(read_world(write({"robot.model.yaml": robot})))).case
+    case = current_case(find_layer_lists(read_world_layers(write({"robot.model.yaml": robot})))).case
     assert {"robot.base", "robot.bumper"} <= set(case.names)
     assert case.laser["beacon.eye"].sees == {"robot.base"}
 
@@ -58,7 +58,9 @@ def test_bodies_with_different_needs_stay_apart(write: WriteFiles) -> None:
 def test_copies_named_like_a_model_or_a_map_keep_names_of_their_own(write: WriteFiles) -> None:
     world = YARD["world.yaml"].replace("name: chair1", "name: chair").replace("name: fence", "name: beacon")
     chair = YARD["chair.model.yaml"].replace("fence", "beacon")
-    case = today_case(slots_of(read_world(write({"world.yaml": world, "chair.model.yaml": chair})))).case
+    case = current_case(
+        find_layer_lists(read_world_layers(write({"world.yaml": world, "chair.model.yaml": chair})))
+    ).case
     assert case.names == ("solid", "beacon", "robot", "chair+", "beacon.all")
 
 
@@ -66,10 +68,14 @@ def test_copies_named_like_a_model_or_a_map_keep_names_of_their_own(write: Write
 def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) -> None:
     """Body by body: an entity's relation is what ``kit.world.collision_rules`` tells of the bodies it stands for."""
     files = {} if name == "yard" else random_world(random.Random(name))
-    world = read_world(write(files))
-    world_case = today_case(slots_of(world), grouped=False) if name != "yard" else today_case(slots_of(world))
+    world = read_world_layers(write(files))
+    world_case = (
+        current_case(find_layer_lists(world), grouped=False)
+        if name != "yard"
+        else current_case(find_layer_lists(world))
+    )
     bodies = {
-        entity: {(spot.model, spot.thing.body) for slot in lists for spot in slot.spots}
+        entity: {(spot.model, spot.body.body) for slot in lists for spot in slot.uses}
         for entity, lists in world_case.entities.items()
     }
     touching = CollisionRules(world)
@@ -86,29 +92,29 @@ def test_the_case_says_what_touching_says(write: WriteFiles, name: str | int) ->
             assert "collide" in ours, (a.name, b.name, verdict)
         elif a.model != b.model:  # of one model, a copy may do what this one does not
             assert "collide" not in ours, (a.name, b.name, verdict)
-    assert breaches(world_case.case, world_case.today) == ()
+    assert find_breaches(world_case.case, world_case.current_assignment) == ()
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_putting_lists_together_costs_no_layer(write: WriteFiles, seed: int) -> None:
-    slots = slots_of(read_world(write(random_world(random.Random(seed)))))
-    grouped, single = today_case(slots), today_case(slots, grouped=False)
-    assert solve(grouped.case).size == solve(single.case).size
+    slots = find_layer_lists(read_world_layers(write(random_world(random.Random(seed)))))
+    grouped, single = current_case(slots), current_case(slots, grouped=False)
+    assert solve_layers(grouped.case).size == solve_layers(single.case).size
     if len(single.case.names) <= 7:
-        assert solve(grouped.case).size == fewest_layers(single.case)
+        assert solve_layers(grouped.case).size == fewest_layers(single.case)
 
 
 @pytest.mark.parametrize("seed", range(30))
 def test_written_down_and_laid_over_the_world_again_it_asks_the_same(write: WriteFiles, seed: int) -> None:
-    from kit.layers.flatland.requirement_binding import bind
+    from kit.layers.flatland.requirement_binding import bind_requirements
 
     file = write(random_world(random.Random(seed)))
-    world_case = today_case(slots_of(read_world(file)))
+    world_case = current_case(find_layer_lists(read_world_layers(file)))
     text = file.with_name("asked.yaml")
-    text.write_text(written(world_case.case, requirements=as_requirements(world_case)))
-    bound = bind(read_requirements(text), world_case.slots)
-    assert bound.wrong == ()
-    assert solve(bound.case).size == solve(world_case.case).size
+    text.write_text(requirements_text(world_case.case, requirements=to_requirements_file(world_case)))
+    bound = bind_requirements(read_requirements(text), world_case.layer_lists)
+    assert bound.current_breaches == ()
+    assert solve_layers(bound.case).size == solve_layers(world_case.case).size
 
 
 def test_a_world_without_layers_meets_in_all_of_them(write: WriteFiles) -> None:
@@ -116,6 +122,8 @@ def test_a_world_without_layers_meets_in_all_of_them(write: WriteFiles) -> None:
         "properties: {}\nlayers: []\nmodels:\n  - {name: a, model: m.yaml}\n  - {name: b, model: m.yaml}\n"
     )
     model = "bodies:\n  - name: x\n    footprints: [{type: circle, radius: 1, density: 1}]\n"
-    world_case = today_case(slots_of(read_world(write({"world.yaml": world, "m.yaml": model}))))
-    assert [layer.name for layer in world_case.today.layers] == ["all"]
-    assert breaches(world_case.case, world_case.today) == ()
+    world_case = current_case(
+        find_layer_lists(read_world_layers(write({"world.yaml": world, "m.yaml": model})))
+    )
+    assert [layer.name for layer in world_case.current_assignment.layers] == ["all"]
+    assert find_breaches(world_case.case, world_case.current_assignment) == ()

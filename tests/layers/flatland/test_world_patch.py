@@ -8,10 +8,17 @@ from pathlib import Path
 
 import pytest
 
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.requirement_binding import bind
-from kit.layers.flatland.world_case import today_case
-from kit.layers.flatland.world_patch import Patch, PatchError, apply, differences, patch_of, recheck
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
+from kit.layers.flatland.world_case import current_case
+from kit.layers.flatland.world_patch import (
+    PatchError,
+    WorldPatch,
+    apply_patch,
+    behaviour_differences,
+    build_patch,
+    make_recheck,
+)
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.reading import read_requirements
 from kit.workspace import write_atomically
@@ -33,50 +40,50 @@ DIFF = """\
 
 
 def planned(world: Path) -> WorldPlan:
-    return plan_world(today_case(slots_of(read_world(world))))
+    return plan_world(current_case(find_layer_lists(read_world_layers(world))))
 
 
 def contents(world: Path) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in world.parent.iterdir()}
 
 
-def applied(world: Path, plan: WorldPlan, patch: Patch) -> None:
-    apply(patch, recheck(plan, lambda: read_world(world)))
+def applied(world: Path, plan: WorldPlan, patch: WorldPatch) -> None:
+    apply_patch(patch, make_recheck(plan, lambda: read_world_layers(world)))
 
 
-def changed_lines(patch: Patch) -> list[str]:
+def changed_lines(patch: WorldPatch) -> list[str]:
     lines = patch.diff().splitlines(keepends=True)
     return [line for line in lines if line[0] in "+-" and not line.startswith(("+++", "---"))]
 
 
 def test_the_diff_shows_what_changes_and_nothing_else(yard: Path) -> None:
     before = contents(yard)
-    patch = patch_of(planned(yard))
+    patch = build_patch(planned(yard))
     assert "".join(changed_lines(patch)) == DIFF
-    assert patch.left_alone == ()
+    assert patch.skipped == ()
     assert contents(yard) == before
 
 
 def test_applied_the_world_does_the_same_with_as_many_layers_as_planned(yard: Path) -> None:
-    plan, before = planned(yard), read_world(yard)
-    applied(yard, plan, patch_of(plan))
-    after = read_world(yard)
+    plan, before = planned(yard), read_world_layers(yard)
+    applied(yard, plan, build_patch(plan))
+    after = read_world_layers(yard)
     assert len(after.layer_bits) == 4
-    assert differences(before, after) == []
+    assert behaviour_differences(before, after) == []
     again = planned(yard)
-    assert again.changes_nothing
-    assert patch_of(again) == Patch((), ())
+    assert again.is_unchanged
+    assert build_patch(again) == WorldPatch((), ())
 
 
 @pytest.mark.parametrize("seed", range(80))
 def test_any_world_is_patched_right_or_not_at_all(write: WriteFiles, seed: int) -> None:
     world = write(random_world(random.Random(seed)))
-    plan, before = planned(world), read_world(world)
-    patch = patch_of(plan)
-    assert patch.left_alone == ()
+    plan, before = planned(world), read_world_layers(world)
+    patch = build_patch(plan)
+    assert patch.skipped == ()
     applied(world, plan, patch)
-    after = read_world(world)
-    assert differences(before, after) == []
+    after = read_world_layers(world)
+    assert behaviour_differences(before, after) == []
     assert len(after.layer_bits) == plan.size
     comments = [text.count("#") for text in map(bytes.decode, contents(world).values())]
     assert sum(comments) >= sum(file.before.decode().count("#") for file in patch.files) - sum(
@@ -90,10 +97,10 @@ def test_flatlands_own_world_is_patched_right(tmp_path: Path) -> None:
     folder = tmp_path / "world"
     shutil.copytree(FLATLAND / "flatland_server/test/load_world_tests/simple_test_A", folder)
     world = folder / "world.yaml"
-    plan, before = planned(world), read_world(world)
-    applied(world, plan, patch_of(plan))
-    assert differences(before, read_world(world)) == []
-    assert list(read_world(world).layer_bits) == ["2d", "3d", "lines"]
+    plan, before = planned(world), read_world_layers(world)
+    applied(world, plan, build_patch(plan))
+    assert behaviour_differences(before, read_world_layers(world)) == []
+    assert list(read_world_layers(world).layer_bits) == ["2d", "3d", "lines"]
 
 
 def test_new_wishes_are_written_and_checked(yard: Path) -> None:
@@ -105,9 +112,11 @@ def test_new_wishes_are_written_and_checked(yard: Path) -> None:
         "lasers:\n  lidar: [solid, fence]\n  eye: [robot, chair]\n"
     )
     requirements = read_requirements(asked)
-    plan = plan_world(bind(requirements, slots_of(read_world(yard))))
-    apply(patch_of(plan), recheck(plan, lambda: read_world(yard), requirements=requirements))
-    assert bind(requirements, slots_of(read_world(yard))).wrong == ()
+    plan = plan_world(bind_requirements(requirements, find_layer_lists(read_world_layers(yard))))
+    apply_patch(
+        build_patch(plan), make_recheck(plan, lambda: read_world_layers(yard), requirements=requirements)
+    )
+    assert bind_requirements(requirements, find_layer_lists(read_world_layers(yard))).current_breaches == ()
 
 
 @pytest.mark.parametrize(
@@ -129,8 +138,8 @@ def test_a_file_that_cannot_be_patched_safely_is_left_alone_and_so_are_the_other
     assert old in YARD[name]
     world = write({name: YARD[name].replace(old, new, 1)})
     before, plan = contents(world), planned(world)
-    patch = patch_of(plan)
-    (left,) = patch.left_alone
+    patch = build_patch(plan)
+    (left,) = patch.skipped
     assert left.path.name == name
     assert reason in left.reason
     assert left.by_hand
@@ -144,10 +153,10 @@ def test_a_model_that_another_world_names_is_left_alone_unless_asked(yard: Path)
     other = yard.with_name("other.world.yaml")
     other.write_text("properties: {}\nlayers: []\nmodels:\n  - {name: c, model: chair.model.yaml}\n")
     plan = planned(yard)
-    (left,) = patch_of(plan).left_alone
+    (left,) = build_patch(plan).skipped
     assert left.path.name == "chair.model.yaml"
     assert str(other) in left.reason
-    assert patch_of(plan, also_shared=True).left_alone == ()
+    assert build_patch(plan, also_shared=True).skipped == ()
 
 
 def test_a_layer_called_all_cannot_be_named_alone(write: WriteFiles) -> None:
@@ -155,14 +164,14 @@ def test_a_layer_called_all_cannot_be_named_alone(write: WriteFiles) -> None:
     world = write(
         {**files, "chair.model.yaml": files["chair.model.yaml"].replace('["both", "fence"]', "[both]")}
     )
-    patch = patch_of(planned(world))
-    assert [left.path.name for left in patch.left_alone] == ["chair.model.yaml"]
-    assert '"all"' in patch.left_alone[0].reason
+    patch = build_patch(planned(world))
+    assert [left.path.name for left in patch.skipped] == ["chair.model.yaml"]
+    assert '"all"' in patch.skipped[0].reason
 
 
 def test_a_file_changed_meanwhile_is_not_written_over(yard: Path) -> None:
     plan = planned(yard)
-    patch = patch_of(plan)
+    patch = build_patch(plan)
     world = yard.read_bytes() + b"# mine\n"
     yard.write_bytes(world)
     before = contents(yard)
@@ -172,9 +181,9 @@ def test_a_file_changed_meanwhile_is_not_written_over(yard: Path) -> None:
 
 
 def test_a_result_that_is_not_what_was_asked_is_taken_back(yard: Path) -> None:
-    before, patch = contents(yard), patch_of(planned(yard))
+    before, patch = contents(yard), build_patch(planned(yard))
     with pytest.raises(PatchError, match="no longer sees"):
-        apply(patch, lambda: ["the lidar no longer sees the walls"])
+        apply_patch(patch, lambda: ["the lidar no longer sees the walls"])
     assert contents(yard) == before
 
 
@@ -183,7 +192,7 @@ def test_a_write_that_fails_half_way_leaves_every_file_as_it_was(
     yard: Path, monkeypatch: pytest.MonkeyPatch, failing: int
 ) -> None:
     before, plan = contents(yard), planned(yard)
-    patch = patch_of(plan)
+    patch = build_patch(plan)
     assert len(patch.files) == 3
     count = 0
 
@@ -204,7 +213,7 @@ def test_line_ends_byte_order_mark_and_permissions_stay(write: WriteFiles) -> No
     world = write({"world.yaml": ("\ufeff" + YARD["world.yaml"].replace("\n", "\r\n")).encode()})
     world.chmod(0o640)
     plan = planned(world)
-    applied(world, plan, patch_of(plan))
+    applied(world, plan, build_patch(plan))
     content = world.read_bytes()
     assert content.startswith("\ufeff".encode())
     assert content.count(b"\n") == content.count(b"\r\n") > 10
@@ -212,9 +221,11 @@ def test_line_ends_byte_order_mark_and_permissions_stay(write: WriteFiles) -> No
 
 
 def test_differences_are_named(yard: Path, write: WriteFiles) -> None:
-    before = read_world(yard)
-    after = read_world(write({"beacon.model.yaml": YARD["beacon.model.yaml"].replace("[tracked]", "[seen]")}))
-    assert differences(before, after) == [
+    before = read_world_layers(yard)
+    after = read_world_layers(
+        write({"beacon.model.yaml": YARD["beacon.model.yaml"].replace("[tracked]", "[seen]")})
+    )
+    assert behaviour_differences(before, after) == [
         "beacon/eye sees walls of solid",
         "beacon/eye no longer sees robot/base",
         "beacon/eye no longer sees robot/bumper",

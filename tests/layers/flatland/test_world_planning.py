@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from kit.layers.assignment import breaches
-from kit.layers.flatland.layer_lists import read_world, slots_of
-from kit.layers.flatland.requirement_binding import bind
-from kit.layers.flatland.world_case import today_case
+from kit.layers.assignment import find_breaches
+from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
+from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.reading import read_requirements
 from kit.world.catalogue import MapCard, all_maps
@@ -22,12 +22,12 @@ FLATLAND = Path(__file__).parents[4] / "shared" / "flatland_worlds" / "avidbots-
 
 
 def planned(world: Path, root: Path | None = None) -> WorldPlan:
-    return plan_world(today_case(slots_of(read_world(world, root=root))))
+    return plan_world(current_case(find_layer_lists(read_world_layers(world, root=root))))
 
 
 def test_the_yard_needs_four_of_its_six_names(yard: Path) -> None:
     plan = planned(yard)
-    assert (plan.names_today, plan.size, plan.bound, plan.optimal) == (6, 4, 4, True)
+    assert (plan.current_name_count, plan.size, plan.bound, plan.is_optimal) == (6, 4, 4, True)
     assert [layer.name for layer in plan.assignment.layers] == ["solid", "seen", "fence", "tracked"]
     assert plan.assignment.layers_of("robot") == ("solid", "tracked")
     assert plan.assignment.layers_of("chair") == ("solid", "fence")
@@ -40,8 +40,8 @@ def test_what_is_as_good_as_can_be_stays_as_it_is(write: WriteFiles) -> None:
         name: text.replace("solid, both", "solid").replace('"both"', "solid") for name, text in YARD.items()
     }
     plan = planned(write({**files, "world.yaml": world}))
-    assert plan.changes_nothing
-    assert plan.assignment is plan.world_case.today
+    assert plan.is_unchanged
+    assert plan.assignment is plan.world_case.current_assignment
 
 
 def test_who_is_in_all_layers_and_may_be_stays_there(write: WriteFiles) -> None:
@@ -78,7 +78,7 @@ def test_the_reflectance_layer_stays_what_it_is(write: WriteFiles) -> None:
     assert plan.size == 5
     shining = next(layer for layer in plan.assignment.layers if layer.name == "reflectance")
     assert shining.members == {"robot.bumper"}
-    assert breaches(plan.world_case.case, plan.assignment) == ()
+    assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
 def test_a_kept_layer_that_does_what_must_not_be_is_named(write: WriteFiles) -> None:
@@ -96,7 +96,7 @@ def test_a_kept_layer_that_does_what_must_not_be_is_named(write: WriteFiles) -> 
         "maps: [solid, fence]\nmodels: [robot, chair, beacon]\ncopies: {chair: [chair1, chair2]}\n"
         "collide: {chair: [chair, fence]}\nlasers: {lidar: [], eye: []}\n"
     )
-    bound = bind(read_requirements(asked), slots_of(read_world(world)))
+    bound = bind_requirements(read_requirements(asked), find_layer_lists(read_world_layers(world)))
     with pytest.raises(WorldError, match="reflectance"):
         plan_world(bound)
 
@@ -117,25 +117,25 @@ def test_new_requirements_get_new_names(write: WriteFiles) -> None:
     asked.write_text(
         "maps: [hall]\nmodels: [robot, drone, gull]\ncollide: {hall: [robot, drone], drone: [gull]}\n"
     )
-    plan = plan_world(bind(read_requirements(asked), slots_of(read_world(world))))
-    assert [breach.wanted for breach in plan.wrong_today] == [False, False, False]
+    plan = plan_world(bind_requirements(read_requirements(asked), find_layer_lists(read_world_layers(world))))
+    assert [breach.is_missing for breach in plan.current_breaches] == [False, False, False]
     assert [layer.name for layer in plan.assignment.layers] == ["hall", "hall_2", "free_1"]
-    assert breaches(plan.world_case.case, plan.assignment) == ()
+    assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_a_worlds_plan_does_what_the_world_does_with_no_more_names(write: WriteFiles, seed: int) -> None:
     plan = planned(write(random_world(random.Random(seed))))
-    assert plan.optimal
-    assert plan.size <= plan.names_today
-    assert breaches(plan.world_case.case, plan.assignment) == ()
+    assert plan.is_optimal
+    assert plan.size <= plan.current_name_count
+    assert find_breaches(plan.world_case.case, plan.assignment) == ()
 
 
 @pytest.mark.parametrize("card", all_maps(), ids=lambda card: card.name)
 def test_no_map_of_the_kit_could_do_with_fewer_layers(card: MapCard) -> None:
     plan = planned(card.world_file, card.root)
-    assert plan.optimal
-    assert plan.changes_nothing
+    assert plan.is_optimal
+    assert plan.is_unchanged
 
 
 @pytest.mark.parametrize(
@@ -156,4 +156,4 @@ def test_flatlands_own_worlds(world: str, today: int, needed: int) -> None:
     if not FLATLAND.is_dir():
         pytest.skip(f"Flatland's own worlds are not here: {FLATLAND}")
     plan = planned(FLATLAND / world, FLATLAND)
-    assert (plan.names_today, plan.size, plan.optimal) == (today, needed, True)
+    assert (plan.current_name_count, plan.size, plan.is_optimal) == (today, needed, True)

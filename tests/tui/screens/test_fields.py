@@ -54,7 +54,7 @@ def panel(screen: FieldsScreen) -> str:
 
 def arrows(screen: FieldsScreen) -> int:
     assert screen.world.frame is not None
-    return int((screen.world.frame.inks == Role.FIELD).sum())
+    return int((screen.world.frame.fg == Role.FIELD).sum())
 
 
 def test_the_field_is_over_the_floor_with_its_traps(tmp_path: Path) -> None:

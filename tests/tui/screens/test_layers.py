@@ -13,7 +13,7 @@ from textual.screen import Screen
 
 from kit.layers.case_sources import open_task
 from kit.layers.reading import read_requirements
-from kit.layers.requirements import Contact, Sight
+from kit.layers.requirements import ContactRequirement, SightRequirement
 from kit.tui.screens.case_editor import CaseEditor
 from kit.tui.screens.layers import LayersScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide
@@ -158,7 +158,10 @@ def test_a_case_typed_by_hand_is_planned() -> None:
         await pilot.press("l", *"eye", "enter", "left", "space")
         assert "eye must see walls" in rows(screen)[-2]
         assert "<eye>" in text(screen)
-        assert set(editor.editing.case.requirements) == {Contact("walls", "robot"), Sight("eye", "walls")}
+        assert set(editor.editing.case.requirements) == {
+            ContactRequirement("walls", "robot"),
+            SightRequirement("eye", "walls"),
+        }
         await pilot.press("b", *"a", "space", "escape")
         assert "walls" in text(screen)
         await pilot.press("escape")

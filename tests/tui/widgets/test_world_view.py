@@ -12,7 +12,7 @@ from textual import events
 from textual.pilot import Pilot
 
 from kit.geometry import Pose
-from kit.render.encode import ENCODERS, Braille
+from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
 from kit.render.roles import PALETTES, Role
 from kit.render.scene import Scene
@@ -79,7 +79,7 @@ def test_meaning_has_its_colour() -> None:
         frame = app.view.frame
         for row in range(24):
             for column in range(80):
-                colors[Role(frame.inks[row, column])].add(display.color(row, column))
+                colors[Role(frame.fg[row, column])].add(display.color(row, column))
         assert colors[Role.WALL] == {"default"}
         assert colors[Role.ROBOT] == {"cyan"}
         assert colors[Role.HIT] == {"brown"}  # pyte's name of ANSI colour 3
@@ -210,7 +210,7 @@ def test_the_whole_world_fits_whatever_the_size_until_one_zooms() -> None:
         near = app.view.camera
         await pilot.resize_terminal(80, 24)
         await painted(app)
-        assert app.view.camera.cell == near.cell
+        assert app.view.camera.cell_width == near.cell_width
         assert (app.view.camera.x, app.view.camera.y) == (near.x, near.y)
         app.view.fit()
         assert app.view.camera.bounds.right >= 8.25
@@ -301,7 +301,7 @@ def test_the_last_offer_is_drawn_even_if_no_answer_comes() -> None:
         app.view.offer(lambda: last)
         await pilot.pause(TIMEOUT + 0.3)
         assert app.view.frame is not None
-        assert app.view.frame.rows() == Painter(Braille()).paint(last, app.view.camera).rows()
+        assert app.view.frame.rows() == Painter(BrailleEncoder()).paint(last, app.view.camera).rows()
 
     run_in(app, script, SIZE)
 
