@@ -16,13 +16,13 @@ from kit.fields.minima import ForceFlow, Trap
 from kit.fields.pair import PairControl, control_step
 from kit.geometry import Pose
 from kit.render.camera import Camera
-from kit.render.scene import FloatArray, Mark, Path, Scene
+from kit.render.scene import FloatArray, Scene, SceneMark, ScenePath
 
-SPARSE: Final = 2
+ARROW_SPACING: Final = 2
 """Characters from one arrow to the next in a row: as far apart as two rows."""
-MIDDLING: Final = 2.0
+STRENGTH_SCALE: Final = 2.0
 """A force so many times the median is half as strong as can be shown."""
-CHARGE, TRAP = "-", "!"
+CHARGE_MARK, TRAP_MARK = "-", "!"
 """How wall charges and traps are marked."""
 FORCE_LENGTH: Final = 0.25
 """m: of the line that shows the force on a robot."""
@@ -64,7 +64,7 @@ class FieldPicture:
     def arrows(self, vectors: FloatArray, camera: Camera) -> FloatArray:
         """(a, 5): for ``Scene.arrows``, where characters of the camera lie on the floor."""
         grid = self._course.grid
-        columns = np.arange(0, camera.columns, SPARSE) + 0.5 - camera.columns / 2
+        columns = np.arange(0, camera.columns, ARROW_SPACING) + 0.5 - camera.columns / 2
         rows = camera.rows / 2 - np.arange(camera.rows) - 0.5
         x, y = np.meshgrid(camera.x + columns * camera.cell, camera.y + rows * camera.cell_height)
         column = np.rint((x - grid.origin[0]) / grid.cell_size).astype(int)
@@ -73,15 +73,15 @@ class FieldPicture:
         known[known] = grid.inside[row[known], column[known]]
         found = vectors[row[known], column[known]]
         strength = np.hypot(found[:, 0], found[:, 1])
-        middling = MIDDLING * float(np.median(strength)) if len(strength) else 1.0
+        middling = STRENGTH_SCALE * float(np.median(strength)) if len(strength) else 1.0
         return np.column_stack((x[known], y[known], found, strength / (strength + middling + 1e-12)))
 
-    def marks(self, traps: Sequence[Trap]) -> tuple[Mark, ...]:
+    def marks(self, traps: Sequence[Trap]) -> tuple[SceneMark, ...]:
         """Charges and traps."""
-        places = [_middle(charge) for charge in iter_members(self._course.layout.charges)]
+        places = [_charge_position(charge) for charge in iter_members(self._course.layout.charges)]
         return (
-            *(Mark(x, y, CHARGE) for x, y in places),
-            *(Mark(trap.x, trap.y, TRAP) for trap in traps),
+            *(SceneMark(x, y, CHARGE_MARK) for x, y in places),
+            *(SceneMark(trap.x, trap.y, TRAP_MARK) for trap in traps),
         )
 
     def decision(self, poses: Sequence[Pose]) -> PairControl:
@@ -89,7 +89,7 @@ class FieldPicture:
         return control_step(poses, self._course.target, self.course.layout)
 
 
-def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[Path, ...]:
+def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[ScenePath, ...]:
     """From each robot along the force on it, and from the middle along its own."""
     starts = [*(pose[:2] for pose in poses), *([decision.middle] if len(poses) > 1 else [])]
     forces = [*decision.forces, *([decision.middle_force] if len(poses) > 1 else [])]
@@ -98,7 +98,7 @@ def force_lines(decision: PairControl, poses: Sequence[Pose]) -> tuple[Path, ...
         strength = math.hypot(*force)
         if strength > 0:
             tip = x + FORCE_LENGTH * force[0] / strength, y + FORCE_LENGTH * force[1] / strength
-            lines.append(Path(np.array([(x, y), tip])))
+            lines.append(ScenePath(np.array([(x, y), tip])))
     return tuple(lines)
 
 
@@ -115,12 +115,12 @@ def with_field(
     )
 
 
-def changed(intensities: Intensities, name: str, times: float) -> Intensities:
+def scaled_intensity(intensities: Intensities, name: str, times: float) -> Intensities:
     """One intensity multiplied."""
     return replace(intensities, **{name: getattr(intensities, name) * times})
 
 
-def _middle(charge: PointCharge | LineCharge) -> tuple[float, float]:
+def _charge_position(charge: PointCharge | LineCharge) -> tuple[float, float]:
     if isinstance(charge, PointCharge):
         return charge.x, charge.y
     return (charge.ax + charge.bx) / 2, (charge.ay + charge.by) / 2

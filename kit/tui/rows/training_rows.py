@@ -12,7 +12,7 @@ import numpy as np
 from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
 from kit.render.scene import FloatArray
-from kit.render.stacked_chart import Part, Shares
+from kit.render.stacked_chart import ChartPart, StackedCounts
 from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymnasium along
@@ -20,13 +20,13 @@ if TYPE_CHECKING:  # of no use to the first frame: the learning side brings Gymn
     from kit.learning.training.run_status import CaseStatus, RunStatus
 
 OUTCOMES: Final = (
-    Part("reached", Role.TARGET, "█"),
-    Part("collided", Role.CONTACT, "▒"),
-    Part("timed out", Role.HIT, "░"),
+    ChartPart("reached", Role.TARGET, "█"),
+    ChartPart("collided", Role.CONTACT, "▒"),
+    ChartPart("timed out", Role.HIT, "░"),
 )
 """In the order of ``kit.learning.environment.episode_stats.EpisodeOutcome``, and called as there."""
 ASCII_OUTCOMES: Final = tuple(
-    Part(part.name, part.role, glyph) for part, glyph in zip(OUTCOMES, "#x.", strict=True)
+    ChartPart(part.name, part.role, glyph) for part, glyph in zip(OUTCOMES, "#x.", strict=True)
 )
 OUTCOME_STYLES: Final = ("good", "bad", "warn")
 
@@ -140,9 +140,9 @@ def _two(values: FloatArray) -> FloatArray:
     return np.round(values, 2)
 
 
-def shares(status: RunStatus) -> Shares:
+def shares(status: RunStatus) -> StackedCounts:
     """How the episodes ended, batch by batch."""
-    return Shares(status.batches.steps, status.batches.outcomes)
+    return StackedCounts(status.batches.steps, status.batches.outcomes)
 
 
 # What stands in the panel

@@ -132,7 +132,9 @@ class CaseEditor(ActivePaintScreen[LayerCase]):
         self._change(CaseTable.undo)
 
     def action_one_model(self) -> None:
-        self._change(lambda editing: replace(editing, ignore_self_collisions=not editing.ignore_self_collisions))
+        self._change(
+            lambda editing: replace(editing, ignore_self_collisions=not editing.ignore_self_collisions)
+        )
 
     def action_add(self, kind: RowKind) -> None:
         self._ask(kind)

@@ -7,11 +7,11 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from kit.layers.assignment import breaches
+from kit.layers.assignment import find_breaches
 from kit.layers.examples import EXAMPLES
-from kit.layers.greedy import greedy
-from kit.layers.planning import solve
-from kit.layers.requirements import Case, Contact, Entity, Laser
+from kit.layers.greedy import run_greedy
+from kit.layers.planning import solve_layers
+from kit.layers.requirements import ContactRequirement, LaserEntity, LayerCase, LayerEntity
 from kit.school.quiz.items import QuizItem
 from kit.world.collision_rules import CollisionRules, ContactKind
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
@@ -179,11 +179,11 @@ def one_model_two_bodies(item: QuizItem, folder: Path) -> Finding:
 # The fewest
 
 
-def _case(item: QuizItem) -> Case:
+def _case(item: QuizItem) -> LayerCase:
     """The picture as a case: rows ``collide:``, ``ghost:``, ``laser: NAME sees WHOM``."""
     pairs: list[tuple[str, str]] = []
     ghosts: list[str] = []
-    lasers: list[Laser] = []
+    lasers: list[LaserEntity] = []
     for row in item.picture:
         kind, _, said = row.partition(":")
         if kind == "collide":
@@ -192,21 +192,21 @@ def _case(item: QuizItem) -> Case:
             ghosts += said.split()
         elif kind == "laser":
             name, _, seen = said.partition(" sees ")
-            lasers.append(Laser(name.strip(), frozenset(seen.split())))
+            lasers.append(LaserEntity(name.strip(), frozenset(seen.split())))
         else:
             assert row == "all other pairs must not", row
     names = dict.fromkeys([*(name for pair in pairs for name in pair), *ghosts])
     entities = [
-        Entity(name, kind="map" if name == "walls" else "bodies", model="" if name == "walls" else name)
+        LayerEntity(name, kind="map" if name == "walls" else "bodies", model="" if name == "walls" else name)
         for name in names
         if name not in ghosts
     ]
-    entities += [Entity(name, model=name, ghost=True) for name in ghosts]
-    return Case(tuple(entities), tuple(Contact(a, b) for a, b in pairs), lasers=tuple(lasers))
+    entities += [LayerEntity(name, model=name, ghost=True) for name in ghosts]
+    return LayerCase(tuple(entities), tuple(ContactRequirement(a, b) for a, b in pairs), lasers=tuple(lasers))
 
 
 def fewest_in_picture(item: QuizItem, folder: Path) -> Finding:
-    plan = solve(_case(item))
+    plan = solve_layers(_case(item))
     assert plan.optimal
     return nearest(item, plan.size, 0)
 
@@ -214,14 +214,14 @@ def fewest_in_picture(item: QuizItem, folder: Path) -> Finding:
 def proof_of_fewest(item: QuizItem, folder: Path) -> Finding:
     """What never contradicts the fewest there are: the certificate, of which no two fit one layer, and not the number
     that the method ends with. (Trying for long cannot be computed: it says nothing of what was not tried.)"""
-    plans = {name: solve(case) for name, case in EXAMPLES.items()}
+    plans = {name: solve_layers(case) for name, case in EXAMPLES.items()}
     assert all(plan.optimal for plan in plans.values())
     assert any(plan.certificate.bound == plan.size == 3 for plan in plans.values())
     return Finding(
         True,
         {
             "The step-by-step method ended with three": all(
-                len(greedy(plan.case).assignment.layers) <= plan.size for plan in plans.values()
+                len(run_greedy(plan.case).assignment.layers) <= plan.size for plan in plans.values()
             ),
             "An hour of trying has found none with two": False,
             "Three requirements, no two of which fit one layer": all(
@@ -238,12 +238,13 @@ def greedy_promise(item: QuizItem, folder: Path) -> Finding:
     for _ in range(60):
         names = "abcdefgh"
         pairs = [pair for pair in combinations(names, 2) if chance.random() < 0.55]
-        case = Case(
-            tuple(Entity(name, model=name) for name in names), tuple(Contact(*pair) for pair in pairs)
+        case = LayerCase(
+            tuple(LayerEntity(name, model=name) for name in names),
+            tuple(ContactRequirement(*pair) for pair in pairs),
         )
-        assignment = greedy(case).assignment
-        works = works and not breaches(case, assignment)
-        fewest = fewest and len(assignment.layers) == solve(case).size
+        assignment = run_greedy(case).assignment
+        works = works and not find_breaches(case, assignment)
+        fewest = fewest and len(assignment.layers) == solve_layers(case).size
     return Finding(
         (works, fewest),
         {
