@@ -66,7 +66,7 @@ class FieldPicture:
         grid = self._course.grid
         columns = np.arange(0, camera.columns, ARROW_SPACING) + 0.5 - camera.columns / 2
         rows = camera.rows / 2 - np.arange(camera.rows) - 0.5
-        x, y = np.meshgrid(camera.x + columns * camera.cell, camera.y + rows * camera.cell_height)
+        x, y = np.meshgrid(camera.x + columns * camera.cell_width, camera.y + rows * camera.cell_height)
         column = np.rint((x - grid.origin[0]) / grid.cell_size).astype(int)
         row = np.rint((y - grid.origin[1]) / grid.cell_size).astype(int)
         known = (column >= 0) & (column < grid.shape[1]) & (row >= 0) & (row < grid.shape[0])

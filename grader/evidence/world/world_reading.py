@@ -182,7 +182,7 @@ def _scene_bodies(simulation: Simulation) -> Iterator[Body]:
             simulation.pose(name),
             tuple(np.array(each.points) for each in own if not each.radius),
             tuple(Disc(*each.points[0], each.radius) for each in own if each.radius),
-            robot=any(end.direction == "subscribe" for end in simulation.model_endpoints(name)),
+            is_robot=any(end.direction == "subscribe" for end in simulation.model_endpoints(name)),
         )
 
 

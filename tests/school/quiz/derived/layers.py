@@ -201,13 +201,13 @@ def _case(item: QuizItem) -> LayerCase:
         for name in names
         if name not in ghosts
     ]
-    entities += [LayerEntity(name, model=name, ghost=True) for name in ghosts]
+    entities += [LayerEntity(name, model=name, is_ghost=True) for name in ghosts]
     return LayerCase(tuple(entities), tuple(ContactRequirement(a, b) for a, b in pairs), lasers=tuple(lasers))
 
 
 def fewest_in_picture(item: QuizItem, folder: Path) -> Finding:
     plan = solve_layers(_case(item))
-    assert plan.optimal
+    assert plan.is_optimal
     return nearest(item, plan.size, 0)
 
 
@@ -215,7 +215,7 @@ def proof_of_fewest(item: QuizItem, folder: Path) -> Finding:
     """What never contradicts the fewest there are: the certificate, of which no two fit one layer, and not the number
     that the method ends with. (Trying for long cannot be computed: it says nothing of what was not tried.)"""
     plans = {name: solve_layers(case) for name, case in EXAMPLES.items()}
-    assert all(plan.optimal for plan in plans.values())
+    assert all(plan.is_optimal for plan in plans.values())
     assert any(plan.certificate.bound == plan.size == 3 for plan in plans.values())
     return Finding(
         True,
