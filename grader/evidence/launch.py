@@ -32,7 +32,7 @@ from kit.launch.requests import DeclaredArgument
 from kit.launch.session import LaunchSession
 from kit.launch.start_errors import ProcessStartError
 from kit.msg.rcl_interfaces import GetParameters, ParameterType
-from kit.render.world_text import plain_rows
+from kit.render.world_text import scene_rows
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
 from kit.ros.node.node import create_graph_node
@@ -212,7 +212,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
             name: _driven_distance(recording.track(name)) for name in session.runner.simulation.model_names
         }
         drawn = "\n".join(
-            row.rstrip() for row in plain_rows(ViewBuilder(session).build().scene, COLUMNS, ROWS)
+            row.rstrip() for row in scene_rows(ViewBuilder(session).build().scene, COLUMNS, ROWS)
         )
         return {
             **_graph_record(launch.graph, traffic_recorder),

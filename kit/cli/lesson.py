@@ -110,7 +110,7 @@ def _watch(scene: LessonScene) -> None:
     """A scene in words and two pictures: how it begins and how it ends."""
     from kit.cli.plain import HEIGHT, WIDTH
     from kit.controllers import find_controller
-    from kit.render.world_text import plain_rows, report
+    from kit.render.world_text import describe_scene, scene_rows
     from kit.run.episode import run_until, when_failed
     from kit.run.scenario import find_scenario
     from kit.run.session import Session
@@ -121,13 +121,13 @@ def _watch(scene: LessonScene) -> None:
         session.drive_with(find_controller(scene.controller, None) if scene.controller else None)
         session.wait_until_driven()
         view_builder = ViewBuilder(session)
-        click.echo(f"At the start: {report(view_builder.build().scene)}")
+        click.echo(f"At the start: {describe_scene(view_builder.build().scene)}")
         run_until(session.runner, limit_s=scene.seconds, ends=(when_failed(session),))
         session.poll()
         view = view_builder.build()
-        click.echo("\n".join(plain_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
+        click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
         way = f"{view.metrics.distance_m:.1f} m driven, {view.metrics.bumps} bumps"
-        click.echo(f"After {scene.seconds:g} s: {report(view.scene)}; {way}.")
+        click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {way}.")
 
 
 def _drive(scene: LessonScene, file: str, desk: Workspace, intake: Intake) -> None:

@@ -28,7 +28,7 @@ def command(name: str | None, glyphs: str | None) -> None:
     except UnknownMap as error:
         options.fail(str(error))
     from kit.render.encode import ENCODERS
-    from kit.render.world_text import plain_rows
+    from kit.render.world_text import scene_rows
     from kit.run.scenario import scenario_on_map
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
@@ -38,7 +38,7 @@ def command(name: str | None, glyphs: str | None) -> None:
     with Session(scenario_on_map(card)) as session:
         scene = ViewBuilder(session).build().scene
     click.echo(f"{card.title}: {card.summary}")
-    click.echo("\n".join(plain_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
+    click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
         x, y, theta = case.start
         click.echo(

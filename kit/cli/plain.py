@@ -15,7 +15,7 @@ from kit.cli.waiting import Intake, Lines
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.render.world_text import plain_rows, report
+from kit.render.world_text import describe_scene, scene_rows
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
@@ -117,14 +117,14 @@ class Plain:
     def look(self) -> None:
         view = ViewBuilder(self._session).build()
         score = view.metrics
-        click.echo(f"at {format_clock(view.time_s)}: {report(view.scene)}")
+        click.echo(f"at {format_clock(view.time_s)}: {describe_scene(view.scene)}")
         for side, distance in view.nearest:
             click.echo(f"  {side}: {'nothing in range' if distance is None else f'{distance:.2f} m'}")
         done = "" if score.reached_s is None else f"; target reached after {score.reached_s:.1f} s"
         click.echo(f"  way {score.distance_m:.1f} m, bumps {score.bumps}{done}")
 
     def picture(self) -> None:
-        click.echo("\n".join(plain_rows(ViewBuilder(self._session).build().scene, WIDTH, HEIGHT)))
+        click.echo("\n".join(scene_rows(ViewBuilder(self._session).build().scene, WIDTH, HEIGHT)))
 
     def use(self, name: str) -> None:
         self._controller = find_controller(name, self._folder)

@@ -10,7 +10,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.host.failure import Failure
-from kit.render.scene import Body, Disc, FloatArray, Scene
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody
 from kit.render.trail import Trail
 from kit.ros.log import LogRecord
 from kit.run.metrics import DriveMetrics
@@ -135,14 +135,14 @@ class ViewBuilder:
         )
 
 
-def _bodies(snapshot: _Snapshot, drivers: tuple[str, ...]) -> tuple[Body, ...]:
+def _bodies(snapshot: _Snapshot, drivers: tuple[str, ...]) -> tuple[SceneBody, ...]:
     """One body to draw per model: its footprints, and the pose of its first body."""
     shapes: dict[str, list[FootprintOutline]] = {}
     for outline in snapshot.outlines:
         shapes.setdefault(outline.model, []).append(outline)
     order = (*drivers, *(model for model in shapes if model not in drivers))
     return tuple(
-        Body(
+        SceneBody(
             model,
             snapshot.state.pose(model),
             tuple(np.array(outline.points) for outline in shapes[model] if not outline.radius),

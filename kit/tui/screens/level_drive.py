@@ -15,7 +15,7 @@ from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.world_sockets import sockets_folder
-from kit.render.scene import Mark, Path, Scene
+from kit.render.scene import Scene, SceneMark, ScenePath
 from kit.run.view import format_clock
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost
@@ -148,7 +148,7 @@ class LevelDrive(WatchScreen):
         if not self._with_ghosts or self.view is None:
             return scene
         marks = tuple(
-            Mark(x, y, LETTERS.get(ghost.name, "G"))
+            SceneMark(x, y, LETTERS.get(ghost.name, "G"))
             for ghost in self._ghosts
             for x, y, _ in ghost.poses(self.view.time_s)
         )
@@ -234,7 +234,7 @@ class LevelDrive(WatchScreen):
         self.dismiss()
 
 
-def _ways(ghost: Ghost) -> list[Path]:
+def _ways(ghost: Ghost) -> list[ScenePath]:
     """The ways of a ghost's robots, thinned out."""
     made = []
     for track in ghost.tracks:
@@ -245,5 +245,5 @@ def _ways(ghost: Ghost) -> list[Path]:
         steps = np.arange(0.0, float(along[-1]) + WAY, WAY)
         at = np.searchsorted(along, steps).clip(0, len(points) - 1)
         if math.isfinite(float(along[-1])):
-            made.append(Path(points[np.unique(at)], "dotted"))
+            made.append(ScenePath(points[np.unique(at)], "dotted"))
     return made
