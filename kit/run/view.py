@@ -147,7 +147,7 @@ def _bodies(snapshot: _Snapshot, drivers: tuple[str, ...]) -> tuple[SceneBody, .
             snapshot.state.pose(model),
             tuple(np.array(outline.points) for outline in shapes[model] if not outline.radius),
             tuple(Disc(*outline.points[0], outline.radius) for outline in shapes[model] if outline.radius),
-            robot=model in drivers,
+            is_robot=model in drivers,
         )
         for model in order
         if model in shapes
