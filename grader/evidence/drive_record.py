@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from kit.geometry import Pose
 from kit.host.failure import Failure
-from kit.render.scene import Body, Disc, Scene
-from kit.render.world_text import nearest_wall, plain_rows
+from kit.render.scene import Disc, Scene, SceneBody
+from kit.render.world_text import nearest_wall, scene_rows
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
 from kit.run.scenario import Scenario
@@ -124,7 +124,7 @@ class DriveRecord:
         ]
         return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
-    def body(self, pose: Pose) -> Body:
+    def body(self, pose: Pose) -> SceneBody:
         """Returns the robot's body at a pose."""
         model = next(model for model in self.scenario.world.models if model.name == self.scenario.robot)
         footprints = [footprint.shape for footprint in model.bodies[0].footprints]
@@ -138,7 +138,7 @@ class DriveRecord:
             for shape in footprints
             if isinstance(shape, Circle)
         )
-        return Body(model.name, pose, polygons, discs, robot=True)
+        return SceneBody(model.name, pose, polygons, discs, robot=True)
 
     def explain(self, check: str, params: Any = None) -> str:
         """Returns nothing: the check's own sentence is enough."""
@@ -155,4 +155,4 @@ class DriveRecord:
             targets=(Disc(*case.target, case.target_radius),) if case else (),
             trails=(self.track[::CLEARANCE_INTERVAL, :2].copy(),),
         )
-        return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))
+        return "\n".join(row.rstrip() for row in scene_rows(scene, COLUMNS, ROWS))

@@ -25,11 +25,17 @@ from grader.checks.contract import NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
 from kit.host.failure import Failure
-from kit.layers.assignment import Assignment as Plan
-from kit.layers.assignment import Breach, NamedLayer, breaches
+from kit.layers.assignment import LayerAssignment as Plan
+from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
 from kit.layers.examples import EXAMPLES
 from kit.layers.reading import read_requirements
-from kit.layers.requirements import Case, Contact, Requirement, Sight, fit_together
+from kit.layers.requirements import (
+    ContactRequirement,
+    LayerCase,
+    Requirement,
+    SightRequirement,
+    layer_conflict,
+)
 from kit.plain_text import quoted, suggestion
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
@@ -44,18 +50,18 @@ CONTACT_SEPARATOR: Final = " - "
 class SubmittedPlan:
     """The submitted plan together with the requirements it must meet."""
 
-    case: Case
+    case: LayerCase
     plan: Plan
     proof: tuple[Requirement, ...]
 
     @property
-    def breaches(self) -> tuple[Breach, ...]:
-        return breaches(self.case, self.plan)
+    def breaches(self) -> tuple[RequirementBreach, ...]:
+        return find_breaches(self.case, self.plan)
 
     def combinable_pairs(self) -> Iterator[str]:
         """Yields the pairs of the proof that one layer could serve; they prove nothing."""
         for one, other in combinations(self.proof, 2):
-            if fit_together(self.case, one, other) is None:
+            if layer_conflict(self.case, one, other) is None:
                 yield f"one layer could serve both “{one}” and “{other}”"
 
 
@@ -105,7 +111,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Reads the submitted plan."""
-    case: Case = assignment.task
+    case: LayerCase = assignment.task
     plan = read_submitted_yaml(file, lambda section: _read_plan(section, case))
     if isinstance(plan, Failure):
         return EvidenceRecord(failure=plan)
@@ -121,7 +127,7 @@ def _explain(plan: SubmittedPlan, name: str) -> str:
     return ""
 
 
-def _read_plan(section: Section, case: Case) -> SubmittedPlan:
+def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
     layers = []
     inner = _subsection(section, "layers")
     for name in () if inner is None else tuple(inner.keys()):
@@ -160,11 +166,13 @@ def _known_names(
     return names
 
 
-def _requirement(section: Section, line: str, case: Case) -> Requirement | None:
+def _requirement(section: Section, line: str, case: LayerCase) -> Requirement | None:
     """Reads a line of the proof as a requirement of the case; notes an error for any other line."""
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
-    plan: Requirement = Sight(one, other) if split == SIGHT_SEPARATOR else Contact(one, other)
+    plan: Requirement = (
+        SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
+    )
     if plan in case.requirements:
         return plan
     section.error(f"{quoted(line)} is nothing that must happen here: write A - B, or LASER sees A", "proof")

@@ -23,8 +23,8 @@ from grader.evidence.world.facts import (
 )
 from kit.geometry import Pose
 from kit.msg.message import type_name
-from kit.render.scene import Body, Disc, FloatArray, Scene
-from kit.render.world_text import plain_rows
+from kit.render.scene import Disc, FloatArray, Scene, SceneBody
+from kit.render.world_text import scene_rows
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError, load_world
 from kit.world import records
@@ -169,15 +169,15 @@ def draw_world(
         targets=() if target is None else (target,),
         trails=() if trail is None else (trail,),
     )
-    return "\n".join(row.rstrip() for row in plain_rows(scene, COLUMNS, ROWS))
+    return "\n".join(row.rstrip() for row in scene_rows(scene, COLUMNS, ROWS))
 
 
-def _scene_bodies(simulation: Simulation) -> Iterator[Body]:
+def _scene_bodies(simulation: Simulation) -> Iterator[SceneBody]:
     """Yields one body per model: its footprints at the pose of its first body."""
     outlines = simulation.outlines()
     for name in simulation.model_names:
         own = [each for each in outlines if each.model == name]
-        yield Body(
+        yield SceneBody(
             name,
             simulation.pose(name),
             tuple(np.array(each.points) for each in own if not each.radius),
