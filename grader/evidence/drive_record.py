@@ -138,7 +138,7 @@ class DriveRecord:
             for shape in footprints
             if isinstance(shape, Circle)
         )
-        return SceneBody(model.name, pose, polygons, discs, robot=True)
+        return SceneBody(model.name, pose, polygons, discs, is_robot=True)
 
     def explain(self, check: str, params: Any = None) -> str:
         """Returns nothing: the check's own sentence is enough."""

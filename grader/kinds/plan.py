@@ -123,7 +123,7 @@ def _explain(plan: SubmittedPlan, name: str) -> str:
         return "; ".join(plan.combinable_pairs())
     if name in (complete.name, nothing_more.name):
         wanted = name == complete.name
-        return "; ".join(str(breach) for breach in plan.breaches if breach.wanted is wanted)
+        return "; ".join(str(breach) for breach in plan.breaches if breach.is_missing is wanted)
     return ""
 
 
