@@ -112,8 +112,8 @@ class QuestionBank:
     def find_lesson(self, name: str) -> str:
         """Finds a lesson by its name, its number, or its name without the number. Raises UnknownLesson."""
         for lesson in self.lessons:
-            number, _, name = lesson.partition("-")
-            if name in (lesson, number, number.lstrip("0"), name):
+            number, _, rest = lesson.partition("-")
+            if name in (lesson, number, number.lstrip("0"), rest):
                 return lesson
         raise UnknownLesson(f"no lesson {quoted(name)} has questions: {suggestion(name, self.lessons)}")
 

@@ -24,7 +24,8 @@ MIN_GROUP_SIZE: Final = 5
 
 
 def expertise_scores(prior: Sequence[StudentMeasure], topics: Mapping[str, str]) -> Float64Array | None:
-    """(n,) each student's score; NaN for who left one of the six topics blank. None where nobody rated one.
+    """(n,) each student's score; NaN for students who left one of the six topics blank. None where
+    a topic has no rating.
 
     ``topics``: of each measure, by its id.
     """

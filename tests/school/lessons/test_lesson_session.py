@@ -80,7 +80,7 @@ def test_what_cannot_be_checked_says_why(visit: LessonSession, lesson: Lesson, t
     exercise = lesson.exercises[0]
     missing = check_exercise(exercise, tmp_path / "nothing.yaml")
     assert missing.verdict == "fail"
-    assert "not there" in missing.problem
+    assert "does not exist" in missing.problem
     link = visit.install(exercise)
     link.unlink()
     link.symlink_to("/etc/hostname")
