@@ -1,3 +1,60 @@
-"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; the house is drawn in ``README.md``."""
+"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; the house is drawn in ``README.md``.
+
+The names below are what scripts and notebooks may use; each is imported when it is first used, so that ``import kit``
+costs nothing. Importing the kit also registers its environments with Gymnasium.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from kit.environment_ids import register_when_imported
+
+if TYPE_CHECKING:
+    from kit.learning.policies.evaluation import evaluate_policy
+    from kit.learning.policies.policies import load_policy
+    from kit.run.headless import run_episode
+    from kit.run.recording import Recording, load_recording
+    from kit.sim.simulation import load_world
+    from kit.world.catalogue import all_maps, find_map
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Recording",
+    "all_maps",
+    "evaluate_policy",
+    "find_map",
+    "load_policy",
+    "load_recording",
+    "load_world",
+    "run_episode",
+]
+
+_HOMES = {
+    "Recording": "kit.run.recording",
+    "all_maps": "kit.world.catalogue",
+    "evaluate_policy": "kit.learning.policies.evaluation",
+    "find_map": "kit.world.catalogue",
+    "load_policy": "kit.learning.policies.policies",
+    "load_recording": "kit.run.recording",
+    "load_world": "kit.sim.simulation",
+    "run_episode": "kit.run.headless",
+}
+"""In which module each public name is defined."""
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'kit' has no attribute {name!r}")
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value  # from now on an ordinary attribute
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+register_when_imported()

@@ -45,6 +45,14 @@ def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
         }
         assert here <= set(names), sorted(here - set(names))
     assert not [name for name in names if name.startswith(("tests/", "maps/", "lessons/"))]
+    assert {"kit/py.typed", "grader/py.typed"} <= set(names)  # so that type checkers read the annotations
+
+
+def test_the_wheel_registers_its_environments_as_a_gymnasium_plugin(wheel: Path) -> None:
+    archive = zipfile.ZipFile(wheel)
+    (entry_points,) = (name for name in archive.namelist() if name.endswith(".dist-info/entry_points.txt"))
+    text = archive.read(entry_points).decode()
+    assert "[gymnasium.envs]\n__root__ = kit.environment_ids:register" in text
 
 
 def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> None:
@@ -60,6 +68,11 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
         check=True,
     )
     assert Path(where.stdout.strip()).is_relative_to(site)
+    program = "import kit, gymnasium; print(gymnasium.make('RobotKit/Turn-v0').unwrapped)"
+    made = subprocess.run(
+        [python, "-c", program], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+    )
+    assert "TurnEnv" in made.stdout
     run = subprocess.run(
         [python, "-m", "kit", "run", "maze", "--controller", "random_walk", "--steps", "300"],
         cwd=tmp_path,

@@ -144,13 +144,13 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     """Saves an episode; returns how to watch it."""
     from grader.evidence.drive_record import DriveRecord
     from grader.evidence.reward import RewardEvidence
-    from kit.run.recording import save
+    from kit.run.recording import save_recording
     from kit.world.catalogue import map_names
 
     root = ""
     try:
         if isinstance(worst, DriveRecord):
-            save(worst.recording, replay.absolute())
+            save_recording(worst.recording, replay.absolute())
             if worst.recording.place not in map_names():
                 root = f" --root {shlex.quote(str(grading.assignment.folder))}"
         elif isinstance(worst, RewardEvidence):

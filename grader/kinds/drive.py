@@ -40,7 +40,15 @@ from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
 from kit.run.metrics import DriveMetrics, MetricsRecorder
-from kit.run.recording import ACCEPT, Fingerprint, Playback, Recorder, Recording, RecordingError, load
+from kit.run.recording import (
+    ACCEPT,
+    Fingerprint,
+    Playback,
+    Recorder,
+    Recording,
+    RecordingError,
+    load_recording,
+)
 from kit.run.runner import Runner
 from kit.run.scenario import Scenario
 from kit.sim.simulation import Simulation
@@ -113,7 +121,7 @@ def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     if not data:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
     _check_size(data, file.name)
-    recording = load(file)
+    recording = load_recording(file)
     scenario = task.scenario
     assert scenario is not None  # the assignment has no mistake
     case = None if scenario.case is None else scenario.case.name

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kit.cli import options
 from kit.cli.plain import Plain, play_plainly
 from kit.controllers import find_controller
-from kit.run.recording import RecordingError, load
+from kit.run.recording import RecordingError, load_recording
 from kit.school.game.race import SEED, judge_recording
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def drive_by_lines(level: GameLevel, desk: Workspace) -> tuple[RaceFinish, Recor
             )
         )
         try:
-            recording = load(file)
+            recording = load_recording(file)
             return judge_recording(level, recording), recording
         except (RecordingError, OSError, ValueError) as error:
             options.fail(f"No drive was kept: {error}")

@@ -19,7 +19,7 @@ from kit.render.world_text import describe_scene, scene_rows
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
-from kit.run.recording import Recorder, save
+from kit.run.recording import Recorder, save_recording
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder, format_clock, format_log
@@ -150,7 +150,7 @@ class Plain:
         self.lines.close()
         self._leave()
         if self._record is not None and self._recorder is not None:
-            save(self._recorder.recording(), self._record)
+            save_recording(self._recorder.recording(), self._record)
             if self._says_where:
                 click.echo(f"The drive is kept in {self._record}.")
 

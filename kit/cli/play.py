@@ -104,10 +104,10 @@ def command(
     app.run()
     recording = screen.recording()
     if record is not None and recording is not None:
-        from kit.run.recording import save
+        from kit.run.recording import save_recording
 
         try:
-            save(recording, record)
+            save_recording(recording, record)
         except OSError as error:
             options.fail(options.reason(error))
         click.echo(f"The drive is kept in {record}.")

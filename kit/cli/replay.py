@@ -25,12 +25,12 @@ def command(file: Path, check: bool, root: Path | None, glyphs: str | None, colo
     """
     import numpy as np
 
-    from kit.run.recording import RecordingError, load, rerun
+    from kit.run.recording import RecordingError, load_recording, rerun
     from kit.run.scenario import find_scenario
     from kit.world.problems import WorldError
 
     try:
-        recording = load(file)
+        recording = load_recording(file)
         place = find_scenario(recording.place, recording.case, root)
     except (RecordingError, LookupError, WorldError) as error:
         options.fail(str(error))

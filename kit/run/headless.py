@@ -18,7 +18,7 @@ from kit.run.episode import EndCondition, EndReason, run_until, when_failed, whe
 from kit.run.lockstep import ClosableParticipant
 from kit.run.metrics import DriveMetrics
 from kit.run.pacing import MAXIMUM, Schedule
-from kit.run.recording import Fingerprint, Recorder, save
+from kit.run.recording import Fingerprint, Recorder, save_recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.workspace import check_writable
@@ -107,7 +107,7 @@ def run_headless(
         session.read_output()
         wall = time.perf_counter() - start
         if record is not None:
-            save(recorder.recording(), record)
+            save_recording(recorder.recording(), record)
         poses = dict(zip(runner.simulation.model_names, runner.simulation.poses(), strict=False))
         return RunSummary(
             scenario.title,

@@ -58,6 +58,14 @@ class Input:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recording:
+    """What a world was told and where every model was, from one run. ``load_recording`` reads it from a file.
+
+    >>> summary = kit.run_episode("maze", "forward", seconds=1.0, seed=1, record="run.npz")
+    >>> recording = kit.load_recording("run.npz")
+    >>> recording.track("serp").shape  # x [m], y [m], theta [rad] at every tick
+    (100, 3)
+    """
+
     place: str
     """A map's name, or a world file."""
     case: str | None
@@ -137,7 +145,7 @@ class Recorder(Observer):
         self._inputs.append(Input(len(self._counts), kind, content))
 
 
-def save(recording: Recording, file: Path) -> None:
+def save_recording(recording: Recording, file: Path) -> None:
     """Writes the file whole or not at all. Raises OSError."""
     header = {
         "format": FORMAT,
@@ -158,8 +166,16 @@ def save(recording: Recording, file: Path) -> None:
     write_atomically(file, data.getvalue())
 
 
-def load(file: Path) -> Recording:
-    """Raises RecordingError, OSError."""
+def load_recording(file: Path | str) -> Recording:
+    """Reads a recording that ``kit run --record``, a race or ``run_episode`` wrote.
+
+    Raises RecordingError if the file is damaged or something else, and OSError if it cannot be read.
+
+    >>> summary = kit.run_episode("maze", "forward", seconds=1.0, record="run.npz")
+    >>> kit.load_recording("run.npz").ticks
+    100
+    """
+    file = Path(file)
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
             header = json.loads(bytes(arrays["header"]))

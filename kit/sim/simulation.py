@@ -15,10 +15,14 @@ from kit.sim.plugins import plugin_readers, world_plugin_readers
 from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState
 from kit.sim.surroundings import footprint_outlines, hull_distance
 from kit.world import loading
+from kit.world.catalogue import allowed_root_of
 from kit.world.problems import WorldError
 from kit.world.records import Model, World
 
 ORIGIN = Pose()
+
+STEP_SIZE_S: Final = 0.01
+"""One tick of simulated time."""
 
 
 class SimulationError(Exception):
@@ -28,12 +32,22 @@ class SimulationError(Exception):
 def load_world(
     path: Path | str, *, root: Path | None = None, environment: Mapping[str, str] | None = None
 ) -> World:
-    """The world that a file describes, ready to be simulated. Arguments and errors are those of ``load_world``."""
+    """Reads a Flatland world file with its models, maps and plugins into a record that can be simulated.
+
+    ``path``: a ``world.yaml``. ``root``: the folder whose files the world may read, by default its own; for a world of
+    the kit's maps, all maps. ``environment``: the variables that ``env()`` may read, by default none. Raises WorldError
+    with everything that is wrong in any of its files.
+
+    >>> world = kit.load_world(kit.find_map("maze").world_file)
+    >>> [model.name for model in world.models]
+    ['serp']
+    """
+    path = Path(path)
     return loading.load_world(
-        Path(path),
+        path,
         plugin_readers=plugin_readers,
         world_plugin_readers=world_plugin_readers,
-        root=root,
+        root=allowed_root_of(path) if root is None else root,
         environment=environment,
     )
 
@@ -63,7 +77,7 @@ class Simulation:
         world: World,
         *,
         seed: int = 0,
-        step_size: float = 0.01,
+        step_size: float = STEP_SIZE_S,
         has_subscribers: Callable[[str], bool] | None = None,
     ) -> None:
         if not 0.0 < step_size < math.inf:

@@ -82,13 +82,24 @@ def allowed_root_of(world_file: Path) -> Path | None:
 
 
 def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
-    """Every map of the folder (by default the kit's own), by name. Raises WorldError if a card is wrong."""
+    """Every map of the folder (by default the kit's own), sorted by name. Raises WorldError if a card is wrong.
+
+    >>> "maze" in [card.name for card in kit.all_maps()]
+    True
+    """
     folder = maps_folder() if folder is None else folder
     return tuple(_read_card(folder / name) for name in map_names(folder))
 
 
 def find_map(name: str, folder: Path | None = None) -> MapCard:
-    """The map of that name. Raises UnknownMap, and WorldError if its card is wrong."""
+    """The map of that name: its world file, its robot, and its cases with start and target in metres and radians.
+
+    Raises UnknownMap, and WorldError if its card is wrong.
+
+    >>> card = kit.find_map("pair_straight")
+    >>> card.robot, card.partner, [case.name for case in card.cases]
+    ('left', 'right', ['pair_straight'])
+    """
     folder = maps_folder() if folder is None else folder
     names = map_names(folder)
     if name not in names:

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from kit.cli import main
 from kit.cli.plain import Plain, obey, play_plainly
 from kit.controllers import find_controller
-from kit.run.recording import load, rerun
+from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 
 DRIVER = """
@@ -187,7 +187,7 @@ def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
     result = CliRunner().invoke(main, desk, input="drive 0.3 0 1\nreset\ndrive 0.2 0 1\n")
     assert result.exit_code == 0
     assert str(file) in result.output
-    recording = load(file)
+    recording = load_recording(file)
     assert recording.ticks == 200
     again = rerun(recording, find_scenario("simple").world)
     assert (again.poses == recording.poses).all()

@@ -23,7 +23,7 @@ from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.run.recording import load
+from kit.run.recording import load_recording
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
@@ -256,7 +256,7 @@ def test_check_in_every_way(tmp_path: Path) -> None:
     assert "Hint 2 of 3: two" in text
     assert "--hints 3" in text
     assert "kit replay" in text
-    assert load(replay).ticks == 400
+    assert load_recording(replay).ticks == 400
     out = tmp_path / "result.json"
     assert invoke("check", str(file), "--assignment", str(folder), "--json", "--output", str(out)) == (1, "")
     assert GradingResult.from_dict(json.loads(out.read_text())).points == 3.0

@@ -15,7 +15,7 @@ from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Empty
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
-from kit.run.recording import Recorder, Recording, RecordingError, load, rerun, save
+from kit.run.recording import Recorder, Recording, RecordingError, load_recording, rerun, save_recording
 from kit.run.runner import Runner
 from kit.run.scenario import scenario_on_map
 from kit.sim.simulation import Simulation
@@ -170,8 +170,8 @@ def test_the_same_inputs_make_the_same_run_to_the_bit(maze: World) -> None:
 
 def test_a_recording_runs_again_to_the_bit(maze: World, tmp_path: Any) -> None:
     recording = wander(build(maze, 3), 1200)
-    save(recording, tmp_path / "run.npz")
-    loaded = load(tmp_path / "run.npz")
+    save_recording(recording, tmp_path / "run.npz")
+    loaded = load_recording(tmp_path / "run.npz")
     again = rerun(loaded, maze)
     assert np.array_equal(again.poses, recording.poses)
     assert again.ticks == recording.ticks == 1200
@@ -198,4 +198,4 @@ def test_a_damaged_recording_is_refused(tmp_path: Any, content: bytes) -> None:
     file = tmp_path / "run.npz"
     file.write_bytes(content)
     with pytest.raises(RecordingError, match=r"run\.npz"):
-        load(file)
+        load_recording(file)

@@ -13,7 +13,7 @@ import pytest
 
 from kit.controllers import find_controller, kit_controllers, prepare_workspace, user_controllers
 from kit.run.headless import run_headless
-from kit.run.recording import load, rerun
+from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
 from kit.run.view import ROBOT_SIDES, ViewBuilder, format_clock
@@ -200,7 +200,7 @@ def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
     run_headless(find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
-    recording = load(file)
+    recording = load_recording(file)
     again = rerun(recording, find_scenario(recording.place, recording.case).world)
     assert np.array_equal(again.poses, recording.poses)
 

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from kit.controllers import find_controller
 from kit.run.scenario import Scenario, find_scenario
-from kit.run.recording import Recorder, Recording, save
+from kit.run.recording import Recorder, Recording, save_recording
 from kit.run.session import Session
 
 FOLDER: Final = Path(__file__).parent
@@ -90,7 +90,7 @@ def main() -> None:
         folder = (LESSONS if where else FOLDER) / "01-drive" / "flag"
         file = folder / f"{stem}.npz"
         file.parent.mkdir(parents=True, exist_ok=True)
-        save(driven(find_scenario(place), legs), file)
+        save_recording(driven(find_scenario(place), legs), file)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import pytest
 import kit as kit_package
 from kit.controllers import find_controller
 from kit.run.headless import run_headless
-from kit.run.recording import load, rerun
+from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
@@ -256,7 +256,7 @@ def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) 
     terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
     terminal.send(b"r\x03")
     assert terminal.wait() == 0
-    recording = load(file)
+    recording = load_recording(file)
     assert (recording.place, recording.case) == ("simple", "simple")
     assert (rerun(recording, find_scenario("simple").world).poses == recording.poses).all()
 

@@ -139,7 +139,7 @@ class TurnEnv(TaskEnv):
     a time out that terminates.
     """
 
-    default = TURN
+    default_task = TURN
 
 
 class HallwayEnv(TaskEnv):
@@ -164,7 +164,7 @@ class HallwayEnv(TaskEnv):
     ``task=HALLWAY_SEED`` is the dissertation's own: rewards as they are, and a time out that terminates.
     """
 
-    default = HALLWAY
+    default_task = HALLWAY
 
 
 class WheelchairsEnv(TaskEnv):
@@ -191,4 +191,4 @@ class WheelchairsEnv(TaskEnv):
     time out that terminates; ``WHEELCHAIRS_SEED_49`` its first attempt.
     """
 
-    default = WHEELCHAIRS
+    default_task = WHEELCHAIRS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask
 
 ObservationArray = NDArray[np.float32]
 
@@ -22,19 +22,21 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
     ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
     """
 
+    default_task: ClassVar[LearningTask] = TURN
+
     def __init__(
         self,
         num_envs: int,
-        task: LearningTask,
+        task: LearningTask | None = None,
         *,
         reward: RewardFunction | None = None,
         seed: int | None = None,
     ) -> None:
-        """``reward``: instead of the task's own. ``seed``: by chance if None."""
+        """``task``: a variant of the class's own. ``reward``: instead of the task's own. ``seed``: by chance if None."""
         self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
         self.num_envs = num_envs
-        chance = int(np.random.default_rng().integers(2**31))
-        self.batch = BatchEnv(task, num_envs, chance if seed is None else seed, reward=reward)
+        seed = int(np.random.default_rng().integers(2**31)) if seed is None else seed
+        self.batch = BatchEnv(self.default_task if task is None else task, num_envs, seed, reward=reward)
         self.single_observation_space = self.batch.observation_space
         self.single_action_space = self.batch.action_space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -64,3 +66,21 @@ class BatchVectorEnv(VectorEnv[ObservationArray, NDArray[np.int64], NDArray[Any]
             seen = step.final_observations[episode.world]
             info = self._add_info(info, {"final_obs": seen, "final_info": final}, episode.world)
         return step.observations, step.rewards, step.terminated, step.truncated, info
+
+
+class TurnVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Turn-v0``."""
+
+    default_task = TURN
+
+
+class HallwayVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Hallway-v0``."""
+
+    default_task = HALLWAY
+
+
+class WheelchairsVectorEnv(BatchVectorEnv):
+    """Many worlds of ``RobotKit/Wheelchairs-v0``."""
+
+    default_task = WHEELCHAIRS

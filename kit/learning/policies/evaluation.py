@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats,
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policies import Policy, load_policy
 from kit.world.catalogue import MapCase
 
 PARALLEL_WORLDS = 1024
@@ -213,3 +214,29 @@ class _CaseSums:
             reward=self.reward / episodes,
             adjacency=self.adjacency / episodes if pair else np.nan,
         )
+
+
+def evaluate_policy(
+    policy: Policy | Path | str,
+    *,
+    task: LearningTask | None = None,
+    episodes: int = 100,
+    seed: int = 0,
+    greedy: bool = True,
+) -> EvaluationResult:
+    """Drives at least ``episodes`` episodes of each case with a policy and returns its success by case.
+
+    ``policy``: a policy or its file. ``task``: by default the one that it was trained on. ``greedy``: whether it takes
+    its best action, or draws actions as it did in training. The same arguments give the same result.
+
+    Raises PolicyError if the file is damaged or the policy does not fit the task.
+
+    >>> result = kit.evaluate_policy("best.npz", episodes=10)
+    >>> [case.case for case in result.cases]
+    ['turn_a_to_b', 'turn_b_to_a']
+    >>> 0.0 <= result.worst.share <= result.mean <= 1.0
+    True
+    """
+    policy = policy if isinstance(policy, Policy) else load_policy(policy)
+    evaluator = Evaluator(policy.trained_on.resolve() if task is None else task)
+    return evaluator.test(policy, episodes, seed, greedy=greedy)

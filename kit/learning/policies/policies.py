@@ -260,8 +260,16 @@ def _arrays_of(model: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any
     return named
 
 
-def load_policy(file: Path) -> Policy:
-    """Reads what ``save_policy`` wrote. PolicyError if the file is damaged; FileNotFoundError if there is none."""
+def load_policy(file: Path | str) -> Policy:
+    """Reads a trained policy, such as a run's ``best.npz``; needs no torch.
+
+    Raises PolicyError if the file is damaged and FileNotFoundError if there is none.
+
+    >>> policy = kit.load_policy("best.npz")
+    >>> policy.trained_on.task
+    'turn'
+    """
+    file = Path(file)
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}

@@ -22,7 +22,7 @@ from kit.learning.training.events import (
     TrainingStarted,
 )
 from kit.learning.training.run_text import format_event, success_shares
-from kit.learning.training.runs import RunCommand, RunConfig, RunSummary, summarise_events
+from kit.learning.training.runs import RunCommand, RunConfig, TrainingSummary, summarise_events
 from kit.learning.training.training import resolve_preset
 
 RECENT_REPORTS = 10
@@ -87,7 +87,7 @@ class RunStatus:
     """All there is to show of a run, at one moment."""
 
     plan: RunPlan
-    summary: RunSummary
+    summary: TrainingSummary
     batches: TrainingCurve
     evaluations: Evaluations
     cases: tuple[CaseStatus, ...]

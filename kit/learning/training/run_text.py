@@ -14,7 +14,7 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
-from kit.learning.training.runs import RunError, RunSummary, TrainingRun
+from kit.learning.training.runs import RunError, TrainingRun, TrainingSummary
 
 
 def format_event(event: TrainingEvent) -> str:
@@ -80,7 +80,7 @@ def format_runs(runs: Sequence[TrainingRun]) -> list[str]:
     return rows
 
 
-def _format_best(summary: RunSummary) -> str:
+def _format_best(summary: TrainingSummary) -> str:
     if summary.best is None:
         return "         -      -"
     shares = success_shares(summary.best).values()

@@ -98,7 +98,7 @@ RunState = Literal["running", "paused", "finished", "stopped", "failed", "interr
 
 
 @dataclass(frozen=True, slots=True)
-class RunSummary:
+class TrainingSummary:
     """Where a run stands."""
 
     state: RunState
@@ -221,7 +221,7 @@ class TrainingRun:
     def events(self) -> tuple[TrainingEvent, ...]:
         return tuple(EventReader(self.events_file).new())
 
-    def summary(self) -> RunSummary:
+    def summary(self) -> TrainingSummary:
         """Where it stands."""
         found = summarise_events(self.events(), alive=self.is_active, order=self.read_command())
         return replace(found, reason=self.last_log_line) if found.state == "interrupted" else found
@@ -259,7 +259,7 @@ class TrainingRun:
         return None
 
 
-def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> RunSummary:
+def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> TrainingSummary:
     """Where a run with these events stands."""
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
     tested: Evaluated | None = None
@@ -280,7 +280,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 pass
     if alive:
         state = "paused" if order == "pause" else "running"
-    return RunSummary(state, steps, seconds, rate, tested, best, reason)
+    return TrainingSummary(state, steps, seconds, rate, tested, best, reason)
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:

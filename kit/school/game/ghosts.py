@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.run.recording import Recording, RecordingError, load, save
+from kit.run.recording import Recording, RecordingError, load_recording, save_recording
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind, drive_reference
 from kit.workspace import Workspace
@@ -47,14 +47,14 @@ def save_ghost(workspace: Workspace, level: GameLevel, name: str, recording: Rec
     """Saves a drive as the best one of its driver. Raises OSError."""
     file = _ghost_file(workspace, level, name)
     file.parent.mkdir(parents=True, exist_ok=True)
-    save(recording, file)
+    save_recording(recording, file)
     return file
 
 
 def load_ghost(workspace: Workspace, level: GameLevel, name: str) -> Ghost | None:
     """Reads the best drive of one driver; None if there is none, it cannot be read, or it is of another map."""
     try:
-        recording = load(_ghost_file(workspace, level, name))
+        recording = load_recording(_ghost_file(workspace, level, name))
     except (RecordingError, OSError):
         return None
     place = level.find_scenario()

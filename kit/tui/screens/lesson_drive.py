@@ -135,13 +135,13 @@ class RecordedDriveScreen(WatchScreen):
         self._save()
 
     def _save(self) -> None:
-        from kit.run.recording import save
+        from kit.run.recording import save_recording
 
         recording = self.host.recording()
         if recording is None or not recording.ticks:
             return
         try:
-            save(recording, self._file)
+            save_recording(recording, self._file)
             self.was_kept, self.problem = True, ""
         except OSError as error:
             self.problem = f"{self._file}: {error.strerror}."

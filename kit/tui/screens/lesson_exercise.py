@@ -252,10 +252,10 @@ class ExerciseActions(Screen[None]):
 
 def _load(file: Path) -> tuple[Recording, Scenario]:
     """In another thread: the physics takes a moment to import."""
-    from kit.run.recording import load
+    from kit.run.recording import load_recording
     from kit.run.scenario import find_scenario
 
-    recording = load(file)
+    recording = load_recording(file)
     return recording, find_scenario(recording.place, recording.case)
 
 

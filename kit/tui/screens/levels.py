@@ -237,11 +237,11 @@ class LevelsScreen(ActivePaintScreen[None]):
         choices = [PickerItem(str(file), file.name.split(".")[1], "") for file in files]
         picked = await self.app.push_screen_wait(Picker("Watch whose drive?", choices))
         if picked is not None:
-            from kit.run.recording import RecordingError, load
+            from kit.run.recording import RecordingError, load_recording
             from kit.tui.screens.lesson_drive import RecordingScreen
 
             try:
-                recording = await to_thread(load, Path(picked))
+                recording = await to_thread(load_recording, Path(picked))
             except (RecordingError, OSError) as error:
                 self.app.push_screen(MessageDialog("It cannot be watched", wrapped(str(error))))
                 return

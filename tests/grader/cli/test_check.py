@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from grader.__main__ import main
 from grader.evidence.exploit import TICKS_PER_MOVE
-from kit.run.recording import load, rerun
+from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 
@@ -31,7 +31,7 @@ def test_a_drive_on_a_map_of_the_kit(tmp_path: Path) -> None:
     assert (code, "add --replay" in text) == (1, True)
     code, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
     assert f"Watch it move: kit replay {out}\n" in text
-    kept = load(out)
+    kept = load_recording(out)
     assert np.array_equal(rerun(kept, find_scenario(kept.place, kept.case).world).poses, kept.poses)
 
 
@@ -44,7 +44,7 @@ def test_a_drive_in_a_world_of_the_assignments_own(tmp_path: Path) -> None:
     file.write_text(FORWARD)
     _, text = checked(str(file), "--assignment", str(folder), "--replay", str(out))
     assert f"kit replay {out} --root {folder}" in text
-    kept = load(out)
+    kept = load_recording(out)
     place = find_scenario(kept.place, kept.case, folder)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
 
@@ -55,7 +55,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     out = tmp_path / "exploit.npz"
     _, text = checked(str(wrong), "--assignment", str(TEMPLATES / "reward"), "--replay", str(out))
     assert "Watch it move" in text
-    kept = load(out)
+    kept = load_recording(out)
     place = find_scenario(kept.place)
     assert np.array_equal(rerun(kept, place.world).poses, kept.poses)
     assert kept.ticks >= 10 * TICKS_PER_MOVE

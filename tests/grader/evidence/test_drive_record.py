@@ -18,7 +18,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.run.recording import Input, Recording, load, save
+from kit.run.recording import Input, Recording, load_recording, save_recording
 from kit.run.scenario import find_scenario
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
@@ -55,7 +55,7 @@ def handed_in(assignment: Assignment, data: bytes) -> GradingResult:
 
 
 def as_bytes(recording: Recording, folder: Path) -> bytes:
-    save(recording, folder / "made.npz")
+    save_recording(recording, folder / "made.npz")
     return (folder / "made.npz").read_bytes()
 
 
@@ -219,5 +219,5 @@ def test_the_solutions_are_as_their_script_makes_them(tmp_path: Path) -> None:
     from tests.solutions.drives import FLAG, FOLDER
 
     place, legs = FLAG["solution"]
-    kept = load(FOLDER / "01-drive" / "flag" / "solution.npz")
+    kept = load_recording(FOLDER / "01-drive" / "flag" / "solution.npz")
     assert np.abs(driven(find_scenario(place), legs).poses - kept.poses).max() < 1e-6

@@ -151,7 +151,7 @@ def test_a_world_whose_episode_ended_goes_on_with_the_next_case() -> None:
 def test_no_start_touches_anything_or_is_in_the_target(task: LearningTask) -> None:
     cases = len(task.map_cases())
     n = cases * -(-2000 // cases)
-    task = replace(task, actions=replace(task.actions, speed=0.0, turn=0.0))
+    task = replace(task, actions=replace(task.actions, speed=0.0, turn_rate=0.0))
     batch = BatchEnv(task, n, seed=11)
     batch.reset()
     assert not batch.state.in_target.any()
@@ -298,7 +298,7 @@ def test_to_spare_the_search_for_walls_changes_nothing(task: LearningTask) -> No
     chance = np.random.default_rng(6)
     for _ in range(60):
         actions = actions_of(batch, chance)
-        searching.state.free[:] = 0.0
+        searching.state.clearance[:] = 0.0
         step, other = batch.step(actions), searching.step(actions)
         assert [bits(step, i) for i in range(40)] == [bits(other, i) for i in range(40)]
 

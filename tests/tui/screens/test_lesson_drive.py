@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
-from kit.run.recording import load
+from kit.run.recording import load_recording
 from kit.run.session import Session
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
@@ -66,7 +66,7 @@ def test_a_drive_is_kept_when_it_is_left_and_then_checked(
         await seen(pilot, "Esc back")
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
-    recording = load(file)
+    recording = load_recording(file)
     assert (recording.place, recording.case) == ("turn", "turn_a_to_b")
     assert recording.ticks > 50
     [attempt] = progress.events(EventKind.ATTEMPT)
@@ -133,4 +133,4 @@ def test_who_leaves_the_kit_keeps_the_drive_too(
         await until(pilot, lambda: screen.view is not None and screen.view.time_s > 0.3, "a moment")
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
-    assert load(file).ticks > 30
+    assert load_recording(file).ticks > 30
