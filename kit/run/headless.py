@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from kit.controllers import ControllerFile
+from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.ros.graph.graph import Graph
@@ -19,8 +19,9 @@ from kit.run.lockstep import ClosableParticipant
 from kit.run.metrics import DriveMetrics
 from kit.run.pacing import MAXIMUM, Schedule
 from kit.run.recording import Fingerprint, Recorder, save_recording
-from kit.run.scenario import Scenario
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
+from kit.sim.simulation import STEP_SIZE_S
 from kit.workspace import check_writable
 
 OUTPUT_INTERVAL = 100
@@ -144,3 +145,36 @@ def _run(
     except KeyboardInterrupt:
         return True
     return False
+
+
+def run_episode(
+    scenario: str,
+    controller: str,
+    *,
+    case: str | None = None,
+    seconds: float = 60.0,
+    seed: int = 0,
+    until_reached: bool = True,
+    record: Path | str | None = None,
+) -> RunSummary:
+    """Runs a controller in a world as fast as possible and returns the outcome.
+
+    ``scenario``: a map's name or a world file. ``controller``: one of the kit's by name, or a ``.py`` file. ``case``:
+    which of the map's cases, by default its first. ``seconds``: simulated time at most. ``until_reached``: whether the
+    episode ends when the target is reached. ``record``: a file for the recording. The same arguments give the same run.
+
+    Raises LookupError for an unknown map, case or controller, WorldError for a wrong world file, and OSError if the
+    recording cannot be written.
+
+    >>> summary = kit.run_episode("maze", "forward", seconds=2.0)
+    >>> summary.metrics.time_s, summary.failure
+    (2.0, None)
+    """
+    return run_headless(
+        find_scenario(scenario, case),
+        find_controller(controller),
+        steps=round(seconds / STEP_SIZE_S),
+        seed=seed,
+        until_reached=until_reached,
+        record=None if record is None else Path(record),
+    )
