@@ -21,7 +21,7 @@ from grader.teacher_tests import run_teacher_tests
 from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level, shield_this_process
-from kit.host.sandbox.probe import highest_up_to
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import CriterionResult, CriterionStatus, EpisodeSummary, GradingResult, GradingTiming
 
 STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
@@ -308,7 +308,7 @@ def open_grading(
 
 def _available_level(level: Level, *, may_fall: bool) -> Level:
     """The level to use: ``level``, or the highest below it that this machine has. Raises LevelUnavailable."""
-    available = highest_up_to(level)
+    available = highest_level_up_to(level)
     if available == level:
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."

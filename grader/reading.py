@@ -18,7 +18,7 @@ from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import Anchors
 from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.limits import GRADER, MIB, Limits
+from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_text import quoted, suggestion
 from kit.school.result import Visibility
 from kit.world.documents import WorldDocuments
@@ -130,14 +130,14 @@ def _file_name(section: Section, endings: tuple[str, ...]) -> str:
 
 def _limits(section: Section | None) -> Limits:
     if section is None:
-        return GRADER
+        return GRADER_LIMITS
     parsed = replace(
-        GRADER,
-        start_s=section.number("start", GRADER.start_s, above=0, maximum=120),
-        reply_s=section.number("reply", GRADER.reply_s, above=0, maximum=60),
-        total_s=section.number("total", GRADER.total_s or 120.0, above=0, maximum=3600),
-        cpu_s=section.integer("cpu", GRADER.cpu_s or 60, minimum=1, maximum=3600),
-        memory=MIB * section.integer("memory", GRADER.memory // MIB, minimum=256, maximum=64 * 1024),
+        GRADER_LIMITS,
+        start_s=section.number("start", GRADER_LIMITS.start_s, above=0, maximum=120),
+        reply_s=section.number("reply", GRADER_LIMITS.reply_s, above=0, maximum=60),
+        total_s=section.number("total", GRADER_LIMITS.total_s or 120.0, above=0, maximum=3600),
+        cpu_s=section.integer("cpu", GRADER_LIMITS.cpu_s or 60, minimum=1, maximum=3600),
+        memory=MIB * section.integer("memory", GRADER_LIMITS.memory // MIB, minimum=256, maximum=64 * 1024),
     )
     section.finish()
     return parsed

@@ -135,11 +135,11 @@ import sys
 from pathlib import Path
 from kit.host.student_functions import StudentFunctions
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import allows
+from kit.host.sandbox.probe import is_level_available
 for level in Level:
-    if allows(level):
+    if is_level_available(level):
         with StudentFunctions(Path(sys.argv[1]), level=level) as functions:
-            print(int(level), functions.call("stolen", [{}])[0] > 0, functions.call("beside", [{}])[0])
+            print(int(level), functions.call_batch("stolen", [{}])[0] > 0, functions.call_batch("beside", [{}])[0])
 """
 
 

@@ -57,9 +57,9 @@ def load_assignment(folder: Path) -> Assignment:
 def require_level(number: int) -> Level:
     """Returns this level; ends with exit code 2 where the machine does not support it."""
     from kit.host.sandbox.confinement import Level
-    from kit.host.sandbox.probe import highest
+    from kit.host.sandbox.probe import highest_level
 
-    if highest() < number:
+    if highest_level() < number:
         fail(f"This machine does not reach confinement level {number}; `kit doctor` says why.")
     return Level(number)
 
@@ -70,10 +70,10 @@ def level_for_untrusted(
     """The confinement level at which programs of others are graded; exit code 2 if they run here and this machine does
     not reach it."""
     from grader import grading
-    from kit.host.sandbox.probe import highest_up_to
+    from kit.host.sandbox.probe import highest_level_up_to
 
     level = grading.level_for_untrusted(assignment, to_level(number))
-    if not runs_here or highest_up_to(level) == level:
+    if not runs_here or highest_level_up_to(level) == level:
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
     if not (secret and assignment.level):

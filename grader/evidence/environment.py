@@ -19,8 +19,8 @@ from typing import Any, Final
 from grader.assignment import Assignment
 from grader.evidence.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_noise
 from kit.geometry import Pose
-from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json, ProtocolError, decode, printable
 from kit.msg.message import Message
@@ -135,7 +135,7 @@ class UnrestrictedRunner(RestrictedRunner):
 def examine_environment(
     task: EnvironmentTask, assignment: Assignment, file: Path, level: Level, seed: int
 ) -> EnvironmentRecord:
-    """Runs some episodes of the environment. Raises GuestError where the student's code fails."""
+    """Runs some episodes of the environment. Raises StudentCodeError where the student's code fails."""
     with tempfile.TemporaryDirectory(prefix="examination-") as folder:
         Path(folder).chmod(0o755)
         shutil.copyfile(EXAMINER_FILE, Path(folder, EXAMINER_FILE.name))
@@ -146,13 +146,13 @@ def examine_environment(
         arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.
         examination = _EnvironmentExaminer(runner, task, seed)
-        guest = Guest.start(
+        node_process = NodeProcess.start(
             graph, Path(folder, EXAMINER_FILE.name), args=arguments, limits=assignment.limits, level=level
         )
-        with guest:
-            runner.participants.append(guest)
-            examination.run_all(guest)
-            lines = guest.take_output().lines
+        with node_process:
+            runner.participants.append(node_process)
+            examination.run_all(node_process)
+            lines = node_process.take_output().lines
     examination.record.printed = tuple(printable(line.text) for line in lines)[:MAX_PRINTED_LINES]
     return examination.record
 
@@ -162,7 +162,7 @@ class _EnvironmentExaminer:
 
     def __init__(self, runner: UnrestrictedRunner, task: EnvironmentTask, seed: int) -> None:
         self._runner = runner
-        self._guest: Guest | None = None
+        self._node_process: NodeProcess | None = None
         self._task = task
         self._seed = seed
         self.record = EnvironmentRecord(task)
@@ -177,9 +177,9 @@ class _EnvironmentExaminer:
         node.create_subscription(String, ANSWER_TOPIC, self._on_answer, 10)
         runner.graph.add_message_listener(self._on_message)
 
-    def run_all(self, guest: Guest) -> None:
+    def run_all(self, node_process: NodeProcess) -> None:
         """Runs all episodes and Gymnasium's checker, in order."""
-        self._guest = guest
+        self._node_process = node_process
         self.record.description = self._await_answer(CALL_TIMEOUT_S, "the file's beginning")
         if "missing" in self.record.description or not self.record.description.get("is_env"):
             return
@@ -253,22 +253,22 @@ class _EnvironmentExaminer:
         return self._await_answer(timeout_s, what)
 
     def _await_answer(self, timeout_s: float, what: str) -> Mapping[str, Json]:
-        """Ticks until the answer comes. Raises GuestError if it does not come in time, or the program fails."""
-        guest = self._guest
-        assert guest is not None  # ``run_all`` has set it
+        """Ticks until the answer comes. Raises StudentCodeError if it does not come in time, or the program fails."""
+        node_process = self._node_process
+        assert node_process is not None  # ``run_all`` has set it
         run_until(
             self._runner,
             limit_s=timeout_s,
-            ends=(when_failed(guest), when(lambda: guest.has_ended), when(self._has_answer)),
+            ends=(when_failed(node_process), when(lambda: node_process.has_ended), when(self._has_answer)),
         )
-        if guest.failure is not None:
-            raise GuestError(guest.failure)
-        if guest.has_ended:
-            raise GuestError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
+        if node_process.failure is not None:
+            raise StudentCodeError(node_process.failure)
+        if node_process.has_ended:
+            raise StudentCodeError(Failure(FailureKind.EXIT, f"the program ended during {what}."))
         if self._answers:
             return self._decode_answer(self._answers.pop())
         message = f"{what} did not come back within {timeout_s:g} simulated seconds. Does it wait for a message that nobody sends?"
-        raise GuestError(Failure(FailureKind.TIMEOUT, message))
+        raise StudentCodeError(Failure(FailureKind.TIMEOUT, message))
 
     def _has_answer(self) -> bool:
         self._runner.exchange_until_idle()
@@ -278,9 +278,9 @@ class _EnvironmentExaminer:
         try:
             answer = decode(text.encode("ascii", "replace"))
         except ProtocolError as error:
-            raise GuestError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
+            raise StudentCodeError(Failure(FailureKind.PROTOCOL, f"the answer is no data: {error}")) from None
         if not isinstance(answer, dict) or not _is_plain_value(answer.get("returned", {})):
-            raise GuestError(Failure(FailureKind.PROTOCOL, "the answer is no data"))
+            raise StudentCodeError(Failure(FailureKind.PROTOCOL, "the answer is no data"))
         return answer
 
     def _on_answer(self, message: String) -> None:

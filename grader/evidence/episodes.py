@@ -12,8 +12,8 @@ from grader.assignment import Shift, Trial
 from grader.evidence.drive_record import DriveRecord, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from kit.geometry import Pose
-from kit.host.failure import Failure, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import Failure, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
@@ -119,7 +119,7 @@ class TrafficRecorder:
 
 
 def run_episode(spec: EpisodeSpec, file: Path, *, limits: Limits, level: Level) -> DriveRecord:
-    """Runs one episode. Raises GuestError only where the machine cannot confine: that is not the student's."""
+    """Runs one episode. Raises StudentCodeError only where the machine cannot confine: that is not the student's."""
     trial = spec.trial
     scenario = _scenario(trial)
     graph = Graph(log_sink=lambda record: None)
@@ -175,20 +175,22 @@ def _drive(
 ) -> tuple[Failure | None, tuple[str, ...]]:
     """Ticks until the time is over, the target reached, or the program failed."""
     try:
-        guest = Guest.start(runner.graph, file, args=arguments, seed=spec.seed, limits=limits, level=level)
-    except GuestError as error:
+        node_process = NodeProcess.start(
+            runner.graph, file, args=arguments, seed=spec.seed, limits=limits, level=level
+        )
+    except StudentCodeError as error:
         return error.failure, ()
-    with guest:
-        runner.participants.append(guest)
-        ends = [when_failed(guest), *([when_reached(metrics)] if spec.trial.until_reached else [])]
+    with node_process:
+        runner.participants.append(node_process)
+        ends = [when_failed(node_process), *([when_reached(metrics)] if spec.trial.until_reached else [])]
         run_until(
             runner,
             limit_s=spec.trial.time_s,
             ends=ends,
             before_tick=lambda number: service_caller.call_due(number * STEP),
         )
-        failure = guest.failure
-    lines = [printable(line.text) for line in guest.take_output().lines]
+        failure = node_process.failure
+    lines = [printable(line.text) for line in node_process.take_output().lines]
     return failure, tuple(lines[:MAX_PRINTED_LINES])
 
 

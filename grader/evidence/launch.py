@@ -20,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from grader.evidence.episodes import TrafficRecorder
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
@@ -154,7 +154,7 @@ def run_launch(
             bounds=bounds,
             on_output=lambda line: printed.append(str(line)),
         )
-    except GuestError as error:
+    except StudentCodeError as error:
         return LaunchRecord(run, _without_folder(error.failure, target))
     try:
         launch.load()
@@ -163,7 +163,7 @@ def run_launch(
             if launch.world
             else _run_without_world(run, launch, queries)
         )
-    except GuestError as error:
+    except StudentCodeError as error:
         return LaunchRecord(run, _without_folder(error.failure, target), arguments)
     except (ProcessStartError, WorldError, PackageError, OSError) as problem:
         return LaunchRecord(

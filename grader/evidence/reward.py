@@ -17,7 +17,7 @@ from grader.evidence.reward_training import RewardTrainingParams, mean_success
 from grader.evidence.symmetry import mirrored, rotated
 from grader.evidence.task_model import Floats, GridModel, build_model
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, to_transition
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
@@ -57,7 +57,7 @@ class RewardEvidence:
             self.rewards: Floats = self._evaluate_all(TransitionBatch.all(self.model)).reshape(
                 self.model.states, -1
             )
-        except GuestError as error:
+        except StudentCodeError as error:
             self.failure = error.failure
 
     @property
@@ -82,7 +82,7 @@ class RewardEvidence:
             with self._open() as functions:
                 first = self._call(functions, shuffled)
                 second = self._call(functions, steps)
-        except GuestError:
+        except StudentCodeError:
             return False
         known = self.rewards.reshape(-1)
         return bool(np.array_equal(first, known[order]) and np.array_equal(second, known))
@@ -104,7 +104,7 @@ class RewardEvidence:
             with self._open() as functions:
                 for transformed in transforms:
                     same &= np.isclose(self._call(functions, transformed), known, rtol=1e-6, atol=1e-9)
-        except GuestError:
+        except StudentCodeError:
             return 0.0
         return float(same.mean())
 
@@ -125,7 +125,7 @@ class RewardEvidence:
                     self._successes[budget] = mean_success(
                         lambda each: self._rewards_of(functions, each), budget
                     )
-            except GuestError:
+            except StudentCodeError:
                 self._successes[budget] = 0.0
         return self._successes[budget]
 
@@ -201,15 +201,15 @@ class RewardCollector:
 
 
 def read_parameter_names(file: Path) -> tuple[str, ...]:
-    """Returns the names of the reward function's parameters. The file is read, never run. Raises GuestError."""
+    """Returns the names of the reward function's parameters. The file is read, never run. Raises StudentCodeError."""
     try:
         names = reward_parameters(file)
     except RewardFileError as error:
         # The path of the temporary copy means nothing to the student.
         message = str(error).replace(f"{file}", file.name)
-        raise GuestError(Failure(FailureKind.IMPORT, printable(message))) from None
+        raise StudentCodeError(Failure(FailureKind.IMPORT, printable(message))) from None
     unknown = [name for name in names if name not in MODEL_FACTS]
     if unknown:
         message = f"{file.name}: {REWARD_FUNCTION}() asks for {unknown[0]}, which this task does not have: {suggestion(unknown[0], MODEL_FACTS)}"
-        raise GuestError(Failure(FailureKind.IMPORT, message))
+        raise StudentCodeError(Failure(FailureKind.IMPORT, message))
     return names

@@ -46,7 +46,7 @@ class SilentCallbacks:
 def mean_success(reward: RewardFunction, budget: RewardTrainingParams) -> float:
     """Returns the share of episodes that reach the target after training with ``reward``, the mean over all seeds.
 
-    Raises GuestError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
+    Raises StudentCodeError where the student's code fails, and LookupError or LearnerMissing where the assignment asks for
     something that is not here.
     """
     algorithm, choice = find_algorithm(budget.algorithm), TaskSpec(budget.task)

@@ -29,7 +29,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.evidence.environment import EnvironmentRecord, EnvironmentTask, examine_environment
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.plain_text import quoted
 
@@ -74,7 +74,7 @@ def _examine(assignment: Assignment, file: Path, options: EvidenceOptions) -> Ev
     seed = task.secret_seed if options.secret and task.secret_seed is not None else task.seed
     try:
         record = examine_environment(task, assignment, file, options.level, seed)
-    except GuestError as error:
+    except StudentCodeError as error:
         failure = error.failure
         if failure.file == "examiner.py":  # the grader's own examiner means nothing to the student
             failure = replace(failure, file=file.name, line=None)

@@ -33,7 +33,7 @@ from grader.assignment import Assignment, Criterion, SeedSet
 from grader.checks.contract import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
 from kit.plain_text import quoted, suggestion
@@ -213,11 +213,11 @@ class FunctionCollector:
         try:
             with StudentFunctions(self._file, limits=self._assignment.limits, level=self.level) as functions:
                 for case in cases:
-                    expected, actual = _as_json(right(**case)), functions.tell(spec.name, case)
+                    expected, actual = _as_json(right(**case)), functions.call_json(spec.name, case)
                     if not is_close(expected, actual, spec.within):
                         differences.append(CaseDifference(case, expected, actual))
                 printed = tuple(printable(line.text) for line in functions.take_output().lines)
-        except GuestError as error:
+        except StudentCodeError as error:
             return failed_record(blank, error.failure, spec.name, case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
         explanation = "" if blank.secret else found.explain_first()

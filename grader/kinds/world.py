@@ -26,7 +26,7 @@ from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.evidence.world.process import WorldProcess
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.controllers import find_controller
-from kit.host.failure import GuestError
+from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.plain_text import quoted
 from kit.run.scenario import Scenario
@@ -159,7 +159,7 @@ class WorldCollector:
                 self._read = _record(
                     WorldContents(self._running_process().read_world()), "what you handed in"
                 )
-            except GuestError as error:
+            except StudentCodeError as error:
                 self._read = EvidenceRecord(failure=error.failure)
         return self._read
 
@@ -174,7 +174,7 @@ class WorldCollector:
                 facts = self._running_process().run(spec, self._assignment.limits.total_s or 120.0)
                 record = _record(WorldRun(contents.world, facts, spec.target is not None), label)
                 record.steps = round(facts.seconds / 0.01)
-            except GuestError as error:
+            except StudentCodeError as error:
                 self._process = None  # it has ended
                 record = EvidenceRecord(failure=error.failure, label=label)
             record.secret = secret

@@ -16,7 +16,7 @@ from typing import Final
 import click
 
 import kit
-from kit.host.sandbox.probe import probe
+from kit.host.sandbox.probe import probe_levels
 from kit.tui.input.probe import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide
 from kit.workspace import open_workspace
@@ -133,10 +133,10 @@ def _version(package: str) -> str | None:
 
 def _confinement() -> Iterator[Finding]:
     """How far other people's code can be locked in here. At the desk one's own code runs at level 0."""
-    for rung in probe():
-        value = "available" if rung.is_available else "not available"
-        reason = rung.reason[:1].upper() + rung.reason[1:].removesuffix(".") + "."
-        yield Finding("Student code", f"level {rung.level}", value, reason)
+    for support in probe_levels():
+        value = "available" if support.is_available else "not available"
+        reason = support.reason[:1].upper() + support.reason[1:].removesuffix(".") + "."
+        yield Finding("Student code", f"level {support.level}", value, reason)
 
 
 def _workspace() -> Finding:

@@ -118,13 +118,13 @@ def _sorted_out(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 
 
 def _show_arguments(target: LaunchTarget) -> None:
-    from kit.host.failure import GuestError
+    from kit.host.failure import StudentCodeError
     from kit.launch.launch_file_process import declared_arguments
     from kit.launch.start_errors import explain_failure
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
-    except GuestError as error:
+    except StudentCodeError as error:
         options.fail(explain_failure(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     for argument in declared:
@@ -145,7 +145,7 @@ def _run_plainly(
     until: float | None,
     speed: float | None,
 ) -> None:
-    from kit.host.failure import GuestError
+    from kit.host.failure import StudentCodeError
     from kit.inspection.server import open_inspection_server
     from kit.inspection.world_sockets import sockets_folder
     from kit.launch.launch_run import Launch
@@ -175,7 +175,7 @@ def _run_plainly(
             make_companion=lambda graph: open_inspection_server(graph, sockets_folder(desk.folder), name),
             log=lambda record: click.echo(str(record), err=True),
         )
-    except GuestError as error:
+    except StudentCodeError as error:
         options.fail(explain_failure(error.failure))
     except (ProcessStartError, WorldError) as problem:
         options.fail(str(problem))

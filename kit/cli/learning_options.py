@@ -50,7 +50,7 @@ def names(text: str | None) -> tuple[str, ...]:
 @contextmanager
 def mistakes() -> Iterator[None]:
     """Ends the verb with one clear line for whatever a user can cause."""
-    from kit.host.failure import GuestError
+    from kit.host.failure import StudentCodeError
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.environment.tasks import UnknownTask
     from kit.learning.policies.policies import PolicyError
@@ -65,7 +65,14 @@ def mistakes() -> Iterator[None]:
         yield
     except UnknownAlgorithm as error:
         options.fail(str(error))
-    except (GuestError, LearnExtraMissing, PolicyError, RewardFileError, RunError, UnsupportedWorld) as error:
+    except (
+        StudentCodeError,
+        LearnExtraMissing,
+        PolicyError,
+        RewardFileError,
+        RunError,
+        UnsupportedWorld,
+    ) as error:
         options.fail(str(error))
     except (UnknownTask, WorkspaceError, WorldError) as error:
         options.fail(str(error))

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import click
 
 from kit.cli.waiting import Intake, Lines
-from kit.host.file_watcher import FileWatch
+from kit.host.file_watcher import FileWatcher
 from kit.school.lessons.checking import CheckReport, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
@@ -53,7 +53,7 @@ class PlainLesson:
         self._watch = watch
         self._drive = drive
         self._lines = Lines(_nobody_looks_in, intake)
-        self._file: FileWatch | None = None
+        self._file: FileWatcher | None = None
         self.step = session.first_step
         self.is_over = False
 
@@ -239,7 +239,7 @@ class PlainLesson:
 
     def _open(self, exercise: Exercise) -> None:
         file = self._visit.install(exercise)
-        self._file = None if self._by_hand else FileWatch(submission_path(exercise, file))
+        self._file = None if self._by_hand else FileWatcher(submission_path(exercise, file))
         click.echo(f"Your file: {file}")
 
     def _ask(self, step: LessonStep) -> None:

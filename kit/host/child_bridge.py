@@ -11,8 +11,8 @@ from types import MappingProxyType
 from typing import Any, Final, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
-from kit.host.proxy_nodes import Census, Mirror
-from kit.host.waiter import Exchange, PipePump
+from kit.host.proxy_nodes import GraphDiff, ProxyNodes
+from kit.host.waiter import AllThreadsWaiter, Exchange
 from kit.host.wire import Json
 from kit.msg.message import Message
 from kit.ros.graph.directory import GraphNode
@@ -30,17 +30,17 @@ class Conversation(Protocol):
         """Waits for the next one: its kind and its content."""
 
 
-class Embassy:
+class ChildBridge:
     """The child's graph, and what goes to and fro between it and the kit's."""
 
     def __init__(
-        self, conversation: Conversation, now_ns: int, pump: Callable[[Exchange], Waiter] = PipePump
+        self, conversation: Conversation, now_ns: int, pump: Callable[[Exchange], Waiter] = AllThreadsWaiter
     ) -> None:
         self.graph = Graph(now_ns, waiter=pump(self))
         self._conversation = conversation
         self._codec = Codec(in_child=True)
-        self._mirror = Mirror(self.graph, self)
-        self._census = Census(self.graph, self._mirror)
+        self._proxies = ProxyNodes(self.graph, self)
+        self._diff = GraphDiff(self.graph, self._proxies)
         self._events: list[Json] = []
         self.has_had_nodes = False
         self.graph.add_message_listener(self._overhear)
@@ -66,7 +66,7 @@ class Embassy:
         return events
 
     def _tell_news(self) -> None:
-        news = self._census.news()
+        news = self._diff.news()
         self._events += news
         self.has_had_nodes = self.has_had_nodes or bool(news)
 
@@ -74,7 +74,7 @@ class Embassy:
         """Everything that the program's own nodes publish, whether or not anybody listens."""
         if "/srv/" not in type(message).__ros_type__:
             self._tell_news()
-            number = self._census.publisher(node.handle, topic)
+            number = self._diff.publisher(node.handle, topic)
             try:
                 content = self._codec.pack(message)
             except NotFiniteError as problem:
@@ -103,30 +103,30 @@ class Embassy:
         """Takes in what the kit tells."""
         with self.graph.lock:
             for name, *fields in events:
-                _HEARD.get(name, Embassy._hear_news)(self, name, fields)
+                _HEARD.get(name, ChildBridge._hear_news)(self, name, fields)
             self.graph.notify()
 
     def _hear_news(self, name: str, fields: list[Json]) -> None:
         self._tell_news()
-        self._mirror.take_in(name, fields)
-        self._census.seen()
+        self._proxies.take_in(name, fields)
+        self._diff.seen()
 
     def _hear_message(self, _: str, fields: list[Json]) -> None:
         number, content = fields
-        subscription: Any = self._census.ends.get(number)
+        subscription: Any = self._diff.ends.get(number)
         if subscription is not None:  # it may have been destroyed since
             subscription.enqueue(self._codec.unpack(subscription.msg_type, content))
 
     def _hear_request(self, _: str, fields: list[Json]) -> None:
         identity, number, content = fields
-        service: Any = self._census.ends.get(identity)
+        service: Any = self._diff.ends.get(identity)
         if service is not None:
             asker: Any = _Asker(self, identity)
             service.enqueue(Call(asker, number, self._codec.unpack(service.srv_type.Request, content)))
 
     def _hear_response(self, _: str, fields: list[Json]) -> None:
         identity, number, content = fields
-        client: Any = self._census.ends.get(identity)
+        client: Any = self._diff.ends.get(identity)
         if client is not None:
             client.enqueue(number, self._codec.unpack(client.srv_type.Response, content))
 
@@ -138,18 +138,18 @@ class Embassy:
 class _Asker:
     """Stands for whoever asked, in a call that came from the kit."""
 
-    def __init__(self, embassy: Embassy, service: int) -> None:
-        self._embassy = embassy
+    def __init__(self, bridge: ChildBridge, service: int) -> None:
+        self._bridge = bridge
         self._service = service
 
     def enqueue(self, number: int, response: Message) -> None:
-        self._embassy.answer(self._service, number, response)
+        self._bridge.answer(self._service, number, response)
 
 
 _HEARD: Final = MappingProxyType(
     {
-        "message": Embassy._hear_message,
-        "request": Embassy._hear_request,
-        "response": Embassy._hear_response,
+        "message": ChildBridge._hear_message,
+        "request": ChildBridge._hear_request,
+        "response": ChildBridge._hear_response,
     }
 )

@@ -47,7 +47,7 @@ class Failure:
         return f"{self.file}:{self.line}: {self.message}" if self.line else f"{self.file}: {self.message}"
 
 
-class GuestError(Exception):
+class StudentCodeError(Exception):
     """Student code has stopped; ``failure`` says why."""
 
     def __init__(self, failure: Failure) -> None:

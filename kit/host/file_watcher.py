@@ -5,7 +5,7 @@ folders lie. Editors save in two ways, both of which take a moment in which the 
 new file and rename it, or they empty the old one and fill it. So a file counts as saved when it has looked the
 same for a while.
 
-Who exchanges the running version for the new one: start a second ``Guest`` on the file, ask ``is_started`` now
+Who exchanges the running version for the new one: start a second ``NodeProcess`` on the file, ask ``is_started`` now
 and then, and only when it says yes, ``close`` the old one and ``join`` the new.
 """
 
@@ -35,7 +35,7 @@ class _Look(NamedTuple):
     inode: int
 
 
-class FileWatch:
+class FileWatcher:
     """Notices when a file has been saved, or any file of a folder. ``clock`` gives seconds."""
 
     def __init__(self, file: Path, *, clock: Callable[[], float] = time.monotonic) -> None:

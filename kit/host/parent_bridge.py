@@ -1,7 +1,7 @@
 """The nodes of another process in our graph: proxies here, the real ones over there.
 
 What reaches a proxy waits in ``inbox`` until it is fetched; what the other process tells is checked and done.
-How the two talk, and whether one waits for the other, is the business of whoever owns the delegation.
+How the two talk, and whether one waits for the other, is the business of whoever owns the bridge.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from kit.host.codec import Codec
 from kit.host.protocol import Event
-from kit.host.proxy_nodes import Census, Mirror, RemoteClient
+from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
 from kit.host.wire import Json, ProtocolError, integer, items
 from kit.msg.message import Message
 from kit.ros.graph.graph import Graph
@@ -34,7 +34,7 @@ class Waiting(NamedTuple):
     event: list[Json]
 
 
-class Delegation:
+class ParentBridge:
     """The other process's nodes, and what is to be told to it."""
 
     def __init__(self, graph: Graph) -> None:
@@ -42,18 +42,18 @@ class Delegation:
         self.inbox: list[Waiting] = []
         self._asked: dict[int, _Asked] = {}
         self._codec = Codec(in_child=False)
-        self._mirror = Mirror(graph, self)
-        self._census = Census(graph, self._mirror)
+        self._proxies = ProxyNodes(graph, self)
+        self._diff = GraphDiff(graph, self._proxies)
         self._speaking = False
 
     @property
     def has_news(self) -> bool:
         """Whether there is something to tell."""
-        return bool(self.inbox) or self._census.has_news
+        return bool(self.inbox) or self._diff.has_news
 
     def news(self) -> list[Json]:
         """What has changed among the other nodes of the graph since the last time."""
-        return self._census.news()
+        return self._diff.news()
 
     def fetch(self) -> list[Json]:
         """All that is to be told now."""
@@ -64,23 +64,23 @@ class Delegation:
         """Does what the other process tells. ProtocolError if something is wrong with it."""
         with self._graph.lock:
             for event in events:
-                _HEARD.get(event.name, Delegation._hear_news)(self, event)
+                _HEARD.get(event.name, ParentBridge._hear_news)(self, event)
 
     def clear(self) -> None:
         """Takes the nodes out of the graph."""
-        self._mirror.clear()
+        self._proxies.clear()
 
     # What the other side says
 
     def _hear_news(self, event: Event) -> None:
-        unchanged = not self._census.has_news
-        self._mirror.take_in(event.name, event.fields)
+        unchanged = not self._diff.has_news
+        self._proxies.take_in(event.name, event.fields)
         if unchanged:
-            self._census.seen()
+            self._diff.seen()
 
     def _hear_message(self, event: Event) -> None:
         identity, content = items(event.fields, 2)
-        publisher = self._mirror.end(identity, Publisher)
+        publisher = self._proxies.end(identity, Publisher)
         message = self._codec.unpack(publisher.msg_type, content)
         # Among themselves the other side's nodes have heard it already.
         self._speaking = True
@@ -91,12 +91,12 @@ class Delegation:
 
     def _hear_request(self, event: Event) -> None:
         identity, number, content = items(event.fields, 3)
-        client = self._mirror.end(identity, RemoteClient)
+        client = self._proxies.end(identity, ProxyClient)
         client.ask(integer(number), self._codec.unpack(client.srv_type.Request, content))
 
     def _hear_response(self, event: Event) -> None:
         identity, number, content = items(event.fields, 3)
-        service = self._mirror.end(identity, Service)
+        service = self._proxies.end(identity, Service)
         asked = self._asked.pop(integer(number), None)
         if asked is None or asked.service != identity:
             raise ProtocolError("a response to a request that was not made")
@@ -126,10 +126,10 @@ class Delegation:
         self.inbox.append(Waiting(self._graph.now_ns, list(event)))
 
 
-_HEARD: Final[Mapping[str, Callable[[Delegation, Event], None]]] = MappingProxyType(
+_HEARD: Final[Mapping[str, Callable[[ParentBridge, Event], None]]] = MappingProxyType(
     {
-        "message": Delegation._hear_message,
-        "request": Delegation._hear_request,
-        "response": Delegation._hear_response,
+        "message": ParentBridge._hear_message,
+        "request": ParentBridge._hear_request,
+        "response": ParentBridge._hear_response,
     }
 )

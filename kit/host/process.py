@@ -22,13 +22,13 @@ from types import MappingProxyType, TracebackType
 from typing import Final, Literal, NoReturn, Self, TypeAlias
 
 from kit.host import failure_messages
-from kit.host.failure import Failure, GuestError
+from kit.host.failure import Failure, StudentCodeError
 from kit.host.output import Output, Position, Printed, Stream
 from kit.host.package_program import Installed
 from kit.host.protocol import ASKING, Confined, Ended, Failed, Frame, Refused, State, check_allowed, parse
-from kit.host.sandbox.confinement import DESK_LEVEL, Cage, Level
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.sandbox.grants import Grants, grants, libraries
-from kit.host.sandbox.limits import DESK, KIB, Limits
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
@@ -53,11 +53,11 @@ _HERE = Path(__file__).parent
 _READ = 1 << 16
 
 
-class Child:
+class StudentProcess:
     """One student's file in a process of its own. Use as a context manager, or ``close`` it.
 
     Starts at once and does not wait: ``started`` does. After that, one ``ask`` after the other. What goes
-    wrong, whenever, is raised as GuestError, kept as ``failure``, and the child is gone by then.
+    wrong, whenever, is raised as StudentCodeError, kept as ``failure``, and the child is gone by then.
     """
 
     def __init__(
@@ -66,8 +66,8 @@ class Child:
         file: Path,
         start: Mapping[str, Json],
         *,
-        limits: Limits = DESK,
-        level: Level = DESK_LEVEL,
+        limits: Limits = INTERACTIVE_LIMITS,
+        level: Level = INTERACTIVE_LEVEL,
         installed: Installed | None = None,
     ) -> None:
         self.failure: Failure | None = None
@@ -85,8 +85,8 @@ class Child:
         self._output = Output(limits.output)
         self._folder = tempfile.mkdtemp(prefix="kit-")
         granted = _granted(level, self._file, installed)
-        cage = Cage(level, limits, self._folder, granted.readable, granted.listed)
-        for folder in (cage.scratch, cage.root):
+        config = SandboxConfig(level, limits, self._folder, granted.readable, granted.listed)
+        for folder in (config.scratch, config.root):
             Path(folder).mkdir()
         self._pipe, theirs = socket.socketpair()
         try:
@@ -95,8 +95,8 @@ class Child:
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                cwd=cage.scratch,
-                env=environment(cage.scratch),
+                cwd=config.scratch,
+                env=environment(config.scratch),
                 start_new_session=True,
                 bufsize=0,
             )
@@ -108,7 +108,7 @@ class Child:
             theirs.close()
         self._pipe.setblocking(False)
         self._buffer = bytearray()
-        self._unsent = bytearray(encode([role, asdict(cage)]))
+        self._unsent = bytearray(encode([role, asdict(config)]))
         self._blocked = False
         assert self._process.stdout is not None
         assert self._process.stderr is not None
@@ -148,7 +148,7 @@ class Child:
             if isinstance(frame, Confined):
                 self._send_program(frame)
             elif isinstance(frame, Refused):
-                raise self.condemn(failure_messages.cannot_confine(self._level, frame.reason))
+                raise self.fail(failure_messages.cannot_confine(self._level, frame.reason))
             elif frame is not None:
                 self._answer = self._checked(frame)
             elif time.monotonic() >= self._deadline:
@@ -160,7 +160,7 @@ class Child:
     def _send_program(self, frame: Confined) -> None:
         """Sends the student's code, and what it needs to start, to a child that is locked in."""
         if frame.level != self._level:
-            raise self.condemn(failure_messages.nonsense("another level of confinement than was asked for"))
+            raise self.fail(failure_messages.nonsense("another level of confinement than was asked for"))
         self._start["start_s"] = max(0.001, self._deadline - time.monotonic())
         self._unsent += encode(["start", 0, self._start])
         self._start = {}
@@ -170,7 +170,7 @@ class Child:
         """Sends one frame and waits for its answer."""
         assert self._answer is not None, "ask before started"
         if self.failure is not None:
-            raise GuestError(self.failure)
+            raise StudentCodeError(self.failure)
         self._refuse_unasked()
         self._state = ASKING[kind]
         self._seq += 1
@@ -189,14 +189,14 @@ class Child:
         """What the program has printed since the last time."""
         return self._output.take()
 
-    def condemn(self, failure: Failure) -> GuestError:
+    def fail(self, failure: Failure) -> StudentCodeError:
         """Ends the child for this reason; what to raise then."""
         self.failure = failure
         self.close()
-        return GuestError(failure)
+        return StudentCodeError(failure)
 
-    def hang_up(self) -> None:
-        """Ends the conversation, from any thread: who waits in ``ask`` or ``started`` gets a GuestError."""
+    def disconnect(self) -> None:
+        """Ends the conversation, from any thread: who waits in ``ask`` or ``started`` gets a StudentCodeError."""
         with suppress(OSError):  # it has ended already
             self._pipe.shutdown(socket.SHUT_RDWR)
 
@@ -233,18 +233,18 @@ class Child:
                 if time.monotonic() >= deadline:
                     return None
         except ProtocolError as problem:
-            raise self.condemn(failure_messages.nonsense(str(problem))) from None
+            raise self.fail(failure_messages.nonsense(str(problem))) from None
         except (EOFError, ConnectionError):
-            raise self.condemn(self._post_mortem()) from None
+            raise self.fail(self._post_mortem()) from None
 
     def _refuse_unasked(self) -> None:
         """Ends a child that has said something while nothing was asked."""
         try:
             self._read()
         except (EOFError, ConnectionError):
-            raise self.condemn(self._post_mortem()) from None
+            raise self.fail(self._post_mortem()) from None
         if self._buffer:
-            raise self.condemn(failure_messages.nonsense("something while nothing was asked"))
+            raise self.fail(failure_messages.nonsense("something while nothing was asked"))
 
     def _post_mortem(self) -> Failure:
         """Why the child is gone, after its last words."""
@@ -292,9 +292,9 @@ class Child:
     def _checked(self, frame: Frame) -> Frame:
         """An answer to what was asked last."""
         if isinstance(frame, (Confined, Refused)) or frame.seq != self._seq:  # the first two for mypy only
-            raise self.condemn(failure_messages.nonsense("an answer to a question that was not asked"))
+            raise self.fail(failure_messages.nonsense("an answer to a question that was not asked"))
         if isinstance(frame, Failed):
-            raise self.condemn(failure_messages.told(frame.failure, self._limits))
+            raise self.fail(failure_messages.told(frame.failure, self._limits))
         if isinstance(frame, Ended):
             self.close()
         self._state = State.IDLE
@@ -321,7 +321,7 @@ class Child:
         deadline = time.monotonic() + DUMP_S
         while self._where() is None and time.monotonic() < deadline:
             self._drain_until(time.monotonic() + DUMP_S / 50)
-        raise self.condemn(failure_messages.too_slow(which, limit_s, self._where()))
+        raise self.fail(failure_messages.too_slow(which, limit_s, self._where()))
 
 
 def _program(file: Path) -> dict[str, Json]:
@@ -330,12 +330,12 @@ def _program(file: Path) -> dict[str, Json]:
         # A named pipe would have us wait for ever.
         with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as opened:
             if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
-                raise GuestError(failure_messages.unreadable(file, "not a file"))
+                raise StudentCodeError(failure_messages.unreadable(file, "not a file"))
             source = opened.read(LARGEST_SOURCE + 1)
     except OSError as problem:
-        raise GuestError(failure_messages.unreadable(file, problem.strerror or "unreadable")) from None
+        raise StudentCodeError(failure_messages.unreadable(file, problem.strerror or "unreadable")) from None
     if len(source) > LARGEST_SOURCE:
-        raise GuestError(failure_messages.unreadable(file, f"larger than {LARGEST_SOURCE // KIB} KiB"))
+        raise StudentCodeError(failure_messages.unreadable(file, f"larger than {LARGEST_SOURCE // KIB} KiB"))
     return {"file": str(file), "source": source.decode("latin-1"), "libraries": libraries()}
 
 

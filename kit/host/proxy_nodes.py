@@ -47,7 +47,7 @@ End = Publisher[Any] | Subscription[Any] | Service[Any, Any] | Client[Any, Any]
 E = TypeVar("E", bound=End)
 
 
-class Listener(Protocol):
+class ProxyListener(Protocol):
     """What to do with what reaches a mirrored endpoint, named by its number on its own side."""
 
     def on_message(self, subscription: int, message: Message) -> None: ...
@@ -60,7 +60,7 @@ class Listener(Protocol):
         """What is on its way to this endpoint is to be forgotten."""
 
 
-class RemoteNode(Node):
+class ProxyNode(Node):
     """A node that lives on the other side. It has nothing of its own, not even a node's usual endpoints."""
 
     def __init__(self, graph: Graph, name: str, namespace: str) -> None:
@@ -80,7 +80,7 @@ class RemoteNode(Node):
         return Parameter(name, value=value)
 
 
-class RemoteSubscription(Subscription[Any]):
+class ProxySubscription(Subscription[Any]):
     """Hands on each message at once."""
 
     def __init__(
@@ -90,7 +90,7 @@ class RemoteSubscription(Subscription[Any]):
         topic: str,
         qos: QoSProfile,
         identity: int,
-        listener: Listener,
+        listener: ProxyListener,
     ) -> None:
         self._identity, self._listener = identity, listener
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
@@ -103,7 +103,7 @@ class RemoteSubscription(Subscription[Any]):
         self._listener.on_discard(self._identity)
 
 
-class RemoteService(Service[Any, Any]):
+class ProxyService(Service[Any, Any]):
     """Hands on each request at once; whoever answers calls ``call.client.enqueue``."""
 
     def __init__(
@@ -113,7 +113,7 @@ class RemoteService(Service[Any, Any]):
         name: str,
         qos: QoSProfile,
         identity: int,
-        listener: Listener,
+        listener: ProxyListener,
     ) -> None:
         self._identity, self._listener = identity, listener
         super().__init__(node, cls, name, _never_called, MutuallyExclusiveCallbackGroup(), qos)
@@ -125,7 +125,7 @@ class RemoteService(Service[Any, Any]):
         self._listener.on_discard(self._identity)
 
 
-class RemoteClient(Client[Any, Any]):
+class ProxyClient(Client[Any, Any]):
     """Hands on each response at once."""
 
     def __init__(
@@ -135,7 +135,7 @@ class RemoteClient(Client[Any, Any]):
         name: str,
         qos: QoSProfile,
         identity: int,
-        listener: Listener,
+        listener: ProxyListener,
     ) -> None:
         self._identity, self._listener = identity, listener
         super().__init__(node, cls, name, MutuallyExclusiveCallbackGroup(), qos)
@@ -162,13 +162,13 @@ def _never_called(request: Any, response: Any = None) -> Any:
     raise AssertionError("a mirrored endpoint has no callback")
 
 
-class Mirror:
+class ProxyNodes:
     """The other side's nodes, as far as it has told of them. What it tells is checked (ProtocolError)."""
 
-    def __init__(self, graph: Graph, listener: Listener) -> None:
+    def __init__(self, graph: Graph, listener: ProxyListener) -> None:
         self._graph = graph
         self._listener = listener
-        self._nodes: dict[int, RemoteNode] = {}
+        self._nodes: dict[int, ProxyNode] = {}
         self._handles: set[NodeEntry] = set()
         self._ends: dict[int, End] = {}
         self._types: dict[str, Interface] = {}
@@ -210,7 +210,7 @@ class Mirror:
         _valid(validate_node_name, node_name)
         _valid(validate_namespace, space)
         number = self._new(identity)
-        self._nodes[number] = node = RemoteNode(self._graph, node_name, space)
+        self._nodes[number] = node = ProxyNode(self._graph, node_name, space)
         self._handles.add(node.handle)
 
     def _add_topic_end(
@@ -226,7 +226,7 @@ class Mirror:
             handle.publishers.append(publisher)
             self._ends[number] = publisher
         else:
-            subscription = RemoteSubscription(handle, cls, name, profile, number, self._listener)
+            subscription = ProxySubscription(handle, cls, name, profile, number, self._listener)
             handle.subscriptions.append(subscription)
             self._ends[number] = subscription
 
@@ -237,11 +237,11 @@ class Mirror:
         number = self._new(identity)
         profile = QoSProfile(depth=10)
         if kind == "service":
-            service = RemoteService(handle, cls, service_name, profile, number, self._listener)
+            service = ProxyService(handle, cls, service_name, profile, number, self._listener)
             handle.services.append(service)
             self._ends[number] = service
         elif kind == "client":
-            client = RemoteClient(handle, cls, service_name, profile, number, self._listener)
+            client = ProxyClient(handle, cls, service_name, profile, number, self._listener)
             handle.clients.append(client)
             self._ends[number] = client
         else:
@@ -264,7 +264,7 @@ class Mirror:
             raise ProtocolError(f"two things of one number: {number}")
         return number
 
-    def _node(self, identity: Json) -> RemoteNode:
+    def _node(self, identity: Json) -> ProxyNode:
         node = self._nodes.get(integer(identity))
         if node is None:
             raise ProtocolError(f"no node has the number {identity}")
@@ -283,12 +283,12 @@ class Mirror:
         return cls
 
 
-class Census:
+class GraphDiff:
     """Tells what is new and what is gone among one side's own nodes."""
 
-    def __init__(self, graph: Graph, mirror: Mirror) -> None:
+    def __init__(self, graph: Graph, mirror: ProxyNodes) -> None:
         self._graph = graph
-        self._mirror = mirror
+        self._proxies = mirror
         self._version = -1
         self._nodes: dict[NodeEntry, int] = {}
         self._publishers: dict[tuple[NodeEntry, str], int] = {}
@@ -311,7 +311,7 @@ class Census:
         events: list[Json] = []
         living: set[int] = set()
         for handle in self._graph.directory.nodes:
-            if handle in self._mirror:
+            if handle in self._proxies:
                 continue
             if handle not in self._nodes:
                 self._nodes[handle] = self._graph.next_number()

@@ -9,12 +9,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from kit.host import failure_messages
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.output import Printed
-from kit.host.process import Child
+from kit.host.process import StudentProcess
 from kit.host.protocol import Functions, Told, Values
-from kit.host.sandbox.confinement import DESK_LEVEL, Level
-from kit.host.sandbox.limits import DESK, Limits
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.wire import Json, numbers_to_text
 from kit.plain_text import nearest_name
 
@@ -26,20 +26,25 @@ class StudentFunctions:
     """The functions that a student's file defines, in a process of their own.
 
     Starts at once and waits until the file is loaded. Use as a context manager, or ``close`` it. Everything
-    raises GuestError when the student's code fails; the process has ended by then.
+    raises StudentCodeError when the student's code fails; the process has ended by then.
     """
 
     def __init__(
-        self, file: Path, *, seed: int = 0, limits: Limits = DESK, level: Level = DESK_LEVEL
+        self,
+        file: Path,
+        *,
+        seed: int = 0,
+        limits: Limits = INTERACTIVE_LIMITS,
+        level: Level = INTERACTIVE_LEVEL,
     ) -> None:
         self.file = file
-        self._child = Child("functions", file, {"seed": seed}, limits=limits, level=level)
+        self._process = StudentProcess("functions", file, {"seed": seed}, limits=limits, level=level)
         try:
-            answer = self._child.started()
+            answer = self._process.started()
             if not isinstance(answer, Functions):
-                raise GuestError(failure_messages.nonsense("another answer than a list of functions"))
+                raise StudentCodeError(failure_messages.nonsense("another answer than a list of functions"))
         except BaseException:
-            self._child.close()
+            self._process.close()
             raise
         self.names = answer.names
         """Public functions the file defines itself."""
@@ -54,13 +59,13 @@ class StudentFunctions:
 
     @property
     def failure(self) -> Failure | None:
-        return self._child.failure
+        return self._process.failure
 
     @property
     def level(self) -> Level:
-        return self._child.level
+        return self._process.level
 
-    def call(self, name: str, batch: Sequence[Mapping[str, Json]]) -> list[float]:
+    def call_batch(self, name: str, batch: Sequence[Mapping[str, Json]]) -> list[float]:
         """``name(**record)`` for each record, in order: as many finite numbers.
 
         All records have the same names. They hold plain data: None, truth values, numbers, texts, lists and
@@ -72,23 +77,23 @@ class StudentFunctions:
         return list(self._call(name, len(batch), {key: [record[key] for record in batch] for key in names}))
 
     def call_columns(self, name: str, columns: Mapping[str, Sequence[Json] | NDArray[Any]]) -> array[float]:
-        """Like ``call``, with one sequence or one-dimensional array for each parameter, all equally long."""
+        """Like ``call_batch``, with one sequence or one-dimensional array for each parameter, all equally long."""
         lengths = {len(column) for column in columns.values()}
         if len(lengths) != 1:
             raise ValueError("columns must be equally long, and there must be at least one")
         return self._call(name, lengths.pop(), columns)
 
-    def tell(self, name: str, record: Mapping[str, Json]) -> Json:
+    def call_json(self, name: str, record: Mapping[str, Json]) -> Json:
         """``name(**record)``: None, a truth value, a number, a text, or lists of these, at most three deep.
 
         The record holds plain data, and lists of floats, which may be nan. ValueError or TypeError otherwise: that is the caller's mistake.
         """
         if name not in self.names:
-            raise GuestError(self._missing(name))
+            raise StudentCodeError(self._missing(name))
         packed = {key: _tagged(value) for key, value in record.items()}
-        answer = self._child.ask("tell", name, packed)
+        answer = self._process.ask("tell", name, packed)
         if not isinstance(answer, Told):
-            raise self._child.condemn(
+            raise self._process.fail(
                 failure_messages.nonsense("something else than what the function returned")
             )
         return answer.value
@@ -97,20 +102,20 @@ class StudentFunctions:
         self, name: str, count: int, columns: Mapping[str, Sequence[Json] | NDArray[Any]]
     ) -> array[float]:
         if name not in self.names:
-            raise GuestError(self._missing(name))
+            raise StudentCodeError(self._missing(name))
         packed = {key: _packed(column) for key, column in columns.items()}
-        answer = self._child.ask("call", name, count, packed)
+        answer = self._process.ask("call", name, count, packed)
         if not isinstance(answer, Values) or len(answer.values) != count:
-            raise self._child.condemn(failure_messages.nonsense(f"something else than {count} numbers"))
+            raise self._process.fail(failure_messages.nonsense(f"something else than {count} numbers"))
         return answer.values
 
     def take_output(self) -> Printed:
         """What the functions have printed since the last time."""
-        return self._child.take_output()
+        return self._process.take_output()
 
     def close(self) -> None:
         """Ends the process. May be called twice."""
-        self._child.close()
+        self._process.close()
 
     def _missing(self, name: str) -> Failure:
         near = nearest_name(name, self.names)

@@ -27,7 +27,7 @@ class Exchange(Protocol):
         """Answers that the program waits, until ``wake_ns`` at the latest, and takes in the next question."""
 
 
-class LonePump:
+class SingleThreadWaiter:
     """The pump of a program that has one thread in its graph, whatever others there are in its process."""
 
     def __init__(self, exchange: Exchange) -> None:
@@ -38,7 +38,7 @@ class LonePump:
         self._exchange.turn(until_ns)
 
 
-class PipePump:
+class AllThreadsWaiter:
     """The ``Waiter`` of a graph whose time and messages come through the pipe."""
 
     def __init__(self, exchange: Exchange) -> None:

@@ -13,8 +13,8 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 import kit
-from kit.host.child_bridge import Embassy
-from kit.host.waiter import LonePump
+from kit.host.child_bridge import ChildBridge
+from kit.host.waiter import SingleThreadWaiter
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.framed_socket import FramedSocket
 from kit.inspection.world_sockets import RunningWorld, connect
@@ -60,8 +60,8 @@ class InspectionClient:
                 f"{world.name} runs with version {start['version']} of the kit, this is {kit.__version__}."
             )
         self.world: str = start["world"]
-        self._embassy = Embassy(self._connection, start["now"], LonePump)
-        self._embassy.hear(start["events"])
+        self._bridge = ChildBridge(self._connection, start["now"], SingleThreadWaiter)
+        self._bridge.hear(start["events"])
 
     def __enter__(self) -> Self:
         return self
@@ -73,7 +73,7 @@ class InspectionClient:
 
     @property
     def graph(self) -> Graph:
-        return self._embassy.graph
+        return self._bridge.graph
 
     @cached_property
     def node(self) -> Node:
@@ -124,13 +124,13 @@ class InspectionClient:
 
     def wait_for_tick(self) -> None:
         """Waits for the world's next tick, so that ``graph`` has the present time, not that of the last message."""
-        self._embassy.turn(self.graph.now_ns)
+        self._bridge.turn(self.graph.now_ns)
 
     def close(self) -> None:
         """Disconnects. May be called twice."""
         if self._connection.may_answer:
             with suppress(WorldDisconnected, ProtocolError):
-                self._embassy.end()
+                self._bridge.end()
                 self._connection.wait_until_closed()
         self._connection.close()
 

@@ -8,7 +8,7 @@ from queue import SimpleQueue
 from typing import Final
 
 import kit
-from kit.host.parent_bridge import Delegation
+from kit.host.parent_bridge import ParentBridge
 from kit.host.protocol import Ended, Reply, parse
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.framed_socket import FramedSocket
@@ -31,7 +31,7 @@ class ClientConnection:
         self._connection = connection
         self._graph = graph
         self._wake = wake
-        self._delegation = Delegation(graph)
+        self._bridge = ParentBridge(graph)
         self._questions: SimpleQueue[Json] = SimpleQueue()
         self._answers: SimpleQueue[Reply | Ended | Exception] = SimpleQueue()
         self._seq = 0
@@ -43,7 +43,7 @@ class ClientConnection:
             "version": kit.__version__,
             "world": world,
             "now": self._sent_ns,
-            "events": self._delegation.news(),
+            "events": self._bridge.news(),
         }
         self._questions.put(["start", 0, start])
         threading.Thread(target=self._serve, name="inspection-client", daemon=True).start()
@@ -56,16 +56,16 @@ class ClientConnection:
         has_sent = not self._answers.empty() and self._apply_answer(self._answers.get())
         now = self._graph.now_ns
         has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._sent_ns
-        if self._is_waiting and (self._delegation.has_news or has_woken or now < self._sent_ns):
+        if self._is_waiting and (self._bridge.has_news or has_woken or now < self._sent_ns):
             self._send_news()
-        if len(self._delegation.inbox) > MAX_BACKLOG:
+        if len(self._bridge.inbox) > MAX_BACKLOG:
             raise ProtocolError(f"nothing any more: it is {MAX_BACKLOG} messages behind")
         return has_sent
 
     def close(self) -> None:
         """Disconnects the client and removes its nodes from the graph."""
         self.is_closed = True
-        self._delegation.clear()
+        self._bridge.clear()
         self._questions.put(None)
         self._connection.close()
 
@@ -77,10 +77,10 @@ class ClientConnection:
             return False
         if answer.seq != self._seq:
             raise ProtocolError("an answer to a question that was not asked")
-        self._delegation.take_in(answer.events)
+        self._bridge.take_in(answer.events)
         if isinstance(answer, Ended):
             # Not close(): its last messages are still on their way through the graph.
-            self._delegation.clear()
+            self._bridge.clear()
             self.is_closed = True
             self._questions.put(None)
             return True
@@ -90,10 +90,10 @@ class ClientConnection:
 
     def _send_news(self) -> None:
         """Sends the oldest messages, all of one instant, so that the client knows their time."""
-        inbox = self._delegation.inbox
+        inbox = self._bridge.inbox
         time_ns = inbox[0].time_ns if inbox else self._graph.now_ns
         count = next((i for i, waiting in enumerate(inbox) if waiting.time_ns != time_ns), len(inbox))
-        events = [*self._delegation.news(), *(waiting.event for waiting in inbox[:count])]
+        events = [*self._bridge.news(), *(waiting.event for waiting in inbox[:count])]
         del inbox[:count]
         self._seq += 1
         self._sent_ns = time_ns

@@ -11,28 +11,28 @@ from typing import Final
 from kit.host import failure_messages
 from kit.host.output import Printed
 from kit.host.package_program import Installed
-from kit.host.process import Child
+from kit.host.process import StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
-from kit.host.sandbox.limits import DESK, MIB
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError
 from kit.launch.program_lookup import INTERACTIVE_BOUNDS, LaunchBounds
 from kit.launch.requests import DeclaredArgument, Request, parse_request
 from kit.ros.packages import SEARCH_VARIABLE
 
-LIMITS: Final = replace(DESK, reply_s=10.0, frame=16 * MIB)
+LIMITS: Final = replace(INTERACTIVE_LIMITS, reply_s=10.0, frame=16 * MIB)
 
 
 def declared_arguments(
     file: Path, folder: Path, search: Sequence[Path], bounds: LaunchBounds = INTERACTIVE_BOUNDS
 ) -> list[DeclaredArgument]:
-    """The arguments that a launch file declares, without carrying it out. Raises GuestError."""
+    """The arguments that a launch file declares, without carrying it out. Raises StudentCodeError."""
     with _start_child(file, folder, search, {}, bounds, only_arguments=True) as child:
         requests = _parse_requests(child, child.started())
     return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
 class LaunchFileProcess:
-    """One run of a launch file; the process starts with the constructor. All failures are raised as GuestError."""
+    """One run of a launch file; the process starts with the constructor. All failures are raised as StudentCodeError."""
 
     def __init__(
         self,
@@ -42,27 +42,27 @@ class LaunchFileProcess:
         arguments: Mapping[str, str],
         bounds: LaunchBounds = INTERACTIVE_BOUNDS,
     ) -> None:
-        self._child = _start_child(file, folder, search, arguments, bounds, only_arguments=False)
+        self._process = _start_child(file, folder, search, arguments, bounds, only_arguments=False)
         self.wake_ns: int | None = None
         """When its next timer is due [ns of the launch's time]; None without timers."""
 
     def start(self) -> list[Request]:
         """Waits until the file is loaded; returns its first requests."""
-        return self._read_requests(self._child.started())
+        return self._read_requests(self._process.started())
 
     def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
         """Sends events at a time of the launch; returns the requests that follow."""
-        return self._read_requests(self._child.ask("tick", now_ns, events))
+        return self._read_requests(self._process.ask("tick", now_ns, events))
 
     def take_output(self) -> Printed:
         """Removes and returns what the launch file itself has printed."""
-        return self._child.take_output()
+        return self._process.take_output()
 
     def close(self) -> None:
-        self._child.close()
+        self._process.close()
 
     def _read_requests(self, frame: Frame | None) -> list[Request]:
-        requests = _parse_requests(self._child, frame)
+        requests = _parse_requests(self._process, frame)
         self.wake_ns = frame.wake_ns if isinstance(frame, Reply) else None
         return requests
 
@@ -75,7 +75,7 @@ def _start_child(
     bounds: LaunchBounds,
     *,
     only_arguments: bool,
-) -> Child:
+) -> StudentProcess:
     # A bounded launch file sees neither the environment nor the user's working directory.
     is_interactive = bounds.file_limits is None
     environment = dict(os.environ) if is_interactive else {}
@@ -85,15 +85,15 @@ def _start_child(
         {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
     )
     start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}
-    return Child(
+    return StudentProcess(
         "launch", file, start, limits=bounds.file_limits or LIMITS, level=bounds.level, installed=installed
     )
 
 
-def _parse_requests(child: Child, frame: Frame | None) -> list[Request]:
+def _parse_requests(child: StudentProcess, frame: Frame | None) -> list[Request]:
     try:
         if not isinstance(frame, (Reply, Ended)):
             raise ProtocolError("another kind of answer")
         return [parse_request(event) for event in frame.events]
     except (ProtocolError, TypeError) as problem:  # TypeError: too many or too few parts
-        raise child.condemn(failure_messages.nonsense(str(problem))) from None
+        raise child.fail(failure_messages.nonsense(str(problem))) from None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from kit.host.failure import GuestError
+from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_file_process import LaunchFileProcess
 from kit.launch.launch_file_search import LaunchTarget
@@ -112,7 +112,7 @@ class Launch:
     def load(self) -> None:
         """Runs the launch file and collects its requests; builtin programs start at once.
 
-        Raises GuestError, ProcessStartError.
+        Raises StudentCodeError, ProcessStartError.
         """
         self._carry_out(self._launch_file.start())
         self._start_waiting(is_builtin)
@@ -187,7 +187,7 @@ class Launch:
     def _advance_launch_file(self, events: list[Json]) -> None:
         try:
             self._carry_out(self._launch_file.advance(self._clock_ns, events))
-        except GuestError as error:
+        except StudentCodeError as error:
             self._record_failure(f"the launch file stopped: {error.failure}")
             self._end_all_processes()
 

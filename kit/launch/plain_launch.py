@@ -46,7 +46,7 @@ def run_plain_launch(
 ) -> None:
     """Runs the launch in this thread: in real time, or with a limit as fast as possible; ``factor`` overrides both.
 
-    ``log`` receives the log lines of the kit's own nodes. Raises GuestError, ProcessStartError, WorldError, OSError; and
+    ``log`` receives the log lines of the kit's own nodes. Raises StudentCodeError, ProcessStartError, WorldError, OSError; and
     KeyboardInterrupt after the launch file has reacted to it.
     """
     limit = limit or LaunchLimit()

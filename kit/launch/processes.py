@@ -11,8 +11,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, Protocol
 
-from kit.host.failure import Failure, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import Failure, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.wire import printable
 from kit.ros.node.node import Node
 
@@ -69,34 +69,34 @@ class NodeProgramProcess:
 
     is_builtin = False
 
-    def __init__(self, guest: Guest) -> None:
-        self._guest = guest
+    def __init__(self, node_process: NodeProcess) -> None:
+        self._node_process = node_process
         self._has_joined = False
         self._failure: Failure | None = None
-        self.pid = guest.pid
+        self.pid = node_process.pid
 
     def poll(self) -> ProcessExit | None:
         if not self._has_joined and self._failure is None:
             try:
-                if self._guest.is_started():
+                if self._node_process.is_started():
                     self._join()
-            except GuestError as error:
+            except StudentCodeError as error:
                 self._failure = error.failure
-        failure = self._failure or self._guest.failure
+        failure = self._failure or self._node_process.failure
         if failure is not None:
             return ProcessExit(1, str(failure))
-        return ProcessExit(0) if self._guest.has_ended else None
+        return ProcessExit(0) if self._node_process.has_ended else None
 
     def wait_until_started(self) -> None:
         if not self._has_joined and self._failure is None:
             try:
-                self._guest.wait_until_started()
+                self._node_process.wait_until_started()
                 self._join()
-            except GuestError as error:
+            except StudentCodeError as error:
                 self._failure = error.failure
 
     def take_lines(self) -> list[PrintedLine]:
-        printed = self._guest.take_output()
+        printed = self._node_process.take_output()
         lines = [PrintedLine(line.text, line.stream) for line in printed.lines]
         if printed.dropped:
             lines.append(PrintedLine(f"({printed.dropped} bytes more were printed and are left out)", "err"))
@@ -104,16 +104,16 @@ class NodeProgramProcess:
 
     @property
     def wake_ns(self) -> int | None:
-        return self._guest.wake_ns
+        return self._node_process.wake_ns
 
     def exchange(self) -> bool:
-        return self._has_joined and self._guest.exchange()
+        return self._has_joined and self._node_process.exchange()
 
     def close(self) -> None:
-        self._guest.close()
+        self._node_process.close()
 
     def _join(self) -> None:
-        self._guest.join()
+        self._node_process.join()
         self._has_joined = True
 
 

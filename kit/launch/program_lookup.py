@@ -9,11 +9,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from kit.host.failure import GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.package_program import Installed
-from kit.host.sandbox.confinement import DESK_LEVEL, Level
-from kit.host.sandbox.limits import DESK, GIB, MIB, Limits
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
+from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.world_sockets import WORLD_VARIABLE
 from kit.launch.processes import BuiltinProcess, CommandProcess, NodeProgramProcess, Process, kit_command
 from kit.launch.requests import StartRequest
@@ -24,7 +24,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, read_package
 
 PROGRAM_LIMITS: Final = replace(
-    DESK,
+    INTERACTIVE_LIMITS,
     start_s=120.0,
     reply_s=20.0,
     memory=32 * GIB,
@@ -40,7 +40,7 @@ PROGRAM_LIMITS: Final = replace(
 class LaunchBounds:
     """Limits of what a launch starts. The defaults are for a user's own package."""
 
-    level: Level = DESK_LEVEL
+    level: Level = INTERACTIVE_LEVEL
     limits: Limits = PROGRAM_LIMITS
     file_limits: Limits | None = None
     """Limits of the launch file's own process; None: the usual ones, and the user's environment."""
@@ -84,7 +84,7 @@ def start_process(request: StartRequest, context: StartContext) -> Process:
         if request.package is not None and request.executable is not None:
             return _start_program(request.package, request.executable, request, context)
         return _start_command(request, context)
-    except (PackageError, GuestError) as problem:
+    except (PackageError, StudentCodeError) as problem:
         raise ProcessStartError(f"{request.where}{problem}") from None
 
 
@@ -161,7 +161,7 @@ def _start_program(
 def _start_node_program(
     file: Path, arguments: Sequence[str], installed: Installed, context: StartContext
 ) -> Process:
-    guest = Guest(
+    node_process = NodeProcess(
         context.graph,
         file,
         args=arguments,
@@ -170,7 +170,7 @@ def _start_node_program(
         level=context.bounds.level,
         installed=installed,
     )
-    return NodeProgramProcess(guest)
+    return NodeProgramProcess(node_process)
 
 
 def _environment(request: StartRequest, context: StartContext) -> dict[str, str]:

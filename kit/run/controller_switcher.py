@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from kit.controllers import ControllerFile
-from kit.host.failure import Failure, GuestError
-from kit.host.file_watcher import FileWatch
-from kit.host.node_process import Guest
-from kit.host.sandbox.confinement import DESK_LEVEL, Level
+from kit.host.failure import Failure, StudentCodeError
+from kit.host.file_watcher import FileWatcher
+from kit.host.node_process import NodeProcess
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import Limits
 from kit.run.runner import Runner
 
@@ -24,7 +24,7 @@ class ControllerSwitcher:
         *,
         seed: int,
         limits: Limits,
-        level: Level = DESK_LEVEL,
+        level: Level = INTERACTIVE_LEVEL,
         on_stop: Callable[[], object] = lambda: None,
         on_print: Callable[[str], object] = lambda line: None,
     ) -> None:
@@ -36,10 +36,10 @@ class ControllerSwitcher:
         self._seed = seed
         self._limits = limits
         self._level = level
-        self._active: Guest | None = None
-        self._pending: Guest | None = None
+        self._active: NodeProcess | None = None
+        self._pending: NodeProcess | None = None
         self._failure: Failure | None = None
-        self._file: FileWatch | None = None
+        self._file: FileWatcher | None = None
         self.controller: ControllerFile | None = None
         """The one that drives or is about to."""
 
@@ -58,7 +58,7 @@ class ControllerSwitcher:
         if controller is None:
             self._unload()
             return
-        self._file = FileWatch(controller.file)
+        self._file = FileWatcher(controller.file)
         self._start(controller)
 
     def restart(self) -> None:
@@ -87,7 +87,7 @@ class ControllerSwitcher:
     def disconnect(self) -> None:
         """Stops waiting for the active and the pending controller; may be called in any thread."""
         for process in filter(None, (self._active, self._pending)):
-            process.hang_up()
+            process.disconnect()
 
     def read_output(self) -> None:
         """Passes on what the active controller has printed since the last time."""
@@ -101,7 +101,7 @@ class ControllerSwitcher:
 
     def _start(self, controller: ControllerFile) -> None:
         try:
-            self._pending = Guest(
+            self._pending = NodeProcess(
                 self._runner.graph,
                 controller.file,
                 args=self._arguments,
@@ -109,7 +109,7 @@ class ControllerSwitcher:
                 limits=self._limits,
                 level=self._level,
             )
-        except GuestError as error:
+        except StudentCodeError as error:
             self._failure = error.failure
 
     def _finish_start(self, is_started: Callable[[], bool | None]) -> None:
@@ -119,7 +119,7 @@ class ControllerSwitcher:
         try:
             if is_started() is False:
                 return
-        except GuestError as error:
+        except StudentCodeError as error:
             self._failure = error.failure
             self._pass_on_output(pending)
             self._cancel_pending()
@@ -143,6 +143,6 @@ class ControllerSwitcher:
             self._active = None
             self._on_stop()
 
-    def _pass_on_output(self, process: Guest) -> None:
+    def _pass_on_output(self, process: NodeProcess) -> None:
         for line in process.take_output().lines:
             self._on_print(line.text)

@@ -14,8 +14,8 @@ from typing import Final, Self
 from kit.controllers import ControllerFile
 from kit.controllers.keystrokes import KeystrokePublisher
 from kit.host.failure import Failure
-from kit.host.sandbox.confinement import DESK_LEVEL, Level
-from kit.host.sandbox.limits import DESK, Limits
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.msg.geometry_msgs import Twist
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
@@ -47,8 +47,8 @@ class Session:
         *,
         seed: int = 0,
         step_size: float = 0.01,
-        limits: Limits = DESK,
-        level: Level = DESK_LEVEL,
+        limits: Limits = INTERACTIVE_LIMITS,
+        level: Level = INTERACTIVE_LEVEL,
         always_scan: bool = False,
         on_message: Callable[[LogRecord], object] = lambda record: None,
         graph: Graph | None = None,

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Final
 
-from kit.host.file_watcher import FileWatch
+from kit.host.file_watcher import FileWatcher
 from kit.school.lessons.checking import CheckReport, ExerciseCheck, submission_path
 from kit.school.lessons.exercise_files import STARTER
 from kit.school.lessons.lesson_session import LessonSession
@@ -28,7 +28,7 @@ class FolderWatch:
 
     def __init__(self, file: Path) -> None:
         self._folder = file.parent
-        self._watches = {file: FileWatch(file)}
+        self._watches = {file: FileWatcher(file)}
         self._scan()
 
     def has_changed(self) -> bool:
@@ -46,7 +46,7 @@ class FolderWatch:
                 if any(part.startswith((".", "__")) for part in parts) or file.name.endswith("~"):
                     continue
                 if file not in self._watches and len(self._watches) < MOST_FILES and file.is_file():
-                    self._watches[file] = FileWatch(file)
+                    self._watches[file] = FileWatcher(file)
         except OSError:  # a network drive that is away comes back
             return
 
@@ -62,7 +62,7 @@ class ExerciseModel:
         self._visit = session
         self.file: Path = session.install(exercise)
         """What the student edits."""
-        self._watch = FileWatch(submission_path(self.exercise, self.file))
+        self._watch = FileWatcher(submission_path(self.exercise, self.file))
         self._check: ExerciseCheck | None = None
 
     @property
@@ -88,7 +88,7 @@ class ExerciseModel:
     def start(self) -> None:
         """Starts a check, unless one is running."""
         if self._check is None:
-            self._watch = FileWatch(
+            self._watch = FileWatcher(
                 submission_path(self.exercise, self.file)
             )  # what is checked now need not be checked once more
             self._check = self._visit.start_check(self.exercise)
@@ -113,7 +113,7 @@ class ExerciseModel:
         """The exercise as at first; where the former files were kept. Raises ExerciseFilesError."""
         self.close()
         kept = self._visit.reset(self.exercise)
-        self._watch = FileWatch(submission_path(self.exercise, self.file))
+        self._watch = FileWatcher(submission_path(self.exercise, self.file))
         return kept
 
     def close(self) -> None:

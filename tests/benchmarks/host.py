@@ -1,6 +1,6 @@
 """What it costs that student code runs in a process of its own: ``python tests/benchmarks/host.py``.
 
-The same controller, with the same scan of 91 rays in and the same command out at each step, once as a guest
+The same controller, with the same scan of 91 rays in and the same command out at each step, once as a process
 and once in our own process. Then how long a start takes on each level of confinement, and how fast a student's
 reward function is called in batches.
 """
@@ -25,9 +25,9 @@ from kit.ros.node.node import create_graph_node
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.controllers import find_controller
-from kit.host.node_process import Guest
+from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import probe
+from kit.host.sandbox.probe import probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
@@ -42,17 +42,17 @@ REWARD = "def reward(distance, heading, collision):\n    return -distance - 0.1 
 
 
 def steps_per_second(controller: Path, *, level: Level | None) -> float:
-    """With a guest on this level, or, for None, with the same node in this process."""
+    """With a process on this level, or, for None, with the same node in this process."""
     graph = Graph(log_sink=lambda record: None)
     commands: list[Twist] = []
     world = create_graph_node(graph, "world")
     world.create_subscription(Twist, "cmd_vel", commands.append, 10)
     scans = world.create_publisher(LaserScan, "static_laser", 10)
     scan = LaserScan(ranges=array("f", [math.nan if i % 9 == 0 else 0.5 + i / 91 for i in range(91)]))
-    guest = None if level is None else Guest.start(graph, controller, level=level)
-    if guest is None:
+    process = None if level is None else NodeProcess.start(graph, controller, level=level)
+    if process is None:
         in_this_process(graph, controller)
-    exchange: Callable[[], bool] = guest.exchange if guest is not None else lambda: False
+    exchange: Callable[[], bool] = process.exchange if process is not None else lambda: False
     for step in range(STEPS + 500):
         if step == 500:
             began = time.perf_counter()
@@ -64,8 +64,8 @@ def steps_per_second(controller: Path, *, level: Level | None) -> float:
                 break
     rate = STEPS / (time.perf_counter() - began)
     assert len(commands) == STEPS + 500
-    if guest is not None:
-        guest.close()
+    if process is not None:
+        process.close()
     return rate
 
 
@@ -96,15 +96,15 @@ def main() -> None:
     controller = find_controller("avoid").file
     own = steps_per_second(controller, level=None)
     print(f"steps per second, in this process            {own:10.0f}")
-    levels = [rung.level for rung in probe() if rung.is_available]
+    levels = [support.level for support in probe_levels() if support.is_available]
     for level in levels:
         rate = steps_per_second(controller, level=level)
         cost = 1e6 / rate - 1e6 / own
         print(
-            f"steps per second, guest on level {level:d}           {rate:10.0f}   {own / rate:.1f} times slower, {cost:.0f} us more a step"
+            f"steps per second, process on level {level:d}           {rate:10.0f}   {own / rate:.1f} times slower, {cost:.0f} us more a step"
         )
     for level in levels:
-        milliseconds = start_ms(partial(Guest.start, Graph(), controller, level=level))
+        milliseconds = start_ms(partial(NodeProcess.start, Graph(), controller, level=level))
         print(f"start of a node on level {level:d} [ms]              {milliseconds:10.1f}")
     with TemporaryDirectory() as folder:
         file = Path(folder, "reward.py")
@@ -118,7 +118,7 @@ def main() -> None:
         with StudentFunctions(file) as functions:
             began, calls = time.perf_counter(), 0
             while time.perf_counter() - began < 2:
-                functions.call("reward", records)
+                functions.call_batch("reward", records)
                 calls += 1
             rate = calls * BATCH / (time.perf_counter() - began)
         print(f"rewards per second, {BATCH} a call           {rate:10.0f}")

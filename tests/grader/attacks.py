@@ -323,9 +323,9 @@ def table(levels: tuple[Level, ...]) -> Iterator[str]:
 
 
 def main() -> None:
-    from kit.host.sandbox.probe import probe
+    from kit.host.sandbox.probe import probe_levels
 
-    for line in table(tuple(rung.level for rung in probe() if rung.is_available)):
+    for line in table(tuple(support.level for support in probe_levels() if support.is_available)):
         print(line, flush=True)
 
 

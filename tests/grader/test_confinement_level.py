@@ -66,8 +66,8 @@ def graded(folder: Path, kind: str, level: Level, source: str, terms: GradingOpt
 @pytest.fixture
 def without_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
     """A machine that can lock nothing in."""
-    monkeypatch.setattr(probe, "_reached", set())
-    monkeypatch.setattr(probe, "allows", lambda level: False)
+    monkeypatch.setattr(probe, "_known_levels", set())
+    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
 
 
 @LOCKS
@@ -106,11 +106,11 @@ def test_a_grade_never_falls(tmp_path: Path, terms: GradingOptions) -> None:
 def test_the_highest_level_up_to_one(monkeypatch: pytest.MonkeyPatch) -> None:
     tried: list[Level] = []
 
-    def allows(level: Level) -> bool:
+    def is_level_available(level: Level) -> bool:
         tried.append(level)
         return level <= Level.FILTERED
 
-    monkeypatch.setattr(probe, "_reached", set())
-    monkeypatch.setattr(probe, "allows", allows)
-    assert [probe.highest_up_to(level) for level in Level] == [0, 1, 1, 1]
+    monkeypatch.setattr(probe, "_known_levels", set())
+    monkeypatch.setattr(probe, "is_level_available", is_level_available)
+    assert [probe.highest_level_up_to(level) for level in Level] == [0, 1, 1, 1]
     assert tried == [Level.FILTERED, Level.SEPARATE, Level.ANOTHER_USER, Level.SEPARATE]

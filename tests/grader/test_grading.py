@@ -293,11 +293,11 @@ def test_a_required_level_is_reached_or_nothing_is_graded(
     file.write_text(FORWARD)
     asked = ("check", str(file), "--assignment", str(folder), "--json")
     code, text = invoke(*asked, "--require-level", "0")
-    if probe.highest() is Level.LIMITED:
+    if probe.highest_level() is Level.LIMITED:
         assert code == 2
     else:
         assert (code, json.loads(text)["level"]) == (1, 1)
-    monkeypatch.setattr(probe, "highest", lambda: Level.FILTERED)
+    monkeypatch.setattr(probe, "highest_level", lambda: Level.FILTERED)
     code, text = invoke(*asked, "--require-level", "2")
     assert (code, "does not reach confinement level 2" in text) == (2, True)
 

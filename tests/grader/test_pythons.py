@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import probe
+from kit.host.sandbox.probe import probe_levels
 from tests.grader.conftest import LOCKS, TEMPLATES
 
 ROOT = Path(__file__).parents[2]
@@ -70,7 +70,11 @@ def graded(python: str, folder: Path, queue: Path, *, level: Level, jobs: int) -
 @pytest.mark.timeout(1800)
 @LOCKS
 def test_levels_pythons_and_jobs_do_not_change_points(tmp_path: Path) -> None:
-    levels = [rung.level for rung in probe() if rung.is_available and rung.level <= Level.SEPARATE]
+    levels = [
+        support.level
+        for support in probe_levels()
+        if support.is_available and support.level <= Level.SEPARATE
+    ]
     assert len(levels) >= 2
     found = pythons()
     folder = handed_in(tmp_path / "in")

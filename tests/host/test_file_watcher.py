@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from kit.host.failure import FailureKind, GuestError
-from kit.host.file_watcher import EMPTY_S, SETTLED_S, FileWatch
-from kit.host.node_process import Guest
+from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.file_watcher import EMPTY_S, SETTLED_S, FileWatcher
+from kit.host.node_process import NodeProcess
 from kit.msg.std_msgs import String
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
@@ -23,7 +23,7 @@ class Desk:
         self.now = 0.0
         self.file = file
         self.file.write_text("one")
-        self.watch = FileWatch(file, clock=lambda: self.now)
+        self.watch = FileWatcher(file, clock=lambda: self.now)
 
     def noticed(self, seconds: float = 2.0) -> int:
         """How often a change is noticed within so long a time, looking 50 times a second."""
@@ -110,27 +110,27 @@ def test_the_old_version_drives_until_the_new_one_has_started(student: Student) 
     heard: list[String] = []
     create_graph_node(graph, "desk").create_subscription(String, "/greetings", heard.append, 10)
 
-    def tick(guest: Guest) -> list[str]:
+    def tick(process: NodeProcess) -> list[str]:
         heard.clear()
         graph.advance(graph.now_ns + 100_000_000)
-        guest.exchange()
+        process.exchange()
         graph.run_due()
         return [message.data for message in heard]
 
     file = student(SOURCE.format(word="old"))
-    old = Guest.start(graph, file, limits=QUICK)
+    old = NodeProcess.start(graph, file, limits=QUICK)
     assert tick(old) == ["old"]
 
     file.write_text("syntax error here")
-    broken = Guest(graph, file, limits=QUICK)
-    with pytest.raises(GuestError) as caught:
+    broken = NodeProcess(graph, file, limits=QUICK)
+    with pytest.raises(StudentCodeError) as caught:
         broken.wait_until_started()
     broken.close()
     assert (caught.value.failure.kind, caught.value.failure.line) == (FailureKind.SYNTAX, 1)
     assert tick(old) == ["old"]
 
     file.write_text(SOURCE.format(word="new"))
-    new = Guest(graph, file, limits=QUICK)
+    new = NodeProcess(graph, file, limits=QUICK)
     assert tick(old) == ["old"]
     while not new.is_started():
         assert tick(old) == ["old"]
@@ -147,7 +147,7 @@ def test_of_a_folder_every_file_counts_but_hidden_ones(tmp_path: Path) -> None:
     (tmp_path / "maps").mkdir()
     for name in ("world.yaml", "maps/hall.yaml"):
         (tmp_path / name).write_text("one")
-    watch = FileWatch(tmp_path, clock=lambda: now)
+    watch = FileWatcher(tmp_path, clock=lambda: now)
 
     def noticed() -> int:
         nonlocal now

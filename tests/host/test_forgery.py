@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from kit.host.failure import FailureKind, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import allows
+from kit.host.sandbox.probe import is_level_available
 from kit.host.student_functions import StudentFunctions
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
@@ -91,17 +91,17 @@ def test_a_forged_answer_ends_the_guest(student: Student, name: str) -> None:
     graph = Graph(log_sink=lambda record: None)
     file = student(FORGER.format(frame=json.dumps(FORGED[name])))
     limits = dataclasses.replace(QUICK, frame=1 << 20)
-    guest = Guest(graph, file, limits=limits)
-    with suppress(GuestError):
-        guest.wait_until_started()
-        guest.join()
-    assert guest.failure is not None
-    assert guest.failure.kind is FailureKind.PROTOCOL
-    assert str(guest.failure).isprintable()
-    assert not guest.is_running
+    process = NodeProcess(graph, file, limits=limits)
+    with suppress(StudentCodeError):
+        process.wait_until_started()
+        process.join()
+    assert process.failure is not None
+    assert process.failure.kind is FailureKind.PROTOCOL
+    assert str(process.failure).isprintable()
+    assert not process.is_running
     assert graph.nodes == ()
-    assert not guest.exchange()
-    guest.close()
+    assert not process.exchange()
+    process.close()
 
 
 @LINUX
@@ -115,8 +115,8 @@ def test_an_honest_answer_by_hand_is_taken(student: Student) -> None:
 
     graph.add_message_listener(watch)
     frame = reply(NODE, OUT, SERVICE, ["message", 2, [[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]]])
-    with Guest.start(graph, student(FORGER.format(frame=json.dumps(frame))), limits=QUICK) as guest:
-        assert guest.failure is None
+    with NodeProcess.start(graph, student(FORGER.format(frame=json.dumps(frame))), limits=QUICK) as process:
+        assert process.failure is None
         assert said == ["evil /cmd_vel 0.5"]
         assert [node.get_name() for node in graph.nodes] == ["evil"]
 
@@ -125,9 +125,9 @@ def test_an_honest_answer_by_hand_is_taken(student: Student) -> None:
 @pytest.mark.parametrize("level", Level)
 def test_no_program_can_blame_the_machine(student: Student, level: Level) -> None:
     """A forged "refused" is the program's own fault, at every level: nobody may confine it less for that."""
-    if not allows(level):
+    if not is_level_available(level):
         pytest.skip("not on this machine")
     file = student(FORGER.format(frame=json.dumps(["refused", "no Landlock here"])))
-    with pytest.raises(GuestError) as caught:
+    with pytest.raises(StudentCodeError) as caught:
         StudentFunctions(file, limits=QUICK, level=level)
     assert caught.value.failure.kind is FailureKind.PROTOCOL

@@ -1,4 +1,4 @@
-"""Student nodes as guests: they take part in the graph as if they were in it."""
+"""Student nodes as processes: they take part in the graph as if they were in it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from kit.host.failure import FailureKind, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.msg.geometry_msgs import Twist
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
@@ -61,14 +61,14 @@ class Bench:
         self.log: list[str] = []
         self.node: Node = create_graph_node(self.graph, "bench")
         self.heard: list[Any] = []
-        self.guests: list[Guest] = []
+        self.processes: list[NodeProcess] = []
         self._publishers: dict[str, Any] = {}
 
-    def start(self, file: Path, **options: Any) -> Guest:
-        guest = Guest.start(self.graph, file, **{"limits": QUICK, **options})
-        self.guests.append(guest)
+    def start(self, file: Path, **options: Any) -> NodeProcess:
+        process = NodeProcess.start(self.graph, file, **{"limits": QUICK, **options})
+        self.processes.append(process)
         self.settle()
-        return guest
+        return process
 
     def listen(self, cls: Any, topic: str, qos: QoSProfile | int = 10) -> list[Any]:
         heard: list[Any] = []
@@ -85,7 +85,7 @@ class Bench:
         """What the runner does in each tick."""
         for _ in range(100):
             self.graph.run_due()
-            spoken = [guest.exchange() for guest in self.guests]
+            spoken = [process.exchange() for process in self.processes]
             if not any(spoken):
                 return
         raise AssertionError("they talk without end")
@@ -100,8 +100,8 @@ class Bench:
 def bench() -> Iterator[Bench]:
     made = Bench()
     yield made
-    for guest in made.guests:
-        guest.close()
+    for process in made.processes:
+        process.close()
 
 
 def texts(messages: list[Any]) -> list[str]:
@@ -115,12 +115,12 @@ def texts(messages: list[Any]) -> list[str]:
 )
 def test_every_way_to_write_a_node_file_is_the_same(bench: Bench, student: Student, source: str) -> None:
     answers = bench.listen(String, "/answers")
-    guest = bench.start(student(source))
+    process = bench.start(student(source))
     bench.say("/questions", String(data="why"))
     bench.say("/questions", String(data="how"))
     assert texts(answers) == ["WHY", "HOW"]
-    assert guest.failure is None
-    assert guest.is_running
+    assert process.failure is None
+    assert process.is_running
 
 
 def test_question_and_answer_take_no_time(bench: Bench, student: Student) -> None:
@@ -154,7 +154,7 @@ def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> Non
                 self.create_client(SetBool, "/toggle")
         """
     )
-    guest = bench.start(file)
+    process = bench.start(file)
     view = bench.node
     assert ("mine", "/robot") in view.get_node_names_and_namespaces()
     assert ("/robot/cmd_vel", ["geometry_msgs/msg/Twist"]) in view.get_publisher_names_and_types_by_node(
@@ -168,7 +168,7 @@ def test_the_graph_shows_a_guest_as_it_is(bench: Bench, student: Student) -> Non
     assert services["/robot/mine/go"] == ["std_srvs/srv/Trigger"]
     assert "/robot/mine/get_parameters" in services
     assert ("/toggle", ["std_srvs/srv/SetBool"]) in view.get_client_names_and_types_by_node("mine", "/robot")
-    guest.close()
+    process.close()
     assert view.get_node_names() == ["bench"]
     assert not view.count_publishers("/robot/cmd_vel")
 
@@ -244,11 +244,11 @@ def test_timers_keep_the_worlds_time(bench: Bench, student: Student) -> None:
         """
     )
     ticks = bench.listen(String, "/ticks")
-    guest = bench.start(file)
+    process = bench.start(file)
     exchanges = 0
     for _ in range(10):
         bench.graph.advance(bench.graph.now_ns + TICK_NS)
-        exchanges += guest.exchange()
+        exchanges += process.exchange()
         bench.settle()
     assert texts(ticks) == ["300", "500", "800", "1000"]
     assert exchanges == 4, "asked although nothing was due"
@@ -270,21 +270,21 @@ def test_programs_with_a_loop_of_their_own(bench: Bench, student: Student, loop:
         "rclpy.init()\nnode = rclpy.create_node('looper')\nout = node.create_publisher(String, 'beat', 10)\n"
     )
     beat = bench.listen(String, "/beat")
-    guest = bench.start(student(head + LOOPS[loop]))
+    process = bench.start(student(head + LOOPS[loop]))
     bench.tick(10)
-    assert guest.failure is None
+    assert process.failure is None
     assert len(beat) == 6
 
 
 def test_a_program_that_never_waits_does_not_stop_the_time(bench: Bench, student: Student) -> None:
     loop = "\nrclpy.init()\necho = Echo()\nwhile rclpy.ok():\n    rclpy.spin_once(echo, timeout_sec=0)\n"
     answers = bench.listen(String, "/answers")
-    guest = bench.start(student(ECHO + loop))
+    process = bench.start(student(ECHO + loop))
     for text in "abc":
         bench.say("/questions", String(data=text))
         bench.tick()
     assert texts(answers) == ["A", "B", "C"]
-    assert guest.failure is None
+    assert process.failure is None
 
 
 def test_services_both_ways(bench: Bench, student: Student) -> None:
@@ -340,7 +340,7 @@ def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
         """
     )
     answers = bench.listen(String, "/answers")
-    guest = bench.start(file)
+    process = bench.start(file)
     bench.tick(11)
 
     def ours(request: Any, response: Any) -> Any:
@@ -350,10 +350,10 @@ def test_a_blocking_call_in_main(bench: Bench, student: Student) -> None:
     bench.node.create_service(Trigger, "/ours", ours)
     bench.tick()
     assert texts(answers) == ["here"]
-    assert guest.has_ended
-    assert not guest.is_running
-    assert guest.failure is None
-    assert sum("waiting for /ours" in line.text for line in guest.take_output().lines) == 2
+    assert process.has_ended
+    assert not process.is_running
+    assert process.failure is None
+    assert sum("waiting for /ours" in line.text for line in process.take_output().lines) == 2
 
 
 def test_arguments_reach_the_nodes(bench: Bench, student: Student) -> None:
@@ -375,7 +375,7 @@ def test_scans_arrive_to_the_bit_and_nan_with_them(bench: Bench, student: Studen
         from rclpy.node import Node
         from sensor_msgs.msg import LaserScan
 
-        class Mirror(Node):
+        class ProxyNodes(Node):
             def __init__(self):
                 super().__init__("mirror")
                 self.out = self.create_publisher(LaserScan, "back", 10)
@@ -412,14 +412,14 @@ def test_what_is_not_finite_fails_at_the_students_line(bench: Bench, student: St
         """
     )
     commands = bench.listen(Twist, "/cmd_vel")
-    guest = bench.start(file)
+    process = bench.start(file)
     bench.say("/go", String(data="0.5"))
     assert commands[0].angular.z == 0.5
     bench.say("/go", String(data="nan"))
     assert len(commands) == 1
-    assert guest.failure is not None
-    assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 15)
-    assert "angular.z of the Twist for /cmd_vel is not a finite number" in guest.failure.message
+    assert process.failure is not None
+    assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 15)
+    assert "angular.z of the Twist for /cmd_vel is not a finite number" in process.failure.message
 
 
 def test_messages_among_a_guests_own_nodes_arrive_once(bench: Bench, student: Student) -> None:
@@ -477,8 +477,8 @@ def test_a_late_subscription_gets_what_was_kept(bench: Bench, student: Student) 
 
 def test_quality_of_service_that_does_not_fit_is_told(bench: Bench, student: Student) -> None:
     bench.node.create_publisher(String, "/questions", qos_profile_sensor_data)
-    guest = bench.start(student(ECHO))
-    assert any("RELIABILITY" in line.text for line in guest.take_output().lines)
+    process = bench.start(student(ECHO))
+    assert any("RELIABILITY" in line.text for line in process.take_output().lines)
 
 
 def test_watchers_see_what_nobody_subscribes(bench: Bench, student: Student) -> None:
@@ -491,7 +491,7 @@ def test_watchers_see_what_nobody_subscribes(bench: Bench, student: Student) -> 
 
 def test_a_reset_forgets_what_is_on_its_way(bench: Bench, student: Student) -> None:
     answers = bench.listen(String, "/answers")
-    guest = bench.start(student(ECHO))
+    process = bench.start(student(ECHO))
     publisher = bench.node.create_publisher(String, "/questions", 10)
     bench.settle()
     publisher.publish(String(data="lost"))
@@ -500,7 +500,7 @@ def test_a_reset_forgets_what_is_on_its_way(bench: Bench, student: Student) -> N
     assert answers == []
     bench.say("/questions", String(data="kept"))
     assert texts(answers) == ["KEPT"]
-    assert guest.failure is None
+    assert process.failure is None
 
 
 def test_time_that_jumps_back(bench: Bench, student: Student) -> None:
@@ -530,24 +530,24 @@ def test_time_that_jumps_back(bench: Bench, student: Student) -> None:
 
 def test_a_failing_callback_ends_the_guest_only(bench: Bench, student: Student) -> None:
     file = student(ECHO.replace("message.data.upper()", "message.data + 1"))
-    guest = bench.start(file)
+    process = bench.start(file)
     other = bench.start(student(ECHO.replace('"echo"', '"other"').replace("answers", "others"), "other.py"))
     others = bench.listen(String, "/others")
     bench.say("/questions", String(data="x"))
-    assert guest.failure is not None
-    assert (guest.failure.kind, guest.failure.file, guest.failure.line) == (
+    assert process.failure is not None
+    assert (process.failure.kind, process.failure.file, process.failure.line) == (
         FailureKind.EXCEPTION,
         "work.py",
         13,
     )
-    assert "TypeError" in guest.failure.message
-    assert "(in on_question)" in guest.failure.message
-    assert not guest.is_running
+    assert "TypeError" in process.failure.message
+    assert "(in on_question)" in process.failure.message
+    assert not process.is_running
     assert "echo" not in bench.node.get_node_names()
     bench.say("/questions", String(data="y"))
     assert texts(others) == ["X", "Y"]
     assert other.failure is None
-    assert not guest.exchange()
+    assert not process.exchange()
 
 
 @pytest.mark.parametrize(
@@ -566,11 +566,11 @@ def test_every_failure_of_a_node(
     bench: Bench, student: Student, change: str, kind: FailureKind, line: int | None, words: str
 ) -> None:
     source = ECHO.replace("self.back.publish(String(data=message.data.upper()))", change)
-    guest = bench.start(student(source), limits=dataclasses.replace(QUICK, reply_s=0.5))
+    process = bench.start(student(source), limits=dataclasses.replace(QUICK, reply_s=0.5))
     bench.say("/questions", String(data="x"))
-    assert guest.failure is not None
-    assert (guest.failure.kind, guest.failure.line) == (kind, line)
-    assert words in guest.failure.message
+    assert process.failure is not None
+    assert (process.failure.kind, process.failure.line) == (kind, line)
+    assert words in process.failure.message
 
 
 @pytest.mark.parametrize(
@@ -590,8 +590,8 @@ def test_every_failure_of_a_node(
 )
 def test_a_file_that_cannot_be_a_guest(student: Student, source: str, words: str) -> None:
     graph = Graph()
-    with pytest.raises(GuestError) as caught:
-        Guest.start(graph, student(source), limits=QUICK)
+    with pytest.raises(StudentCodeError) as caught:
+        NodeProcess.start(graph, student(source), limits=QUICK)
     assert words in str(caught.value)
     assert caught.value.failure.file == "work.py"
     assert graph.nodes == ()
@@ -606,9 +606,9 @@ def test_a_base_class_is_not_a_second_node(bench: Bench, student: Student) -> No
 
 def test_sys_exit_of_main_at_the_end_is_an_end(bench: Bench, student: Student) -> None:
     source = "import sys, rclpy\ndef main():\n    rclpy.init()\n    rclpy.create_node('brief')\n    rclpy.shutdown()\n"
-    guest = bench.start(student(source + "if __name__ == '__main__':\n    sys.exit(main())\n"))
-    assert guest.has_ended
-    assert guest.failure is None
+    process = bench.start(student(source + "if __name__ == '__main__':\n    sys.exit(main())\n"))
+    assert process.has_ended
+    assert process.failure is None
     assert bench.node.get_node_names() == ["bench"]
 
 
@@ -628,13 +628,13 @@ def test_a_thread_that_fails_is_told(bench: Bench, student: Student) -> None:
             raise ValueError(message.data)
         """
     )
-    guest = bench.start(file)
+    process = bench.start(file)
     bench.tick()
     bench.say("/go", String(data="from a thread"))
     bench.tick(3)
-    assert guest.failure is not None
-    assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 12)
-    assert "from a thread" in guest.failure.message
+    assert process.failure is not None
+    assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 12)
+    assert "from a thread" in process.failure.message
 
 
 @pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
@@ -652,15 +652,15 @@ def test_an_end_while_another_thread_waits_for_the_kit(bench: Bench, student: St
             {end}
         """
     )
-    guest = bench.start(file)
+    process = bench.start(file)
     deadline = time.monotonic() + 10
-    while guest.is_running and time.monotonic() < deadline:
+    while process.is_running and time.monotonic() < deadline:
         bench.tick()
         time.sleep(0.02)
-    assert not guest.is_running
-    assert guest.has_ended == (end == "return")
-    if guest.failure is not None:
-        assert (guest.failure.kind, guest.failure.line) == (FailureKind.EXCEPTION, 10)
+    assert not process.is_running
+    assert process.has_ended == (end == "return")
+    if process.failure is not None:
+        assert (process.failure.kind, process.failure.line) == (FailureKind.EXCEPTION, 10)
 
 
 def test_a_program_may_close_what_it_prints_to(bench: Bench, student: Student) -> None:
@@ -676,14 +676,14 @@ def test_a_program_that_closed_what_it_prints_to_still_fails_with_words(
     bench: Bench, student: Student
 ) -> None:
     source = ECHO.replace("import rclpy", "import sys, rclpy\nsys.stdout.close()\nsys.stderr.close()")
-    guest = bench.start(
+    process = bench.start(
         student(source.replace("self.back.publish(", "self.deeper(") + "    def deeper(self, x): 1 / 0\n")
     )
     bench.say("/questions", String(data="x"))
-    assert guest.failure is not None
-    assert guest.failure.kind is FailureKind.EXCEPTION
-    assert "ZeroDivisionError" in guest.failure.message
-    assert any("in on_question: self.deeper(" in line.text for line in guest.take_output().lines)
+    assert process.failure is not None
+    assert process.failure.kind is FailureKind.EXCEPTION
+    assert "ZeroDivisionError" in process.failure.message
+    assert any("in on_question: self.deeper(" in line.text for line in process.take_output().lines)
 
 
 def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Student) -> None:
@@ -711,12 +711,12 @@ def test_callbacks_in_threads_answer_within_the_tick(bench: Bench, student: Stud
         """
     )
     answers = bench.listen(String, "/answers")
-    guest = bench.start(file)
+    process = bench.start(file)
     bench.tick()
     for text in "abcde":
         bench.say("/questions", String(data=text))
     assert texts(answers) == list("abcde")
-    assert guest.failure is None
+    assert process.failure is None
 
 
 def test_a_thread_that_never_waits_here_is_tolerated(bench: Bench, student: Student) -> None:
@@ -750,11 +750,11 @@ def test_a_thread_that_never_waits_here_is_tolerated(bench: Bench, student: Stud
         """
     )
     actions = bench.listen(String, "/actions")
-    guest = bench.start(file)
+    process = bench.start(file)
     for _ in range(20):
         bench.say("/questions", String())
         bench.tick()
-    assert guest.failure is None
+    assert process.failure is None
     assert actions
     assert texts(actions) == [str(i + 1) for i in range(len(actions))]
 
@@ -784,7 +784,7 @@ def test_the_same_run_to_the_bit(student: Student) -> None:
     def run(seed: int) -> list[tuple[str, str]]:
         bench = Bench()
         commands = bench.listen(Twist, "/cmd_vel")
-        guest = bench.start(student(WALK), seed=seed)
+        process = bench.start(student(WALK), seed=seed)
         try:
             odom, x = Odometry(), 0.0
             for _ in range(200):
@@ -793,7 +793,7 @@ def test_the_same_run_to_the_bit(student: Student) -> None:
                 bench.say("/odom", odom)
                 x += commands[-1].linear.x * 0.1
         finally:
-            guest.close()
+            process.close()
         return [(command.linear.x.hex(), command.angular.z.hex()) for command in commands]
 
     first = run(3)
@@ -803,11 +803,11 @@ def test_the_same_run_to_the_bit(student: Student) -> None:
 
 
 def test_logs_and_prints_are_kept_apart_and_in_order(bench: Bench, student: Student) -> None:
-    guest = bench.start(
+    process = bench.start(
         student(ECHO.replace("self.back.publish", "self.get_logger().warning('heard'); print"))
     )
     bench.say("/questions", String(data="x"))
-    lines = guest.take_output().lines
+    lines = process.take_output().lines
     assert any(
         line.stream == "err" and "[WARN]" in line.text and "[echo]: heard" in line.text for line in lines
     )
@@ -825,18 +825,18 @@ def test_a_guest_is_light(bench: Bench, student: Student) -> None:
 
 def test_several_guests_start_side_by_side(student: Student) -> None:
     graph = Graph()
-    guests = [
-        Guest(graph, student(ECHO.replace('"echo"', f'"echo{i}"'), f"echo{i}.py"), limits=QUICK)
+    processes = [
+        NodeProcess(graph, student(ECHO.replace('"echo"', f'"echo{i}"'), f"echo{i}.py"), limits=QUICK)
         for i in range(3)
     ]
     try:
-        waiting = list(guests)
+        waiting = list(processes)
         while waiting:
-            waiting = [guest for guest in waiting if not guest.is_started()]
-        for guest in guests:
-            guest.join()
+            waiting = [process for process in waiting if not process.is_started()]
+        for process in processes:
+            process.join()
         assert [node.get_name() for node in graph.nodes] == ["echo0", "echo1", "echo2"]
     finally:
-        for guest in guests:
-            guest.close()
+        for process in processes:
+            process.close()
     assert graph.nodes == ()

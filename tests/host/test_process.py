@@ -1,6 +1,6 @@
 """What honest and hostile files can and cannot do, at the level that needs nothing of the machine.
 
-The files are functions, the simplest kind of guest; nodes live in the same process (see test_guest).
+The files are functions, the simplest kind of process; nodes live in the same process (see test_node_process).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import LARGEST_SOURCE
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.student_functions import StudentFunctions
@@ -29,8 +29,8 @@ from tests.host.conftest import LINUX, QUICK, Student
 def fail(file: Path, limits: Limits = QUICK) -> Failure:
     """The failure of a file whose function ``f`` is called once."""
     before = _folders()
-    with pytest.raises(GuestError) as caught, StudentFunctions(file, limits=limits) as functions:
-        functions.call("f", [{}])
+    with pytest.raises(StudentCodeError) as caught, StudentFunctions(file, limits=limits) as functions:
+        functions.call_batch("f", [{}])
     assert str(caught.value) == str(caught.value.failure)
     assert _folders() == before, "a folder was left behind"
     return caught.value.failure
@@ -65,16 +65,16 @@ def test_functions_answer_in_order(student: Student) -> None:
             {"x": 3, "y": 4, "collision": False},
             {"x": 0.1, "y": 0.0, "collision": True},
         ]
-        assert functions.call("reward", batch) == [5.0, -0.9]
-        assert functions.call("reward", [{"x": 6, "y": 8}]) == [10.0]
-        assert functions.call("reward", []) == []
+        assert functions.call_batch("reward", batch) == [5.0, -0.9]
+        assert functions.call_batch("reward", [{"x": 6, "y": 8}]) == [10.0]
+        assert functions.call_batch("reward", []) == []
         assert functions.failure is None
 
 
 def test_numbers_arrive_to_the_bit(student: Student) -> None:
     values = [0.1, 1e-308, 2**53 - 1.0, -0.0, 1 / 3, 5e-324]
     with StudentFunctions(student("def same(x): return x"), limits=QUICK) as functions:
-        back = functions.call("same", [{"x": value} for value in values])
+        back = functions.call_batch("same", [{"x": value} for value in values])
     assert [value.hex() for value in back] == [value.hex() for value in values]
 
 
@@ -139,7 +139,9 @@ def test_a_number_is_a_number_whatever_its_class(student: Student) -> None:
         """
     )
     with StudentFunctions(file, limits=QUICK) as functions:
-        assert functions.call("f", [{"kind": kind} for kind in ("float32", "int64", "mine", "int")]) == [
+        assert functions.call_batch(
+            "f", [{"kind": kind} for kind in ("float32", "int64", "mine", "int")]
+        ) == [
             0.5,
             2,
             1.5,
@@ -153,8 +155,8 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
     failure = fail(file)
     assert (failure.file, failure.line) == ("friend.py", 3)
     with StudentFunctions(file, limits=QUICK) as functions:
-        with pytest.raises(GuestError):
-            functions.call("f", [{}])
+        with pytest.raises(StudentCodeError):
+            functions.call_batch("f", [{}])
         shown = [line.text for line in functions.take_output().lines]
     assert any("work.py:5 in f: return friend.deeper('{')" in line for line in shown)
     assert not any("json/" in line for line in shown)
@@ -196,10 +198,10 @@ def test_the_budget_in_all(student: Student) -> None:
     limits = dataclasses.replace(QUICK, total_s=0.5)
     file = student("import time\ndef f():\n  time.sleep(0.2)\n  return 1")
     with StudentFunctions(file, limits=limits) as functions:
-        assert functions.call("f", [{}]) == [1.0]
-        assert functions.call("f", [{}]) == [1.0]
-        with pytest.raises(GuestError, match=r"0\.5 s in all") as caught:
-            functions.call("f", [{}])
+        assert functions.call_batch("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
+        with pytest.raises(StudentCodeError, match=r"0\.5 s in all") as caught:
+            functions.call_batch("f", [{}])
     assert caught.value.failure.kind is FailureKind.TIMEOUT
 
 
@@ -234,11 +236,11 @@ def test_a_crash_in_compiled_code_says_where(student: Student) -> None:
 def test_a_flood_of_prints_is_drained_and_dropped(student: Student) -> None:
     file = student("def f():\n  for i in range(20000): print('x' * 100)\n  print('end')\n  return 1")
     with StudentFunctions(file, limits=dataclasses.replace(QUICK, reply_s=10)) as functions:
-        assert functions.call("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
         printed = functions.take_output()
         assert sum(len(line.text) for line in printed.lines) <= QUICK.output
         assert printed.dropped > 1_900_000
-        assert functions.call("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
 
 
 def test_prints_arrive_with_the_answer_and_harmless(student: Student) -> None:
@@ -246,7 +248,7 @@ def test_prints_arrive_with_the_answer_and_harmless(student: Student) -> None:
         "import sys\ndef f():\n  print('::error::\\x1b[2J')\n  print('bad', file=sys.stderr)\n  return 1"
     )
     with StudentFunctions(file, limits=QUICK) as functions:
-        functions.call("f", [{}])
+        functions.call_batch("f", [{}])
         lines = functions.take_output().lines
     assert sorted(line.stream for line in lines) == ["err", "out"]
     assert all(line.text.isprintable() for line in lines)
@@ -291,8 +293,8 @@ def test_a_broken_conversation_ends_it(student: Student, attack: str) -> None:
     before = _folders()
     with StudentFunctions(file, limits=QUICK) as functions:
         for _ in range(3):
-            with suppress(GuestError):
-                functions.call("f", [{}])
+            with suppress(StudentCodeError):
+                functions.call_batch("f", [{}])
         assert functions.failure is not None
         assert functions.failure.kind in (FailureKind.PROTOCOL, FailureKind.TIMEOUT)
     assert _folders() == before
@@ -337,7 +339,7 @@ def f():
 def test_a_daemon_is_not_left_behind(student: Student, tmp_path: Path) -> None:
     marker = f"daemon-of-{tmp_path}"
     with StudentFunctions(student(DAEMON.format(marker=marker)), limits=QUICK) as functions:
-        functions.call("f", [{}])
+        functions.call_batch("f", [{}])
         assert _is_running(marker)
     assert not _is_running(marker)
 
@@ -357,7 +359,7 @@ def test_when_the_kit_dies_the_child_dies_too(student: Student, tmp_path: Path, 
         f"import os, pathlib, tempfile; tempfile.tempdir = {str(tmp_path / 'temporary')!r}\n"
         f"from kit.host.student_functions import StudentFunctions\n"
         f"functions = StudentFunctions(pathlib.Path({str(file)!r}))\n"
-        f"functions.call('f', [{{}}]); print('started', flush=True); {end}"
+        f"functions.call_batch('f', [{{}}]); print('started', flush=True); {end}"
     )
     run = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
@@ -385,7 +387,7 @@ def test_what_a_file_leaves_in_its_folder_goes_with_it(student: Student) -> None
         """
     )
     with StudentFunctions(file, limits=QUICK) as functions:
-        functions.call("f", [{}])
+        functions.call_batch("f", [{}])
         assert _folders()
     assert not _folders()
 
@@ -417,8 +419,8 @@ def test_nothing_of_ours_is_in_its_surroundings(student: Student, monkeypatch: p
     )
     try:
         with StudentFunctions(file, limits=QUICK) as functions:
-            assert functions.call("f", [{}]) == [1.0]
-            assert functions.call("lacks", [{"module": "tests"}, {"module": "grader"}]) == [1.0, 1.0]
+            assert functions.call_batch("f", [{}]) == [1.0]
+            assert functions.call_batch("lacks", [{"module": "tests"}, {"module": "grader"}]) == [1.0, 1.0]
     finally:
         os.close(secret)
 
@@ -438,7 +440,9 @@ def test_the_order_of_a_set_and_chance_are_the_same_in_every_run(student: Studen
     runs = []
     for seed in (7, 7, 8):
         with StudentFunctions(file, seed=seed, limits=QUICK) as functions:
-            runs.append([functions.call(name, [{"i": i} for i in range(3)]) for name in ("f", "numpys")])
+            runs.append(
+                [functions.call_batch(name, [{"i": i} for i in range(3)]) for name in ("f", "numpys")]
+            )
     assert runs[0] == runs[1]
     assert runs[0][0] != runs[2][0]
     assert runs[0][1] != runs[2][1]
@@ -450,14 +454,14 @@ def test_files_of_the_folder_do_not_hide_the_librarys(student: Student) -> None:
     with StudentFunctions(
         student("import json, friend\ndef f(): return friend.FACTOR"), limits=QUICK
     ) as functions:
-        assert functions.call("f", [{}]) == [2.5]
+        assert functions.call_batch("f", [{}]) == [2.5]
 
 
 def test_what_runs_is_what_was_there_at_the_start(student: Student) -> None:
     file = student("def f(): return 1")
     with StudentFunctions(file, limits=QUICK) as functions:
         file.write_text("def f(): return 2")
-        assert functions.call("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
     assert not (file.parent / "__pycache__").exists()
 
 
@@ -473,7 +477,7 @@ def test_source_in_any_encoding_it_declares(student: Student) -> None:
     file = student("")
     file.write_bytes("# coding: latin-1\ndef f(): return float(len('ü'))".encode("latin-1"))
     with StudentFunctions(file, limits=QUICK) as functions:
-        assert functions.call("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
     file.write_bytes(b"x = '\xff'")
     assert fail(file).kind is FailureKind.SYNTAX
 
@@ -487,9 +491,9 @@ def test_records_must_be_plain(student: Student) -> None:
             [{"x": 1}, {"x": 1, "y": 2}],
         ):
             with pytest.raises((ValueError, TypeError)):
-                functions.call("f", batch)
-        assert functions.call("f", [{"x": [1, None, {"y": "z"}]}, {"x": None}]) == [1.0, 1.0]
-        assert functions.call("f", [{"x": float("nan")}, {"x": float("inf")}]) == [1.0, 1.0]
+                functions.call_batch("f", batch)
+        assert functions.call_batch("f", [{"x": [1, None, {"y": "z"}]}, {"x": None}]) == [1.0, 1.0]
+        assert functions.call_batch("f", [{"x": float("nan")}, {"x": float("inf")}]) == [1.0, 1.0]
 
 
 def test_columns_and_records_are_the_same(student: Student) -> None:
@@ -498,7 +502,9 @@ def test_columns_and_records_are_the_same(student: Student) -> None:
     hit = x > 0.5
     with StudentFunctions(file, limits=QUICK) as functions:
         columns = functions.call_columns("f", {"x": x, "hit": hit})
-        records = functions.call("f", [{"x": float(a), "hit": bool(b)} for a, b in zip(x, hit, strict=True)])
+        records = functions.call_batch(
+            "f", [{"x": float(a), "hit": bool(b)} for a, b in zip(x, hit, strict=True)]
+        )
         assert list(columns) == records == [float(a) + bool(b) + 1 for a, b in zip(x, hit, strict=True)]
         assert list(
             functions.call_columns("f", {"x": np.array([0.5], "f"), "hit": [2], "name": ["abc"]})
@@ -511,7 +517,7 @@ def test_a_batch_larger_than_the_pipe(student: Student) -> None:
     batch = [{"x": i / 7, "name": "n" * 50} for i in range(20_000)]
     limits = dataclasses.replace(QUICK, frame=2 * MIB, reply_s=20)
     with StudentFunctions(student("def f(x, name): return x"), limits=limits) as functions:
-        assert functions.call("f", batch) == [record["x"] for record in batch]
+        assert functions.call_batch("f", batch) == [record["x"] for record in batch]
 
 
 def test_closing_twice_and_from_any_state(student: Student) -> None:
@@ -524,6 +530,6 @@ def test_closing_twice_and_from_any_state(student: Student) -> None:
 def test_signals_for_the_terminals_group_do_not_reach_it(student: Student) -> None:
     """Ctrl-C goes to everything in the face's session; a student's process is in its own."""
     with StudentFunctions(student("import os\ndef f(): return os.getsid(0)"), limits=QUICK) as functions:
-        (session,) = functions.call("f", [{}])
+        (session,) = functions.call_batch("f", [{}])
         assert session != os.getsid(0)
         os.killpg(int(session), signal.SIGCONT)

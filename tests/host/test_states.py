@@ -12,14 +12,14 @@ from typing import Any
 import pytest
 
 from kit.host import process
-from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.process import Child, Role
+from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.process import Role, StudentProcess
 from kit.host.protocol import ALLOWED, State, parse
-from kit.host.sandbox.confinement import DESK_LEVEL
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from tests.host.conftest import LINUX, QUICK, Student
 
 FRAMES: dict[str, Callable[[int], list[Any]]] = {
-    "confined": lambda seq: ["confined", int(DESK_LEVEL)],
+    "confined": lambda seq: ["confined", int(INTERACTIVE_LEVEL)],
     "refused": lambda seq: ["refused", "no Landlock here"],
     "reply": lambda seq: ["reply", seq, None, []],
     "functions": lambda seq: ["functions", seq, ["f"]],
@@ -55,20 +55,22 @@ os.read(0, 1)
 
 
 @pytest.fixture
-def speaks(student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Child]:
+def speaks(
+    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., StudentProcess]:
     """Starts a child that takes these steps."""
     speaker = tmp_path / "speaker.py"
     speaker.write_text(textwrap.dedent(SPEAKER))
 
-    def start(role: Role, *steps: list[Any] | None) -> Child:
+    def start(role: Role, *steps: list[Any] | None) -> StudentProcess:
         command = [sys.executable, "-S", str(speaker), json.dumps(steps)]
         monkeypatch.setattr(process, "command", lambda: command)
-        return Child(role, student(""), {"seed": 0}, limits=QUICK)
+        return StudentProcess(role, student(""), {"seed": 0}, limits=QUICK)
 
     return start
 
 
-def failure_of(child: Child, state: State) -> Failure | None:
+def failure_of(child: StudentProcess, state: State) -> Failure | None:
     """Talks with a child as the parent would, until it has taken the frame that is tried in this state."""
     try:
         child.started()
@@ -76,7 +78,7 @@ def failure_of(child: Child, state: State) -> Failure | None:
             wait_for(child)
         if state in QUESTIONS:
             child.ask(QUESTIONS[state])
-    except GuestError as error:
+    except StudentCodeError as error:
         return error.failure
     return None
 
@@ -84,14 +86,14 @@ def failure_of(child: Child, state: State) -> Failure | None:
 @LINUX
 @pytest.mark.parametrize("state", State)
 @pytest.mark.parametrize("kind", FRAMES)
-def test_every_frame_in_every_state(speaks: Callable[..., Child], kind: str, state: State) -> None:
+def test_every_frame_in_every_state(speaks: Callable[..., StudentProcess], kind: str, state: State) -> None:
     role = ROLES.get(state, "functions")
     first = ["functions", 0, ["f"]] if role == "functions" else ["reply", 0, None, []]
     seq = 1 if state in QUESTIONS else 0
     tried = FRAMES[kind](seq)
     steps: list[list[Any] | None] = [None]
     if state is not State.CONFINING:
-        steps += [["confined", int(DESK_LEVEL)], None]
+        steps += [["confined", int(INTERACTIVE_LEVEL)], None]
     if state is State.CONFINING and kind == "confined":
         tried, steps = first, [None, tried, None]
     if state in QUESTIONS:
@@ -109,7 +111,7 @@ def test_every_frame_in_every_state(speaks: Callable[..., Child], kind: str, sta
         assert failure.kind is FailureKind.PROTOCOL
 
 
-def wait_for(child: Child) -> None:
+def wait_for(child: StudentProcess) -> None:
     """Waits until something that nobody asked for lies in the pipe, at most 20 s."""
     child._poller.poll(20_000)
 

@@ -17,10 +17,10 @@ from grader.evidence.world.facts import WorldRunSpec
 from grader.evidence.world.world_run import run_world
 from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
-from kit.host.failure import Failure, FailureKind, GuestError
-from kit.host.node_process import Guest
-from kit.host.sandbox.confinement import DESK_LEVEL
-from kit.host.sandbox.limits import DESK, Limits
+from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.node_process import NodeProcess
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.ros.execution.arguments import parse_ros_arguments
 from kit.run.episode import (
     EndCondition,
@@ -67,11 +67,11 @@ def given(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """The arguments of every program that is started; none of them really starts."""
     seen: list[list[str]] = []
 
-    def refuse(self: Guest, graph: object, file: Path, *, args: list[str], **_: object) -> None:
+    def refuse(self: NodeProcess, graph: object, file: Path, *, args: list[str], **_: object) -> None:
         seen.append([str(word) for word in args])
-        raise GuestError(Failure(FailureKind.EXIT, "only the arguments are wanted here"))
+        raise StudentCodeError(Failure(FailureKind.EXIT, "only the arguments are wanted here"))
 
-    monkeypatch.setattr(Guest, "__init__", refuse)
+    monkeypatch.setattr(NodeProcess, "__init__", refuse)
     return seen
 
 
@@ -97,7 +97,7 @@ def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:
 class OnlyLimits:
     """The part of an assignment that an environment's evidence needs."""
 
-    limits: Limits = DESK
+    limits: Limits = INTERACTIVE_LIMITS
 
 
 @pytest.mark.parametrize(("map_name", "case"), CASES)
@@ -110,10 +110,15 @@ def test_a_controller_gets_the_same_arguments_everywhere(
     with Session(place) as session:
         session.drive_with(find_controller(str(file)))
     race_controller(level_on(map_name, case), find_controller("random_walk"))
-    run_episode(EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False), file, limits=DESK, level=DESK_LEVEL)
+    run_episode(
+        EpisodeSpec(trial_on(map_name, case, 1.0), 1, "", False),
+        file,
+        limits=INTERACTIVE_LIMITS,
+        level=INTERACTIVE_LEVEL,
+    )
     task = EnvironmentTask("Env", place, ((0.1, 0.0),), 0.1, 10, (), "/scan", 1.0, 1, None)
-    with pytest.raises(GuestError):
-        examine_environment(task, cast(Assignment, OnlyLimits()), file, DESK_LEVEL, 1)
+    with pytest.raises(StudentCodeError):
+        examine_environment(task, cast(Assignment, OnlyLimits()), file, INTERACTIVE_LEVEL, 1)
     own, raced, graded, environment = given
     assert own == raced == graded
     assert environment == [file.stem, "Env", *own]
@@ -186,7 +191,9 @@ def test_the_same_metrics_and_end_everywhere(
     assert own.end is end
 
     trial = trial_on(map_name, None, seconds)
-    graded = run_episode(EpisodeSpec(trial, 1, "", False), file, limits=DESK, level=DESK_LEVEL)
+    graded = run_episode(
+        EpisodeSpec(trial, 1, "", False), file, limits=INTERACTIVE_LIMITS, level=INTERACTIVE_LEVEL
+    )
     assert graded.score == own.metrics
     assert len(graded.bump_ticks) == own.metrics.bumps
     assert graded.failure is None

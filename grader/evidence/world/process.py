@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.limits import GIB
 
 READ_TIMEOUT_S: Final = 30.0
@@ -29,7 +29,7 @@ MAX_ANSWER_BYTES: Final = 64_000_000
 
 
 class WorldProcess:
-    """One world in a process of its own. Every method raises GuestError when it takes too much time or memory."""
+    """One world in a process of its own. Every method raises StudentCodeError when it takes too much time or memory."""
 
     def __init__(self, file: Path, memory: int = MEMORY_LIMIT) -> None:
         self._child = subprocess.Popen(
@@ -83,7 +83,7 @@ class WorldProcess:
             left = end - time.monotonic()
             if left <= 0 or not select.select([handle], [], [], left)[0]:
                 self.close()
-                raise GuestError(
+                raise StudentCodeError(
                     Failure(FailureKind.TIMEOUT, f"{slow}: it has too many walls, rays or bodies.")
                 )
             more = os.read(handle, 1 << 20)
@@ -107,5 +107,5 @@ class WorldProcess:
             or "ArrayMemoryError" in message
             or self._child.returncode == -signal.SIGKILL
         ):
-            return GuestError(Failure(FailureKind.MEMORY, "The world needs too much memory."))
+            return StudentCodeError(Failure(FailureKind.MEMORY, "The world needs too much memory."))
         return RuntimeError(f"the process that reads worlds has ended ({self._child.returncode}):\n{message}")

@@ -13,8 +13,8 @@ from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
 from grader.evidence.world.path_search import search_path
 from grader.evidence.world.world_reading import all_wall_segments, draw_world
 from kit.geometry import convex_hull
-from kit.host.failure import GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
@@ -160,24 +160,24 @@ def _drive(
 ) -> str:
     """Ticks until the time is over or the target reached. Returns why it could not, or nothing."""
     with ExitStack() as stack:
-        guest: Guest | None = None
+        node_process: NodeProcess | None = None
         if spec.driver:
             if scenario.driven is None or not drives:
                 wanted = f"The model {spec.robot}" if spec.robot else "No model of this world"
                 return f"{wanted} has {'no' if spec.robot else 'a'} drive for our driver to move."
             try:
-                guest = Guest.start(
+                node_process = NodeProcess.start(
                     runner.graph, Path(spec.driver), args=controller_arguments(scenario), seed=spec.seed
                 )
-            except GuestError as error:
+            except StudentCodeError as error:
                 return f"Our driver does not start: {error}"
-            runner.participants.append(stack.enter_context(guest))
-        ends = [when_failed(guest)] if guest is not None else []
+            runner.participants.append(stack.enter_context(node_process))
+        ends = [when_failed(node_process)] if node_process is not None else []
         if spec.until_reached:
             ends.append(when_reached(metrics))
         end = run_until(runner, limit_s=spec.time_s, ends=ends)
-        if guest is not None and end is EndReason.FAILED:
-            return f"Our driver stopped: {guest.failure}"
+        if node_process is not None and end is EndReason.FAILED:
+            return f"Our driver stopped: {node_process.failure}"
     return ""
 
 

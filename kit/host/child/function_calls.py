@@ -10,7 +10,7 @@ from types import FunctionType
 
 from kit.host.child.command_loop import Conversation
 from kit.host.child.student_module import Program, shown
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.protocol import DEEPEST
 from kit.host.wire import Json, numbers_to_text, text_to_numbers
 
@@ -60,13 +60,13 @@ def _values(function: FunctionType, records: Iterator[dict[str, Json]], program:
     return values
 
 
-def _refused(function: FunctionType, wanted: str, value: object, program: Program) -> GuestError:
+def _refused(function: FunctionType, wanted: str, value: object, program: Program) -> StudentCodeError:
     """What to say where a function does not return what is wanted."""
     code = function.__code__
     hint = " Does every way through it end in a return?" if value is None else ""
     message = f"{code.co_name}() must return {wanted}, not {shown(value)}.{hint}"
     place = program.relative(code.co_filename), code.co_firstlineno
-    return GuestError(Failure(FailureKind.EXCEPTION, message, *place))
+    return StudentCodeError(Failure(FailureKind.EXCEPTION, message, *place))
 
 
 def _told(function: FunctionType, record: dict[str, Json], program: Program) -> Json:

@@ -7,7 +7,7 @@ import sys
 
 from kit.host.child.command_loop import Conversation
 from kit.host.child.student_module import Program
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
 from kit.ros import names_folder
 from kit.ros.launch.errors import LaunchError
@@ -48,10 +48,10 @@ def _checked(requests: list[Request]) -> list[Json]:
     ]
 
 
-def _told(problem: LaunchError, program: Program) -> GuestError:
+def _told(problem: LaunchError, program: Program) -> StudentCodeError:
     file = program.relative(problem.location.file) if problem.location else None
     line = problem.location.line if problem.location and file else None
     text = str(problem)
     if problem.location and file is None:
         text = f"{problem.location.file}:{problem.location.line}: {text}"
-    return GuestError(Failure(FailureKind.EXCEPTION, text[:MAX_TEXT], file, line))
+    return StudentCodeError(Failure(FailureKind.EXCEPTION, text[:MAX_TEXT], file, line))

@@ -12,8 +12,8 @@ from typing import Final
 
 from kit.host.child.command_loop import Conversation
 from kit.host.child.student_module import Program
-from kit.host.child_bridge import Embassy
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.child_bridge import ChildBridge
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import Json
 from kit.ros import names_folder, shims_folder
 from kit.ros.execution.context import set_default_graph
@@ -28,16 +28,16 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
     sys.path.insert(0, str(names_folder()))
     sys.argv = [program.file, *start["args"]]
-    embassy = Embassy(conversation, start["now"])
-    set_default_graph(embassy.graph)
-    _keep_simulated_time(embassy.graph)
-    embassy.hear(start["events"])
+    bridge = ChildBridge(conversation, start["now"])
+    set_default_graph(bridge.graph)
+    _keep_simulated_time(bridge.graph)
+    bridge.hear(start["events"])
     try:
         if start.get("entry"):
             _enter(start["entry"], program)
         else:
             module = program.load("__main__")
-            if not embassy.has_had_nodes:
+            if not bridge.has_had_nodes:
                 _begin(module, program)
     except SystemExit as stop:
         # `sys.exit(main())` at the end of a file is how a program ends that has done its work.
@@ -46,9 +46,9 @@ def run(program: Program, conversation: Conversation, start: dict[str, Json]) ->
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
-    if not embassy.has_had_nodes:
+    if not bridge.has_had_nodes:
         raise _nothing_to_run("The program came to its end without making a node.", program)
-    embassy.end()
+    bridge.end()
 
 
 def _enter(entry: str, program: Program) -> None:
@@ -91,8 +91,8 @@ def _begin(module: ModuleType, program: Program) -> None:
     rclpy.spin(make())
 
 
-def _nothing_to_run(message: str, program: Program) -> GuestError:
-    return GuestError(Failure(FailureKind.EXCEPTION, message, program.relative(program.file)))
+def _nothing_to_run(message: str, program: Program) -> StudentCodeError:
+    return StudentCodeError(Failure(FailureKind.EXCEPTION, message, program.relative(program.file)))
 
 
 def _keep_simulated_time(graph: Graph) -> None:

@@ -7,7 +7,7 @@ import sys
 from contextlib import suppress
 from types import ModuleType, TracebackType
 
-from kit.host.failure import Failure, FailureKind, GuestError
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT
 
 STDERR = 2
@@ -68,7 +68,7 @@ def explain(problem: BaseException, program: Program) -> Failure:
 
     Also writes the student's part of the traceback to the standard error.
     """
-    if isinstance(problem, GuestError):
+    if isinstance(problem, StudentCodeError):
         return problem.failure
     if isinstance(problem, MemoryError):
         # Nothing may be built while the frames hold what filled the memory.

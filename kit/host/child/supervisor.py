@@ -1,6 +1,6 @@
 """The process above a student's: it starts it, waits, and cleans up.
 
-There are two processes. This one stays outside the cage and does nothing but wait: for the kit to hang up, or
+There are two processes. This one stays outside the config and does nothing but wait: for the kit to hang up, or
 for its child to end. Then it ends everything that came out of the child and takes away the run's folder. So
 nothing of a student's is left behind, even when the kit itself is killed. The child locks itself in, says so,
 and only then receives the student's code.
@@ -34,11 +34,11 @@ def run() -> int:
 def _start() -> int:
     channel = Channel(PIPE)
     role, record = channel.receive()
-    cage = confinement.Cage.from_json(record)
+    config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
     try:
-        confinement.separate(cage.level)
-    except confinement.CannotConfine as problem:
+        confinement.separate(config.level)
+    except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
     agent.preload(role)
@@ -52,8 +52,8 @@ def _start() -> int:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.close(ended)
         os.close(wake)
-        return _student(role, cage)
-    return _watch(child, ended, cage.folder)
+        return _student(role, config)
+    return _watch(child, ended, config.folder)
 
 
 def _watch(child: int, ended: int, folder: str) -> int:
@@ -108,10 +108,10 @@ def _let_go(*descriptors: int) -> None:
     os.close(null)
 
 
-def _student(role: str, cage: confinement.Cage) -> int:
-    """In the child: into the cage, then on with the student's code."""
+def _student(role: str, config: confinement.SandboxConfig) -> int:
+    """In the child: into the config, then on with the student's code."""
     os.setsid()
-    if cage.level >= confinement.Level.SEPARATE:
+    if config.level >= confinement.Level.SEPARATE:
         # The first process of a namespace is deaf to most signals, and its end is the end of all: not a
         # student's place.
         child = os.fork()
@@ -121,11 +121,11 @@ def _student(role: str, cage: confinement.Cage) -> int:
     channel = Channel(os.dup(PIPE))
     _let_go(PIPE)
     try:
-        confinement.lock(cage)
-    except confinement.CannotConfine as problem:
+        confinement.lock(config)
+    except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
-    channel.send(["confined", int(cage.level)])
+    channel.send(["confined", int(config.level)])
     return agent.work(role, channel)
 
 

@@ -35,14 +35,14 @@ class Level(IntEnum):
     ANOTHER_USER = 3
 
 
-DESK_LEVEL = Level.LIMITED
+INTERACTIVE_LEVEL = Level.LIMITED
 
 WRITABLE = ("/dev/null",)
 """What every program may write to, besides its own folder."""
 
 
 @dataclass(frozen=True, slots=True)
-class Cage:
+class SandboxConfig:
     """What the parent tells a child about its confinement."""
 
     level: Level
@@ -65,13 +65,13 @@ class Cage:
         return f"{self.folder}/root"
 
     @classmethod
-    def from_json(cls, content: Json) -> Cage:
+    def from_json(cls, content: Json) -> SandboxConfig:
         """The record that ``dataclasses.asdict`` and JSON made of one."""
         limits = Limits(**content["limits"])
         return cls(Level(content["level"]), limits, content["folder"], content["readable"], content["listed"])
 
 
-class CannotConfine(Exception):
+class ConfinementError(Exception):
     """This machine does not allow the level asked for; the message says why, and what would help."""
 
 
@@ -103,67 +103,69 @@ def shield_this_process() -> None:
 
 
 def separate(level: Level) -> None:
-    """Called in the process that will start the student's. CannotConfine if it is clear that the level fails."""
+    """Called in the process that will start the student's. ConfinementError if it is clear that the level fails."""
     if level >= Level.FILTERED:
         _require_filters()
     if level >= Level.SEPARATE:
         try:
             namespaces.separate()
         except OSError as problem:
-            raise CannotConfine(f"namespaces are refused ({problem.strerror}). {_namespace_hint()}") from None
+            raise ConfinementError(
+                f"namespaces are refused ({problem.strerror}). {_namespace_hint()}"
+            ) from None
     if level >= Level.ANOTHER_USER and os.geteuid() != 0:
-        raise CannotConfine(
+        raise ConfinementError(
             "a user for each run needs root. Run this as root, or in a container as its root."
         )
 
 
-def lock(cage: Cage) -> None:
+def lock(config: SandboxConfig) -> None:
     """Called in the process that will run the student's code, just before it does. There is no way back."""
     os.umask(0o022)
     # The folder is there as long as the run, so its number belongs to no other run.
-    user = _FIRST_USER + os.stat(cage.scratch).st_ino % _USERS
-    if cage.level >= Level.ANOTHER_USER:
-        os.chmod(cage.folder, 0o711)  # a way through
-    if cage.level >= Level.SEPARATE:
+    user = _FIRST_USER + os.stat(config.scratch).st_ino % _USERS
+    if config.level >= Level.ANOTHER_USER:
+        os.chmod(config.folder, 0o711)  # a way through
+    if config.level >= Level.SEPARATE:
         try:
-            namespaces.narrow(cage.root, cage.readable, WRITABLE, cage.scratch, cage.limits.scratch)
+            namespaces.narrow(config.root, config.readable, WRITABLE, config.scratch, config.limits.scratch)
         except OSError as problem:
-            raise CannotConfine(f"{problem.strerror}. {_namespace_hint()}") from None
-    _limit(cage)
-    if cage.level >= Level.ANOTHER_USER:
-        _become(user, cage.scratch)
+            raise ConfinementError(f"{problem.strerror}. {_namespace_hint()}") from None
+    _limit(config)
+    if config.level >= Level.ANOTHER_USER:
+        _become(user, config.scratch)
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
     # Not inherited when a process changes its user, so only now.
     _prctl(_PR_SET_PDEATHSIG, _KILL)
-    if cage.level >= Level.FILTERED:
-        _filter(cage)
+    if config.level >= Level.FILTERED:
+        _filter(config)
 
 
 def _require_filters() -> None:
     if sys.platform != "linux" or not seccomp.supported():
-        raise CannotConfine(
+        raise ConfinementError(
             f"Landlock and seccomp are Linux's, on x86-64 and aarch64, not {os.uname().machine}'s."
         )
     if landlock.abi() == 0:
-        raise CannotConfine(
+        raise ConfinementError(
             "this kernel has no Landlock. It needs Linux 5.13 or newer, "
             "started with 'landlock' in the list of its parameter lsm= (see /sys/kernel/security/lsm)."
         )
 
 
-def _filter(cage: Cage) -> None:
+def _filter(config: SandboxConfig) -> None:
     try:
         _drop_capabilities()
-        landlock.restrict(cage.readable, cage.listed, (cage.scratch, *WRITABLE))
+        landlock.restrict(config.readable, config.listed, (config.scratch, *WRITABLE))
         seccomp.install()
     except OSError as problem:
-        raise CannotConfine(
+        raise ConfinementError(
             f"{problem.strerror}. A container may forbid it: see its seccomp profile."
         ) from None
 
 
-def _limit(cage: Cage) -> None:
-    limits = cage.limits
+def _limit(config: SandboxConfig) -> None:
+    limits = config.limits
     wanted = {
         resource.RLIMIT_AS: limits.memory,
         resource.RLIMIT_NOFILE: limits.open_files,
@@ -171,7 +173,7 @@ def _limit(cage: Cage) -> None:
         resource.RLIMIT_CORE: 0,
     }
     if limits.processes is not None:
-        running = 0 if cage.level >= Level.ANOTHER_USER else _threads_of(os.getuid())
+        running = 0 if config.level >= Level.ANOTHER_USER else _threads_of(os.getuid())
         wanted[resource.RLIMIT_NPROC] = running + limits.processes
     for kind, value in wanted.items():
         _set_limit(kind, value, value)
@@ -206,7 +208,7 @@ def _become(user: int, scratch: str) -> None:
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
     except OSError as problem:
-        raise CannotConfine(
+        raise ConfinementError(
             f"a user for each run is refused ({problem.strerror}): this root is only a container's."
         ) from None
 

@@ -37,10 +37,10 @@ class Limits:
     """Bytes of one frame from the child."""
 
 
-DESK: Final = Limits()
+INTERACTIVE_LIMITS: Final = Limits()
 """At the desk and in the terminal game: the student's own machine."""
 
-GRADER: Final = Limits(
+GRADER_LIMITS: Final = Limits(
     start_s=15.0,
     reply_s=5.0,
     total_s=120.0,

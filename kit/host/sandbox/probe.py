@@ -10,14 +10,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from kit.host.failure import FailureKind, GuestError
+from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.sandbox import landlock
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 
 
 @dataclass(frozen=True, slots=True)
-class Rung:
+class SandboxSupport:
     """One level of the ladder on this machine."""
 
     level: Level
@@ -26,58 +26,60 @@ class Rung:
     """What it consists of here; or why it cannot be had, and what would help."""
 
 
-def probe() -> tuple[Rung, ...]:
+def probe_levels() -> tuple[SandboxSupport, ...]:
     """Every level, lowest first. Starts an empty program on each: a fifth of a second in all."""
     with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
-        return tuple(_try(level, file) for level in Level)
+        return tuple(_try_level(level, file) for level in Level)
 
 
-def highest() -> Level:
+def highest_level() -> Level:
     """The highest level that can be had here."""
-    return max(rung.level for rung in probe() if rung.is_available)
+    return max(support.level for support in probe_levels() if support.is_available)
 
 
-def allows(level: Level) -> bool:
+def is_level_available(level: Level) -> bool:
     """Whether this machine can lock a program in so far; only this level is tried."""
     with tempfile.TemporaryDirectory(prefix="kit-probe-") as folder:
         file = Path(folder, "empty.py")
         file.write_text("")
-        return _try(level, file).is_available
+        return _try_level(level, file).is_available
 
 
-def highest_up_to(wanted: Level) -> Level:
+def highest_level_up_to(wanted: Level) -> Level:
     """The highest level that can be had here and is not above ``wanted``.
 
     For whoever must know before a student's code runs: what that code says later changes nothing. A level that was
     reached once in this process is not tried again.
     """
     for level in sorted(Level, reverse=True):
-        if level <= wanted and (level is Level.LIMITED or level in _reached or allows(level)):
-            _reached.add(level)
+        if level <= wanted and (
+            level is Level.LIMITED or level in _known_levels or is_level_available(level)
+        ):
+            _known_levels.add(level)
             return level
     raise AssertionError("the lowest level can always be had")
 
 
-_reached: Final[set[Level]] = set()
+_known_levels: Final[set[Level]] = set()
 
 
-def _try(level: Level, file: Path) -> Rung:
+def _try_level(level: Level, file: Path) -> SandboxSupport:
     try:
         StudentFunctions(file, level=level).close()
-    except GuestError as problem:
+    except StudentCodeError as problem:
         if problem.failure.kind is not FailureKind.CONFINEMENT:
             raise
-        return Rung(level, False, problem.failure.message)
-    return Rung(level, True, _MEANS[level]())
+        return SandboxSupport(level, False, problem.failure.message)
+    return SandboxSupport(level, True, _DESCRIPTIONS[level]())
 
 
 def _limits() -> str:
     return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
 
 
-_MEANS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
+_DESCRIPTIONS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
     {
         Level.LIMITED: _limits,
         Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",

@@ -67,7 +67,7 @@ def _checked_parameters(file: Path, node: ast.FunctionDef) -> tuple[str, ...]:
 class StudentReward:
     """The file's reward as a ``RewardFunction``. Use as a context manager, or ``close`` it.
 
-    RewardFileError for a file that cannot be called; GuestError when the student's code fails, here or in a call.
+    RewardFileError for a file that cannot be called; StudentCodeError when the student's code fails, here or in a call.
     """
 
     def __init__(self, file: Path, *, seed: int = 0) -> None:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.host.failure import GuestError
+from kit.host.failure import StudentCodeError
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
@@ -98,7 +98,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
             with _student_reward(run, config) as reward:
                 training = _TrainingLoop(run, config, events, reward, interrupted)
                 ended = training.run()
-        except (GuestError, RewardError, RewardFileError, UnsupportedWorld) as error:
+        except (StudentCodeError, RewardError, RewardFileError, UnsupportedWorld) as error:
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
     return ended

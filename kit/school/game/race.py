@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure
-from kit.host.sandbox.confinement import DESK_LEVEL
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
-from kit.host.sandbox.probe import allows
+from kit.host.sandbox.probe import is_level_available
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
@@ -154,7 +154,11 @@ def race_controller(
 
     # Confined where the machine can: a program that drives for stars must not touch the journal or the recordings.
     is_stranger = controller not in kit_controllers()
-    confinement = Confinement.FILTERED if is_stranger and allows(Confinement.FILTERED) else DESK_LEVEL
+    confinement = (
+        Confinement.FILTERED
+        if is_stranger and is_level_available(Confinement.FILTERED)
+        else INTERACTIVE_LEVEL
+    )
     return _run_race(level, level.find_scenario(), install_driver, on_second, confinement)
 
 
@@ -189,7 +193,7 @@ def _run_race(
     scenario: Scenario,
     install_driver: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
-    confinement: Confinement = DESK_LEVEL,
+    confinement: Confinement = INTERACTIVE_LEVEL,
 ) -> tuple[RaceFinish, Recording]:
     with Session(scenario, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation

@@ -86,7 +86,7 @@ class LaunchScreen(WatchScreen):
     # In the helper's thread
 
     def _open(self) -> Session:
-        from kit.host.failure import GuestError
+        from kit.host.failure import StudentCodeError
         from kit.launch.launch_run import Launch
         from kit.launch.session import LaunchSession
         from kit.launch.start_errors import ProcessStartError, explain_failure
@@ -111,7 +111,7 @@ class LaunchScreen(WatchScreen):
                     self._said(line)
                 launch.start_processes()
                 return session
-        except GuestError as error:
+        except StudentCodeError as error:
             self.refusal = explain_failure(error.failure)
         except (ProcessStartError, WorldError, OSError) as problem:
             self.refusal = str(problem)

@@ -358,7 +358,7 @@ def test_levels_do_not_change_points(tmp_path: Path) -> None:
     assignment = read_assignment(write_assignment(tmp_path / "quick"))
     folder = submissions(tmp_path / "in")
     tables = []
-    levels = [rung.level for rung in probe.probe() if rung.is_available]
+    levels = [support.level for support in probe.probe_levels() if support.is_available]
     assert len(levels) >= 2
     for level in levels:
         made = Queue(tmp_path / f"queue{int(level)}")
@@ -460,8 +460,8 @@ def test_killed_at_twenty_moments_and_resumed(tmp_path: Path, monkeypatch: pytes
 @pytest.fixture
 def no_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
     """A machine that can lock nothing in."""
-    monkeypatch.setattr(probe, "_reached", set())
-    monkeypatch.setattr(probe, "allows", lambda level: False)
+    monkeypatch.setattr(probe, "_known_levels", set())
+    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
 
 
 def verb(name: str, *arguments: object) -> tuple[int, str]:

@@ -16,7 +16,7 @@ from grader.evidence.drive_record import DriveRecord
 from grader.evidence.episodes import EpisodeSpec, run_episode, shifted_start
 from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.limits import GRADER
+from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.run.recording import rerun
 from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD
@@ -38,7 +38,7 @@ def drive(folder: Path, source: str, trial: Trial = TURN, seed: int = 1) -> Driv
     file = folder / "controller.py"
     file.write_text(source)
     return run_episode(
-        EpisodeSpec(trial, seed, "turn, seed 1", False), file, limits=GRADER, level=Level.LIMITED
+        EpisodeSpec(trial, seed, "turn, seed 1", False), file, limits=GRADER_LIMITS, level=Level.LIMITED
     )
 
 

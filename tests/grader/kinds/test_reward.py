@@ -20,7 +20,7 @@ from grader.evidence.task_model import FORWARD, HEADINGS, LAST_MOVES, LEFT, NO_M
 from grader.evidence.transitions import MODEL_FACTS, TransitionBatch, rewards_of, to_transition
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.limits import GRADER
+from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.learning.environment.rewards import ALGORITHM_1, ALGORITHM_3, Reward
 from kit.learning.training.student_reward import reward_columns
 
@@ -90,7 +90,7 @@ def examine(folder: Path, text: str, task: GridTask = SMALL) -> RewardEvidence:
     file = folder / "reward.py"
     file.write_text(textwrap.dedent(text))
     assignment = Assignment(
-        folder, "r", "R", "reward", "reward.py", Level.LIMITED, GRADER, (), (), task, "v", False
+        folder, "r", "R", "reward", "reward.py", Level.LIMITED, GRADER_LIMITS, (), (), task, "v", False
     )
     return RewardEvidence(file, assignment, Level.LIMITED)
 

@@ -24,7 +24,7 @@ from grader.evidence.world.world_run import run_world
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
-from kit.host.failure import FailureKind, GuestError
+from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
@@ -242,7 +242,7 @@ def test_a_picture_too_large_is_refused(folder: Path) -> None:
 def test_a_world_too_slow_to_read_is_ended(folder: Path) -> None:
     began = time.monotonic()
     process = WorldProcess(folder / "world.yaml")
-    with pytest.raises(GuestError) as caught:
+    with pytest.raises(StudentCodeError) as caught:
         process.read_world(0.01)
     assert caught.value.failure.kind is FailureKind.TIMEOUT
     assert time.monotonic() - began < 20
@@ -256,7 +256,10 @@ def test_a_world_that_needs_too_much_memory_is_ended(folder: Path) -> None:
     (folder / "room.yaml").write_text(
         "image: noise.png\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\n"
     )
-    with WorldProcess(folder / "world.yaml", memory=1 << 26) as process, pytest.raises(GuestError) as caught:
+    with (
+        WorldProcess(folder / "world.yaml", memory=1 << 26) as process,
+        pytest.raises(StudentCodeError) as caught,
+    ):
         process.read_world()
     assert caught.value.failure.kind is FailureKind.MEMORY
 

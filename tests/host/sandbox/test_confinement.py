@@ -20,12 +20,12 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller
-from kit.host.failure import FailureKind, GuestError
-from kit.host.node_process import Guest
+from kit.host.failure import FailureKind, StudentCodeError
+from kit.host.node_process import NodeProcess
 from kit.host.sandbox import landlock, seccomp
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB
-from kit.host.sandbox.probe import Rung, highest, probe
+from kit.host.sandbox.probe import SandboxSupport, highest_level, probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
@@ -40,17 +40,17 @@ def above(file: Path) -> list[Path]:
 
 
 @cache
-def _rungs() -> tuple[Rung, ...]:
-    return probe()
+def _supports() -> tuple[SandboxSupport, ...]:
+    return probe_levels()
 
 
 @pytest.fixture(params=list(Level)[1:], ids=lambda level: f"L{level}")
 def level(request: pytest.FixtureRequest) -> Level:
     """Every level that locks in, where it can be had."""
     wanted: Level = request.param
-    rung = _rungs()[wanted]
-    if not rung.is_available:
-        pytest.skip(rung.reason)
+    support = _supports()[wanted]
+    if not support.is_available:
+        pytest.skip(support.reason)
     return wanted
 
 
@@ -148,7 +148,9 @@ def test_no_attack_gets_anywhere(student: Student, tmp_path: Path, level: Level)
     file = _attack_file(student)
     with StudentFunctions(file, limits=QUICK, level=level) as functions:
         assert functions.level is level
-        gained = [name for i, name in enumerate(ATTACKS) if functions.call(f"attack{i}", [record]) != [0.0]]
+        gained = [
+            name for i, name in enumerate(ATTACKS) if functions.call_batch(f"attack{i}", [record]) != [0.0]
+        ]
     assert gained == []
     assert secret.read_text() == "forty-two"
     assert sorted(path.name for path in secret.parent.iterdir()) == ["solution.txt"]
@@ -174,7 +176,7 @@ def test_without_a_cage_the_attacks_do_work(student: Student, tmp_path: Path) ->
         if name == "vfork past the library":
             continue  # would go on with the parent's stack
         with StudentFunctions(_attack_file(student), limits=QUICK) as functions:
-            assert functions.call(f"attack{names.index(name)}", [record]) != [0.0], name
+            assert functions.call_batch(f"attack{names.index(name)}", [record]) != [0.0], name
 
 
 def test_honest_work_goes_on(student: Student, level: Level) -> None:
@@ -218,7 +220,7 @@ def test_honest_work_goes_on(student: Student, level: Level) -> None:
         """
     )
     with StudentFunctions(file, limits=QUICK, level=level) as functions:
-        results = {name: functions.call(name, [{}]) for name in functions.names}
+        results = {name: functions.call_batch(name, [{}]) for name in functions.names}
     assert results == {
         "reads_its_folder": [7.5],
         "writes": [0.0],
@@ -236,11 +238,11 @@ def test_a_controller_runs_on_every_level(student: Student, level: Level) -> Non
     node = create_graph_node(graph, "world")
     node.create_subscription(Twist, "cmd_vel", commands.append, 10)
     scans = node.create_publisher(LaserScan, "static_laser", 10)
-    with Guest.start(graph, avoid, limits=QUICK, level=level) as guest:
+    with NodeProcess.start(graph, avoid, limits=QUICK, level=level) as process:
         scans.publish(LaserScan(ranges=array("f", [3.0] * 91)))
-        while graph.run_due() or guest.exchange():
+        while graph.run_due() or process.exchange():
             pass
-        assert guest.failure is None
+        assert process.failure is None
         assert [command.linear.x for command in commands] == [1.0]
 
 
@@ -256,16 +258,16 @@ def test_every_failure_is_still_told(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, reply_s=0.5)
     for body, expected in cases.items():
         with StudentFunctions(student(f"def f():\n    {body}"), limits=limits, level=level) as functions:
-            with pytest.raises(GuestError) as caught:
-                functions.call("f", [{}])
+            with pytest.raises(StudentCodeError) as caught:
+                functions.call_batch("f", [{}])
             assert (caught.value.failure.kind, caught.value.failure.line) == expected, body
 
 
 def test_processor_time_runs_out_in_a_cage_too(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, cpu_s=1, reply_s=20.0)
     with StudentFunctions(student("def f():\n    while True: pass"), limits=limits, level=level) as functions:
-        with pytest.raises(GuestError, match="processor time") as caught:
-            functions.call("f", [{}])
+        with pytest.raises(StudentCodeError, match="processor time") as caught:
+            functions.call_batch("f", [{}])
         assert caught.value.failure.kind is FailureKind.TIMEOUT
 
 
@@ -288,8 +290,8 @@ def test_a_separate_program_is_alone_and_its_disk_is_small(student: Student, lev
     )
     limits = dataclasses.replace(QUICK, scratch=8 * MIB, reply_s=10)
     with StudentFunctions(file, limits=limits, level=level) as functions:
-        assert functions.call("alone", [{}]) == [0.0]
-        (written,) = functions.call("fill", [{}])
+        assert functions.call_batch("alone", [{}]) == [0.0]
+        (written,) = functions.call_batch("fill", [{}])
         assert 5 <= written <= 8
 
 
@@ -301,7 +303,7 @@ def test_a_file_that_lies_beside_the_runs_own_folders(
     file = tmp_path / "work.py"
     file.write_text("def f():\n    open('x', 'w').write('y')\n    return 1")
     with StudentFunctions(file, limits=QUICK, level=level) as functions:
-        assert functions.call("f", [{}]) == [1.0]
+        assert functions.call_batch("f", [{}]) == [1.0]
     assert [path.name for path in tmp_path.iterdir()] == ["work.py"]
 
 
@@ -312,7 +314,7 @@ def test_two_runs_have_two_users(student: Student, level: Level) -> None:
         StudentFunctions(file, limits=QUICK, level=level) as first,
         StudentFunctions(file, limits=QUICK, level=level) as second,
     ):
-        users = {functions.call("user", [{}])[0] for functions in (first, second)}
+        users = {functions.call_batch("user", [{}])[0] for functions in (first, second)}
     assert len(users) == 2
     assert min(users) >= 1_500_000_000
 
@@ -329,17 +331,17 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
     limits = dataclasses.replace(QUICK, processes=16, memory=4096 * MIB)
     with (
         StudentFunctions(student(source), limits=limits, level=level) as functions,
-        pytest.raises(GuestError, match="can't start new thread"),
+        pytest.raises(StudentCodeError, match="can't start new thread"),
     ):
-        functions.call("f", [{}])
+        functions.call_batch("f", [{}])
 
 
 def test_the_ladder_says_what_is_missing() -> None:
-    rungs = _rungs()
-    assert [rung.level for rung in rungs] == list(Level)
-    assert rungs[0].is_available
-    assert all(rung.reason for rung in rungs)
-    assert highest() == max(rung.level for rung in rungs if rung.is_available)
+    supports = _supports()
+    assert [support.level for support in supports] == list(Level)
+    assert supports[0].is_available
+    assert all(support.reason for support in supports)
+    assert highest_level() == max(support.level for support in supports if support.is_available)
 
 
 @LINUX
@@ -352,11 +354,11 @@ def test_without_rights_the_ladder_ends_where_they_are_needed(student: Student) 
         from pathlib import Path
         from kit.host.student_functions import StudentFunctions
         from kit.host.sandbox.confinement import Level
-        from kit.host.sandbox.probe import probe
-        for rung in probe(): print(rung.level.value, rung.is_available, rung.reason)
+        from kit.host.sandbox.probe import probe_levels
+        for support in probe_levels(): print(support.level.value, support.is_available, support.reason)
         for level in (Level.LIMITED, Level.FILTERED):
             with StudentFunctions(Path({str(attack)!r}), level=level) as functions:
-                print(level.value, functions.call("f", [{{"path": "/etc/passwd"}}])[0] > 0)
+                print(level.value, functions.call_batch("f", [{{"path": "/etc/passwd"}}])[0] > 0)
         """
     for folder in above(attack):
         folder.chmod(0o755)
@@ -384,7 +386,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.host.sandbox.confinement import shield_this_process
 shield_this_process()
 with StudentFunctions(Path({file!r})) as functions:
-    print(functions.call("f", [{{"grader": os.getpid()}}]))
+    print(functions.call_batch("f", [{{"grader": os.getpid()}}]))
 """
 
 
@@ -418,10 +420,10 @@ def test_a_shielded_grader_keeps_its_secrets_even_without_a_cage(student: Studen
 
 
 def test_a_level_that_cannot_be_had_is_refused(student: Student, monkeypatch: pytest.MonkeyPatch) -> None:
-    missing = [rung for rung in _rungs() if not rung.is_available]
+    missing = [support for support in _supports() if not support.is_available]
     if not missing:
         pytest.skip("this machine allows every level")
-    with pytest.raises(GuestError) as caught:
+    with pytest.raises(StudentCodeError) as caught:
         StudentFunctions(student("def f(): return 1"), level=missing[0].level)
     assert caught.value.failure.kind is FailureKind.CONFINEMENT
 

@@ -12,7 +12,7 @@ import pytest
 
 from kit.controllers import find_controller
 from kit.host.sandbox.confinement import Level as Confinement
-from kit.host.sandbox.probe import allows
+from kit.host.sandbox.probe import is_level_available
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts, load_reference_ghost
@@ -121,7 +121,9 @@ for place in {places!r}:
 """ + FORWARD.format(speed=0.4)
 
 
-@pytest.mark.skipif(not allows(Confinement.FILTERED), reason="this machine cannot lock programs in")
+@pytest.mark.skipif(
+    not is_level_available(Confinement.FILTERED), reason="this machine cannot lock programs in"
+)
 def test_who_races_writes_nothing_of_the_player_s(tmp_path: Path) -> None:
     desk = tmp_path / "desk"
     (desk / "controllers").mkdir(parents=True)
