@@ -113,8 +113,10 @@ def read_scenario(section: Section, folder: Path) -> Scenario | None:
         return None
     try:
         inside = (folder / name).resolve()
-        is_ours = inside.exists() and inside.is_relative_to(folder.resolve())
-        scenario = find_scenario(str(folder / name) if is_ours else name, case, folder if is_ours else None)
+        is_custom_interface = inside.exists() and inside.is_relative_to(folder.resolve())
+        scenario = find_scenario(
+            str(folder / name) if is_custom_interface else name, case, folder if is_custom_interface else None
+        )
     except (LookupError, WorldError, OSError) as error:
         section.error(str(error), "place")
         return None

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from kit.host import wire
 from kit.host.wire import Json, ProtocolError
-from kit.msg.fields import FieldError, Fixed, Kind, Many, Nested, Scalar
+from kit.msg.fields import FieldError, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.message import Message
 
 MAY_BE_INFINITE: Final = frozenset(
@@ -83,19 +83,19 @@ def _packer(cls: type[Message], strict: bool) -> Pack:
     return pack
 
 
-def _packer_of(kind: Kind, strict: bool, finite: bool) -> Pack:
-    if isinstance(kind, Nested):
+def _packer_of(kind: FieldKind, strict: bool, finite: bool) -> Pack:
+    if isinstance(kind, MessageKind):
         return _packer(kind.cls, strict)
-    if isinstance(kind, Fixed) or (isinstance(kind, Many) and kind.code):
-        code = kind.item.code if isinstance(kind, Fixed) else kind.code
+    if isinstance(kind, FixedArrayKind) or (isinstance(kind, SequenceKind) and kind.type_code):
+        code = kind.item.type_code if isinstance(kind, FixedArrayKind) else kind.type_code
         return _finite_numbers_to_text if finite and code in "fd" else _numbers_to_text
-    if isinstance(kind, Many):
+    if isinstance(kind, SequenceKind):
         item = _packer_of(kind.item, strict, finite)
         return lambda values: [item(value) for value in values]
-    assert isinstance(kind, Scalar)
-    if kind.python is float:
+    assert isinstance(kind, ScalarKind)
+    if kind.python_type is float:
         return _finite if finite else _number_or_word
-    if kind.python is bytes:
+    if kind.python_type is bytes:
         return lambda value: value[0]
     return lambda value: value
 
@@ -139,24 +139,24 @@ def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     return unpack
 
 
-def _unpacker_of(kind: Kind, strict: bool, finite: bool) -> Unpack:
-    if isinstance(kind, Nested):
+def _unpacker_of(kind: FieldKind, strict: bool, finite: bool) -> Unpack:
+    if isinstance(kind, MessageKind):
         return _unpacker(kind.cls, strict)
-    if isinstance(kind, Fixed):
-        return partial(wire.text_to_numbers, code=kind.item.code, finite=finite)
-    if isinstance(kind, Many):
-        if kind.code:
-            return partial(wire.text_to_numbers, code=kind.code, finite=finite)
+    if isinstance(kind, FixedArrayKind):
+        return partial(wire.text_to_numbers, code=kind.item.type_code, finite=finite)
+    if isinstance(kind, SequenceKind):
+        if kind.type_code:
+            return partial(wire.text_to_numbers, code=kind.type_code, finite=finite)
         item = _unpacker_of(kind.item, strict, finite)
         return lambda content: [item(value) for value in wire.items(content)]
-    assert isinstance(kind, Scalar)
-    if kind.python is float:
+    assert isinstance(kind, ScalarKind)
+    if kind.python_type is float:
         return wire.number if finite else _any_number
-    if kind.python is int:
+    if kind.python_type is int:
         return lambda content: wire.integer(content, int(kind.low), int(kind.high))
-    if kind.python is bytes:
+    if kind.python_type is bytes:
         return lambda content: bytes((wire.integer(content, 0, 255),))
-    return _truth if kind.python is bool else _words
+    return _truth if kind.python_type is bool else _words
 
 
 def _any_number(content: Json) -> float:

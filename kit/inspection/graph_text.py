@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from kit.msg.fields import Many, Nested
+from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.interfaces import Interface, definition, find_message
 from kit.msg.message import Message, type_name
 from kit.ros.graph.directory import NodeEntry
@@ -138,6 +138,6 @@ def _definition_lines(cls: type[Message], depth: int) -> Iterator[str]:
         yield "\t" * depth + line + "\n"
     for line, field in zip(lines[constants:], cls.__ros_fields__, strict=True):
         yield "\t" * depth + line + "\n"
-        item = field.kind.item if isinstance(field.kind, Many) else field.kind
-        if isinstance(item, Nested):
+        item = field.kind.item if isinstance(field.kind, SequenceKind) else field.kind
+        if isinstance(item, MessageKind):
             yield from _definition_lines(item.cls, depth + 1)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import yaml
 
-from kit.msg.fields import Fixed, Kind, Many
+from kit.msg.fields import FieldKind, FixedArrayKind, SequenceKind
 from kit.msg.message import Message
 
 DEFAULT_MAX_LENGTH: Final = 128
@@ -76,16 +76,16 @@ def _plain(message: Message, style: TextStyle) -> dict[str, Any]:
     }
 
 
-def _value(value: Any, kind: Kind, style: TextStyle) -> Any:
+def _value(value: Any, kind: FieldKind, style: TextStyle) -> Any:
     if isinstance(value, Message):
         return _plain(value, style)
     if isinstance(value, (str, bytes)):
         return _text(value, style)
-    if isinstance(kind, Fixed):
+    if isinstance(kind, FixedArrayKind):
         if not style.arrays:
             return f"<array type: {kind.idl}>"
         return _truncate([_value(entry, kind.item, style) for entry in value.tolist()], style)
-    if isinstance(kind, Many):
+    if isinstance(kind, SequenceKind):
         if not style.arrays:
             return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
         return _truncate([_value(entry, kind.item, style) for entry in value], style)
@@ -110,10 +110,10 @@ def _cells(message: Message, style: TextStyle) -> Iterator[str]:
         yield from _cell(getattr(message, field.name), field.kind, style)
 
 
-def _cell(value: Any, kind: Kind, style: TextStyle) -> Iterator[str]:
+def _cell(value: Any, kind: FieldKind, style: TextStyle) -> Iterator[str]:
     if isinstance(value, Message):
         yield from _cells(value, style)
-    elif isinstance(kind, (Many, Fixed)):
+    elif isinstance(kind, (SequenceKind, FixedArrayKind)):
         if not style.arrays:
             yield str(_value(value, kind, style))
             return

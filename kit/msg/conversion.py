@@ -1,4 +1,4 @@
-"""Messages as plain data, and back: dicts, lists, numbers, texts, as JSON and YAML hold them.
+"""Converts messages to plain data and back: dicts, lists, numbers and strings, as in JSON and YAML.
 
 Used wherever a message leaves the program as text: on a student process's pipe, by ``topic echo`` and ``pub``.
 """
@@ -10,7 +10,7 @@ from array import array
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from kit.msg.fields import FieldError, Fixed, Kind, Many, Nested, Scalar
+from kit.msg.fields import FieldError, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.message import Message
 from kit.plain_text import nearest_name
 
@@ -18,7 +18,7 @@ M = TypeVar("M", bound=Message)
 
 
 class ConversionError(ValueError):
-    """Plain data that does not fit the message; the message says where in it."""
+    """Plain data does not fit the message type; the error names the field."""
 
 
 def to_dict(message: Message) -> dict[str, Any]:
@@ -62,11 +62,11 @@ def _message(cls: type[M], data: Any, path: str) -> M:
     return cls(**values)
 
 
-def _value(kind: Kind, data: Any, path: str) -> Any:
+def _value(kind: FieldKind, data: Any, path: str) -> Any:
     """The data as a value that a field of this kind takes."""
-    if isinstance(kind, Nested):
+    if isinstance(kind, MessageKind):
         return _message(kind.cls, data, path)
-    if isinstance(kind, (Many, Fixed)):
+    if isinstance(kind, (SequenceKind, FixedArrayKind)):
         if not isinstance(data, (list, tuple)):
             raise ConversionError(f"{path}: needs a list, not {_describe(data)}")
         packed = _packed(kind, data)
@@ -75,7 +75,7 @@ def _value(kind: Kind, data: Any, path: str) -> Any:
             if packed is None
             else packed
         )
-    elif isinstance(kind, Scalar):
+    elif isinstance(kind, ScalarKind):
         data = _scalar(kind, data, path)
     try:
         return kind.check(data, path)
@@ -92,24 +92,24 @@ _WANTED = {
 }
 
 
-def _scalar(kind: Scalar, data: Any, path: str) -> Any:
-    if type(data) is kind.python:
+def _scalar(kind: ScalarKind, data: Any, path: str) -> Any:
+    if type(data) is kind.python_type:
         return data
-    if kind.python is float and type(data) is int:
+    if kind.python_type is float and type(data) is int:
         return float(data)
-    if kind.python is bytes and type(data) is int and 0 <= data <= 255:
+    if kind.python_type is bytes and type(data) is int and 0 <= data <= 255:
         return bytes([data])
-    raise ConversionError(f"{path}: needs {_WANTED[kind.python]}, not {_describe(data)}")
+    raise ConversionError(f"{path}: needs {_WANTED[kind.python_type]}, not {_describe(data)}")
 
 
-def _packed(kind: Many | Fixed, data: list[Any] | tuple[Any, ...]) -> array[Any] | None:
-    """All numbers at once, if they plainly fit; one look instead of one per item."""
-    if isinstance(kind, Fixed) or not kind.code or not isinstance(kind.item, Scalar):
+def _packed(kind: SequenceKind | FixedArrayKind, data: list[Any] | tuple[Any, ...]) -> array[Any] | None:
+    """Converts all numbers at once if they fit, instead of one by one; None if they do not."""
+    if isinstance(kind, FixedArrayKind) or not kind.type_code or not isinstance(kind.item, ScalarKind):
         return None
-    if not {kind.item.python}.issuperset(map(type, data)):
+    if not {kind.item.python_type}.issuperset(map(type, data)):
         return None
     try:
-        packed = array(kind.code, data)
+        packed = array(kind.type_code, data)
     except OverflowError:
         return None
     # A float32 overflows into an infinity that was not there before.

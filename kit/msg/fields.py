@@ -1,4 +1,4 @@
-"""What a field of a ROS message can hold: the kinds of the interface language, how each is checked and copied.
+"""The kinds of fields of a ROS message: how values of each kind are checked, copied and written in definitions.
 
 A message class names these in its annotations (``x: float64 = zero``), where a type checker sees the Python
 type and the class builder sees the kind. Python types are those of ROS 2's own Python messages: ``float``,
@@ -23,32 +23,32 @@ class FieldError(AssertionError):
     """A value that a message field cannot hold. ROS 2 Humble raises AssertionError too."""
 
 
-class Kind(Protocol):
+class FieldKind(Protocol):
     """One kind of field."""
 
     @property
-    def exact(self) -> type | None:
-        """Values of exactly this type need no further look."""
+    def exact_type(self) -> type | None:
+        """Values of exactly this type need no check; None: every value is checked."""
 
     @property
     def text(self) -> str:
-        """As a .msg file writes it: ``float64[36]``, ``geometry_msgs/Point[]``."""
+        """The kind as in a .msg file: ``float64[36]``, ``geometry_msgs/Point[]``."""
 
     @property
     def idl(self) -> str:
-        """As ``get_fields_and_field_types`` writes it: ``double[36]``, ``sequence<geometry_msgs/Point>``."""
+        """The kind as in ``get_fields_and_field_types``: ``double[36]``, ``sequence<geometry_msgs/Point>``."""
 
     def zero(self) -> Any:
-        """A new value as a message starts with."""
+        """A new default value."""
 
     def check(self, value: Any, name: str) -> Any:
-        """The value as the message keeps it. FieldError, naming the field, if it does not fit."""
+        """Returns the value as the message stores it. Raises FieldError, which names the field."""
 
     def copy(self, value: Any) -> Any:
-        """A kept value, independent of the original."""
+        """A copy of a stored value."""
 
 
-def _refusal(name: str, wanted: str, value: object, hint: str = "") -> FieldError:
+def _type_error(name: str, wanted: str, value: object, hint: str = "") -> FieldError:
     found = type(value).__name__
     if type(value).__module__ not in ("builtins", "array", type(value).__name__):
         found = f"{type(value).__module__}.{found}"
@@ -58,30 +58,30 @@ def _refusal(name: str, wanted: str, value: object, hint: str = "") -> FieldErro
 
 
 @dataclass(frozen=True, slots=True)
-class Scalar:
+class ScalarKind:
     """A number, truth value, text or byte."""
 
     text: str
     idl: str
-    python: type
+    python_type: type
     low: float = 0
     high: float = 0
     """Allowed range, both ends included; equal when there is none."""
-    code: str = ""
+    type_code: str = ""
     """Its ``array.array`` type code, if sequences of it are arrays."""
-    exact: type | None = None
+    exact_type: type | None = None
 
     def zero(self) -> Any:
-        return b"\0" if self.python is bytes else self.python()
+        return b"\0" if self.python_type is bytes else self.python_type()
 
     def copy(self, value: Any) -> Any:
         return value
 
     def check(self, value: Any, name: str) -> Any:
-        fits = isinstance(value, self.python)
+        fits = isinstance(value, self.python_type)
         if not fits:
-            raise _refusal(name, self.python.__name__, value, self._hint(value))
-        if self.python is bytes and len(value) != 1:
+            raise _type_error(name, self.python_type.__name__, value, self._hint(value))
+        if self.python_type is bytes and len(value) != 1:
             raise FieldError(f"The '{name}' field must be one byte, not {len(value)}")
         # A NaN or an infinity fits every float: hence the comparisons as they are.
         if self.low != self.high and (value < self.low or value > self.high) and value - value == 0:
@@ -91,27 +91,27 @@ class Scalar:
         return value
 
     def _hint(self, value: object) -> str:
-        if self.python is float and type(value) is int:
+        if self.python_type is float and type(value) is int:
             return f"write {value}.0 (ROS 2 does not convert whole numbers)"
         if type(value).__module__ == "numpy" or (
-            self.python in (int, float) and isinstance(value, (float, bool))
+            self.python_type in (int, float) and isinstance(value, (float, bool))
         ):
-            return f"write {self.python.__name__}(...) around the value"
-        if self.python is str:
+            return f"write {self.python_type.__name__}(...) around the value"
+        if self.python_type is str:
             return "write str(...) around the value"
-        if self.python is bool and isinstance(value, int):
+        if self.python_type is bool and isinstance(value, int):
             return f"write {bool(value)}"
         return ""
 
 
 @dataclass(frozen=True, slots=True)
-class Nested:
+class MessageKind:
     """Another message."""
 
     cls: type[Any]
     text: str
     """``geometry_msgs/Point``"""
-    exact: type | None = None
+    exact_type: type | None = None
 
     @property
     def idl(self) -> str:
@@ -128,11 +128,11 @@ class Nested:
             hint = ""
             if isinstance(value, type) and issubclass(value, self.cls):
                 hint = f"the class itself was given; write {value.__name__}()"
-            raise _refusal(name, self.cls.__name__, value, hint)
+            raise _type_error(name, self.cls.__name__, value, hint)
         return value
 
 
-def _listed(value: Any, name: str, wanted: str) -> list[Any]:
+def _to_list(value: Any, name: str, wanted: str) -> list[Any]:
     """The items of a sequence or set; text and numpy arrays are refused, as ROS 2 refuses them."""
     if isinstance(value, (Sequence, Set)) and not isinstance(value, str):
         return list(value)
@@ -141,22 +141,22 @@ def _listed(value: Any, name: str, wanted: str) -> list[Any]:
     hint = "write .tolist() after it" if hasattr(value, "tolist") else ""
     if isinstance(value, Iterable) and not hint and not isinstance(value, str):
         hint = "write list(...) around it"
-    raise _refusal(name, f"sequence of {wanted}", value, hint)
+    raise _type_error(name, f"sequence of {wanted}", value, hint)
 
 
-def _items(value: Any, name: str, item: Kind) -> list[Any]:
+def _check_items(value: Any, name: str, item: FieldKind) -> list[Any]:
     """Checked items of a sequence."""
     check = item.check
-    return [check(entry, f"{name}[{i}]") for i, entry in enumerate(_listed(value, name, item.idl))]
+    return [check(entry, f"{name}[{i}]") for i, entry in enumerate(_to_list(value, name, item.idl))]
 
 
 @dataclass(frozen=True, slots=True)
-class Many:
+class SequenceKind:
     """A sequence of any length, or of at most ``bound`` items."""
 
-    item: Kind
+    item: FieldKind
     bound: int | None = None
-    exact: type | None = None
+    exact_type: type | None = None
 
     @property
     def text(self) -> str:
@@ -169,31 +169,31 @@ class Many:
         )
 
     @property
-    def code(self) -> str:
+    def type_code(self) -> str:
         """The type code of the array it is kept in; empty if it is kept in a list."""
-        return self.item.code if isinstance(self.item, Scalar) else ""
+        return self.item.type_code if isinstance(self.item, ScalarKind) else ""
 
     def zero(self) -> Any:
-        return array(self.code) if self.code else []
+        return array(self.type_code) if self.type_code else []
 
     def copy(self, value: Any) -> Any:
-        if self.code:
+        if self.type_code:
             return value[:]
         copy = self.item.copy
         return [copy(entry) for entry in value]
 
     def check(self, value: Any, name: str) -> Any:
-        if self.code and type(value) is array:
-            if value.typecode != self.code:
+        if self.type_code and type(value) is array:
+            if value.typecode != self.type_code:
                 raise FieldError(
-                    f"The '{name}' field must be array('{self.code}', ...) ({self.item.text}), "
+                    f"The '{name}' field must be array('{self.type_code}', ...) ({self.item.text}), "
                     f"not array('{value.typecode}', ...)"
                 )
             kept: Any = value
-        elif self.code:
-            kept = _packed(self.code, _items(value, name, self.item), name)
+        elif self.type_code:
+            kept = _to_array(self.type_code, _check_items(value, name, self.item), name)
         else:
-            checked = _items(value, name, self.item)
+            checked = _check_items(value, name, self.item)
             # A list stays the caller's own, as in ROS 2: what is appended to it later is sent too.
             kept = value if type(value) is list else checked
         if self.bound is not None and len(kept) > self.bound:
@@ -201,7 +201,7 @@ class Many:
         return kept
 
 
-def _packed(code: str, items: list[Any], name: str) -> array[Any]:
+def _to_array(code: str, items: list[Any], name: str) -> array[Any]:
     try:
         return array(code, items)
     except OverflowError as problem:
@@ -209,21 +209,23 @@ def _packed(code: str, items: list[Any], name: str) -> array[Any]:
 
 
 @dataclass(frozen=True, slots=True)
-class Fixed:
+class FixedArrayKind:
     """Exactly ``length`` numbers.
 
-    Kept as an ``array.array`` until somebody reads the field, and from then on as a ``numpy.ndarray``: a
-    program that never looks at a covariance never loads numpy.
+    Stored as an ``array.array`` until the field is read, and from then on as a ``numpy.ndarray``, so that a program
+    that never reads a covariance never imports numpy.
     """
 
-    item: Scalar
+    item: ScalarKind
     length: int
-    exact: type | None = None
+    exact_type: type | None = None
     _zeros: array[Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(
-            self, "_zeros", array(self.item.code, bytes(self.length * struct.calcsize(self.item.code)))
+            self,
+            "_zeros",
+            array(self.item.type_code, bytes(self.length * struct.calcsize(self.item.type_code))),
         )
 
     @property
@@ -240,16 +242,16 @@ class Fixed:
     def copy(self, value: Any) -> Any:
         return value[:] if type(value) is array else value.copy()
 
-    def shown(self, value: Any) -> NDArray[Any]:
+    def as_ndarray(self, value: Any) -> NDArray[Any]:
         """The kept value as the numpy array that ROS 2 gives."""
         import numpy
 
-        return numpy.frombuffer(value, dtype=self.item.code).copy() if type(value) is array else value
+        return numpy.frombuffer(value, dtype=self.item.type_code).copy() if type(value) is array else value
 
     def check(self, value: Any, name: str) -> Any:
         # Not isinstance against numpy.ndarray, which would have to import numpy.
         if type(value).__name__ == "ndarray" and hasattr(value, "dtype"):
-            if value.dtype.char != self.item.code:
+            if value.dtype.char != self.item.type_code:
                 raise FieldError(
                     f"The '{name}' field must be a numpy array of {self.item.text}, not of {value.dtype}: "
                     f"write .astype('{self.item.text}')"
@@ -257,7 +259,7 @@ class Fixed:
             kept: Any = value
             count = value.size
         else:
-            kept = _packed(self.item.code, _items(value, name, self.item), name)
+            kept = _to_array(self.item.type_code, _check_items(value, name, self.item), name)
             count = len(kept)
         if count != self.length:
             raise FieldError(f"The '{name}' field must have exactly {self.length} items, not {count}")
@@ -265,14 +267,14 @@ class Fixed:
 
 
 @dataclass(frozen=True, slots=True)
-class Since:
+class AddedIn:
     """Marks a field that messages have only from this ROS 2 distribution on."""
 
     distro: str
 
 
 @dataclass(frozen=True, slots=True)
-class AtMost:
+class MaxItems:
     """Bounds the length of the sequence it marks."""
 
     length: int
@@ -289,16 +291,16 @@ zero: Any = _Zero()
 
 _FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
-FLOAT32 = Scalar("float32", "float", float, -_FLOAT32_MAX, _FLOAT32_MAX, "f")
-FLOAT64 = Scalar("float64", "double", float, code="d", exact=float)
-INT8 = Scalar("int8", "int8", int, -(2**7), 2**7 - 1, "b")
-INT16 = Scalar("int16", "int16", int, -(2**15), 2**15 - 1, "h")
-INT32 = Scalar("int32", "int32", int, -(2**31), 2**31 - 1, "i")
-INT64 = Scalar("int64", "int64", int, -(2**63), 2**63 - 1, "q")
-UINT8 = Scalar("uint8", "uint8", int, 0, 2**8 - 1, "B")
-UINT16 = Scalar("uint16", "uint16", int, 0, 2**16 - 1, "H")
-UINT32 = Scalar("uint32", "uint32", int, 0, 2**32 - 1, "I")
-UINT64 = Scalar("uint64", "uint64", int, 0, 2**64 - 1, "Q")
+FLOAT32 = ScalarKind("float32", "float", float, -_FLOAT32_MAX, _FLOAT32_MAX, "f")
+FLOAT64 = ScalarKind("float64", "double", float, type_code="d", exact_type=float)
+INT8 = ScalarKind("int8", "int8", int, -(2**7), 2**7 - 1, "b")
+INT16 = ScalarKind("int16", "int16", int, -(2**15), 2**15 - 1, "h")
+INT32 = ScalarKind("int32", "int32", int, -(2**31), 2**31 - 1, "i")
+INT64 = ScalarKind("int64", "int64", int, -(2**63), 2**63 - 1, "q")
+UINT8 = ScalarKind("uint8", "uint8", int, 0, 2**8 - 1, "B")
+UINT16 = ScalarKind("uint16", "uint16", int, 0, 2**16 - 1, "H")
+UINT32 = ScalarKind("uint32", "uint32", int, 0, 2**32 - 1, "I")
+UINT64 = ScalarKind("uint64", "uint64", int, 0, 2**64 - 1, "Q")
 
 float32 = Annotated[float, FLOAT32]
 float64 = Annotated[float, FLOAT64]
@@ -310,25 +312,25 @@ uint8 = Annotated[int, UINT8]
 uint16 = Annotated[int, UINT16]
 uint32 = Annotated[int, UINT32]
 uint64 = Annotated[int, UINT64]
-char = Annotated[int, Scalar("char", "uint8", int, 0, 2**8 - 1, "B")]
-byte = Annotated[bytes, Scalar("byte", "octet", bytes)]
-boolean = Annotated[bool, Scalar("bool", "boolean", bool, exact=bool)]
-string = Annotated[str, Scalar("string", "string", str, exact=str)]
+char = Annotated[int, ScalarKind("char", "uint8", int, 0, 2**8 - 1, "B")]
+byte = Annotated[bytes, ScalarKind("byte", "octet", bytes)]
+boolean = Annotated[bool, ScalarKind("bool", "boolean", bool, exact_type=bool)]
+string = Annotated[str, ScalarKind("string", "string", str, exact_type=str)]
 
-float32_array = Annotated["array[float]", Many(FLOAT32)]
-float64_array = Annotated["array[float]", Many(FLOAT64)]
-int8_array = Annotated["array[int]", Many(INT8)]
-int16_array = Annotated["array[int]", Many(INT16)]
-int32_array = Annotated["array[int]", Many(INT32)]
-int64_array = Annotated["array[int]", Many(INT64)]
-uint8_array = Annotated["array[int]", Many(UINT8)]
-uint16_array = Annotated["array[int]", Many(UINT16)]
-uint32_array = Annotated["array[int]", Many(UINT32)]
-uint64_array = Annotated["array[int]", Many(UINT64)]
+float32_array = Annotated["array[float]", SequenceKind(FLOAT32)]
+float64_array = Annotated["array[float]", SequenceKind(FLOAT64)]
+int8_array = Annotated["array[int]", SequenceKind(INT8)]
+int16_array = Annotated["array[int]", SequenceKind(INT16)]
+int32_array = Annotated["array[int]", SequenceKind(INT32)]
+int64_array = Annotated["array[int]", SequenceKind(INT64)]
+uint8_array = Annotated["array[int]", SequenceKind(UINT8)]
+uint16_array = Annotated["array[int]", SequenceKind(UINT16)]
+uint32_array = Annotated["array[int]", SequenceKind(UINT32)]
+uint64_array = Annotated["array[int]", SequenceKind(UINT64)]
 
-float64_4 = Annotated["NDArray[np.float64]", Fixed(FLOAT64, 4)]
-float64_9 = Annotated["NDArray[np.float64]", Fixed(FLOAT64, 9)]
-float64_12 = Annotated["NDArray[np.float64]", Fixed(FLOAT64, 12)]
-float64_36 = Annotated["NDArray[np.float64]", Fixed(FLOAT64, 36)]
-uint8_16 = Annotated["NDArray[np.uint8]", Fixed(UINT8, 16)]
-uint32_3 = Annotated["NDArray[np.uint32]", Fixed(UINT32, 3)]
+float64_4 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 4)]
+float64_9 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 9)]
+float64_12 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 12)]
+float64_36 = Annotated["NDArray[np.float64]", FixedArrayKind(FLOAT64, 36)]
+uint8_16 = Annotated["NDArray[np.uint8]", FixedArrayKind(UINT8, 16)]
+uint32_3 = Annotated["NDArray[np.uint32]", FixedArrayKind(UINT32, 3)]

@@ -1,4 +1,4 @@
-"""Flatland's interfaces, field for field as its ROS 2 port has them; marked as ours, since no ROS 2 brings them."""
+"""Flatland's interfaces, field for field as its ROS 2 port has them; marked as custom, since no ROS 2 installation has them."""
 
 from kit.msg.fields import boolean, float64, float64_array, string, zero
 from kit.msg.geometry_msgs import Pose2D
@@ -6,12 +6,12 @@ from kit.msg.message import Message, Service
 from kit.msg.std_msgs import Header
 
 
-class Vector2(Message, ours=True):
+class Vector2(Message, is_custom=True):
     x: float64 = zero
     y: float64 = zero
 
 
-class Collision(Message, ours=True):
+class Collision(Message, is_custom=True):
     """Two bodies that touch: none, one or two points; normals point from a, the reporting model, to b."""
 
     entity_a: string = zero
@@ -23,50 +23,50 @@ class Collision(Message, ours=True):
     contact_normals: list[Vector2] = zero
 
 
-class Collisions(Message, ours=True):
+class Collisions(Message, is_custom=True):
     header: Header = zero
     collisions: list[Collision] = zero
 
 
-class DebugTopicList(Message, ours=True):
+class DebugTopicList(Message, is_custom=True):
     topics: list[string] = zero
 
 
-class MoveModel(Service, ours=True):
-    class Request(Message, ours=True):
+class MoveModel(Service, is_custom=True):
+    class Request(Message, is_custom=True):
         name: string = zero
         pose: Pose2D = zero
 
-    class Response(Message, ours=True):
+    class Response(Message, is_custom=True):
         success: boolean = zero
         message: string = zero
 
 
-class SpawnModel(Service, ours=True):
-    class Request(Message, ours=True):
+class SpawnModel(Service, is_custom=True):
+    class Request(Message, is_custom=True):
         yaml_path: string = zero
         name: string = zero
         ns: string = zero
         pose: Pose2D = zero
 
-    class Response(Message, ours=True):
+    class Response(Message, is_custom=True):
         success: boolean = zero
         message: string = zero
 
 
-class DeleteModel(Service, ours=True):
-    class Request(Message, ours=True):
+class DeleteModel(Service, is_custom=True):
+    class Request(Message, is_custom=True):
         name: string = zero
 
-    class Response(Message, ours=True):
+    class Response(Message, is_custom=True):
         success: boolean = zero
         message: string = zero
 
 
-class ChangeRate(Service, ours=True):
-    class Request(Message, ours=True):
+class ChangeRate(Service, is_custom=True):
+    class Request(Message, is_custom=True):
         rate: float64 = zero
 
-    class Response(Message, ours=True):
+    class Response(Message, is_custom=True):
         success: boolean = zero
         message: string = zero

@@ -85,7 +85,7 @@ class Pose(Message):
     orientation: Quaternion = zero
 
 
-class Pose2D(Message, ours=True):
+class Pose2D(Message, is_custom=True):
     """Gone from ROS 2 since Lyrical, but Flatland's services speak it: so it is ours."""
 
     x: float64 = zero

@@ -32,7 +32,7 @@ DISTROS = ("humble", "iron", "jazzy", "kilted", "lyrical")
 """The ROS 2 distributions a definition can be written for, oldest first."""
 
 Interface = type[Message] | type[Service]
-"""What has a definition and a name."""
+"""A message or a service class."""
 
 
 class UnknownInterface(LookupError):

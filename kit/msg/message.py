@@ -32,7 +32,17 @@ from typing import (
     get_origin,
 )
 
-from kit.msg.fields import AtMost, FieldError, Fixed, Kind, Many, Nested, Scalar, Since, zero
+from kit.msg.fields import (
+    AddedIn,
+    FieldError,
+    FieldKind,
+    FixedArrayKind,
+    MaxItems,
+    MessageKind,
+    ScalarKind,
+    SequenceKind,
+    zero,
+)
 
 M = TypeVar("M", bound="Message")
 
@@ -42,7 +52,7 @@ class Field:
     """One field of a message class."""
 
     name: str
-    kind: Kind
+    kind: FieldKind
     default: Any = zero
     since: str = ""
     """The first ROS 2 distribution that has it; empty if all do."""
@@ -53,32 +63,34 @@ class Field:
 
     @property
     def has_zero_default(self) -> bool:
-        """Whether the definition gives no default of its own."""
+        """True if the definition has no default for it."""
         return self.default is zero
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A name and a value that a message class carries beside its fields."""
+    """A constant of a message class."""
 
     name: str
-    kind: Kind
+    kind: FieldKind
     value: Any
 
 
 # Reading a class body
 
 
-def _kind(annotation: Any) -> tuple[Kind, str]:
-    """The kind that an annotation names, and since which distribution the field exists."""
+def _kind(annotation: Any) -> tuple[FieldKind, str]:
+    """The kind of an annotation, and the first distribution with the field (empty: all)."""
     if get_origin(annotation) is Annotated:
-        kind: Kind | None = None
+        kind: FieldKind | None = None
         since = ""
         for extra in annotation.__metadata__:
-            if isinstance(extra, Since):
+            if isinstance(extra, AddedIn):
                 since = extra.distro
-            elif isinstance(extra, AtMost):
-                kind = replace(cast(Many, kind or _kind(annotation.__origin__)[0]), bound=extra.length)
+            elif isinstance(extra, MaxItems):
+                kind = replace(
+                    cast(SequenceKind, kind or _kind(annotation.__origin__)[0]), bound=extra.length
+                )
             else:
                 kind = extra
         return kind or _kind(annotation.__origin__)[0], since
@@ -87,9 +99,9 @@ def _kind(annotation: Any) -> tuple[Kind, str]:
             f"'{annotation}' is only the name of a field's type; a module of messages needs the type itself"
         )
     if get_origin(annotation) is list:
-        return Many(_kind(get_args(annotation)[0])[0]), ""
+        return SequenceKind(_kind(get_args(annotation)[0])[0]), ""
     package, _, name = annotation.__ros_type__.split("/")
-    return Nested(annotation, f"{package}/{name}", annotation), ""
+    return MessageKind(annotation, f"{package}/{name}", annotation), ""
 
 
 def _ros_type(module: str, qualname: str) -> str:
@@ -100,19 +112,25 @@ def _ros_type(module: str, qualname: str) -> str:
 
 
 def _accessor(field: Field, put: Callable[[Any, Any], None]) -> property:
-    kind, name, slot, exact, check = field.kind, field.name, field.slot, field.kind.exact, field.kind.check
+    kind, name, slot, exact, check = (
+        field.kind,
+        field.name,
+        field.slot,
+        field.kind.exact_type,
+        field.kind.check,
+    )
 
     def write(message: Message, value: Any) -> None:
         put(message, value if type(value) is exact else check(value, name))
 
-    if not isinstance(kind, Fixed):
+    if not isinstance(kind, FixedArrayKind):
         return property(attrgetter(slot), write)
-    shown = kind.shown
+    as_ndarray = kind.as_ndarray
 
     def read(message: Message) -> Any:
         value = getattr(message, slot)
         if type(value) is array:
-            value = shown(value)
+            value = as_ndarray(value)
             put(message, value)
         return value
 
@@ -122,14 +140,14 @@ def _accessor(field: Field, put: Callable[[Any, Any], None]) -> property:
 class MessageType(type):
     """Builds a message class from its annotations.
 
-    ``ours`` marks an interface that this project carries itself, not one it shares with every ROS 2;
+    ``is_custom`` marks an interface that this project defines, and that no ROS 2 installation has;
     ``ros_type`` names one that is not written in a module of ``kit.msg``.
     """
 
     __ros_type__: str
     __ros_fields__: tuple[Field, ...] = ()
     __ros_constants__: tuple[Constant, ...]
-    __ros_ours__: bool
+    __ros_custom__: bool
 
     def __new__(
         mcs,
@@ -137,7 +155,7 @@ class MessageType(type):
         bases: tuple[type, ...],
         namespace: dict[str, Any],
         *,
-        ours: bool = False,
+        is_custom: bool = False,
         ros_type: str = "",
     ) -> MessageType:
         if any(base.__ros_fields__ for base in bases if isinstance(base, MessageType)):
@@ -158,22 +176,22 @@ class MessageType(type):
         cls.__ros_type__ = ros_type or _ros_type(cls.__module__, cls.__qualname__)
         cls.__ros_fields__ = tuple(fields)
         cls.__ros_constants__ = tuple(constants)
-        cls.__ros_ours__ = ours
+        cls.__ros_custom__ = is_custom
         return cls
 
 
 @dataclass_transform(kw_only_default=True)
 class Message(metaclass=MessageType):
-    """What every message class has."""
+    """Base class of all messages."""
 
     __hash__ = None  # type: ignore[assignment]  # the idiom for "unhashable", as ROS 2's messages are
 
     def __init__(self, **fields: Any) -> None:
-        _compiled(type(self)).__init__(self, **fields)
+        _add_generated_methods(type(self)).__init__(self, **fields)
 
     def __deepcopy__(self, memo: object) -> Self:
         """An independent copy, quickly; ``copy.deepcopy`` calls this."""
-        return _compiled(type(self)).__deepcopy__(self, memo)
+        return _add_generated_methods(type(self)).__deepcopy__(self, memo)
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
@@ -187,7 +205,9 @@ class Message(metaclass=MessageType):
         return all(_equal(getattr(self, slot), getattr(other, slot)) for slot in slots)
 
     def __repr__(self) -> str:
-        shown = (f"{field.name}={_shown(getattr(self, field.name))}" for field in type(self).__ros_fields__)
+        shown = (
+            f"{field.name}={_format_value(getattr(self, field.name))}" for field in type(self).__ros_fields__
+        )
         return f"{type(self).__ros_type__.replace('/', '.')}({', '.join(shown)})"
 
 
@@ -195,14 +215,14 @@ class ServiceType(type):
     """Gives a service class its ROS name."""
 
     __ros_type__: str
-    __ros_ours__: bool
+    __ros_custom__: bool
 
     def __new__(
-        mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], *, ours: bool = False
+        mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], *, is_custom: bool = False
     ) -> ServiceType:
         cls = super().__new__(mcs, name, bases, namespace)
         cls.__ros_type__ = f"{cls.__module__.rpartition('.')[2]}/srv/{name}"
-        cls.__ros_ours__ = ours
+        cls.__ros_custom__ = is_custom
         return cls
 
 
@@ -222,13 +242,13 @@ def type_name(cls: type[Message] | type[Service]) -> str:
     return cls.__ros_type__
 
 
-def is_ours(cls: type[Message] | type[Service]) -> bool:
-    """Whether the definition is this project's own, rather than one that every ROS 2 installation has."""
-    return cls.__ros_ours__
+def is_custom_interface(cls: type[Message] | type[Service]) -> bool:
+    """True if this project defines the interface, and no ROS 2 installation has it."""
+    return cls.__ros_custom__
 
 
 def check_message(message: Message) -> None:
-    """Looks at every field again, at any depth. FieldError, with the field's path, for what does not fit.
+    """Checks every field again, at any depth. Raises FieldError with the path of the wrong field.
 
     Assignment is checked, but not what a program appends to a list that a message holds.
     """
@@ -236,14 +256,14 @@ def check_message(message: Message) -> None:
         _check_inside(getattr(message, field.slot), field.kind, field.name)
 
 
-def _check_inside(value: Any, kind: Kind, path: str) -> None:
-    if isinstance(kind, Fixed):  # its size and type cannot change in place
+def _check_inside(value: Any, kind: FieldKind, path: str) -> None:
+    if isinstance(kind, FixedArrayKind):  # its size and type cannot change in place
         return
     kind.check(value, path)
     if isinstance(value, Message):
         for field in type(value).__ros_fields__:
             _check_inside(getattr(value, field.slot), field.kind, f"{path}.{field.name}")
-    elif isinstance(kind, Many) and not kind.code:
+    elif isinstance(kind, SequenceKind) and not kind.type_code:
         for i, entry in enumerate(value):
             _check_inside(entry, kind.item, f"{path}[{i}]")
 
@@ -252,8 +272,8 @@ def _check_inside(value: Any, kind: Kind, path: str) -> None:
 # No name of a ROS field begins with an underscore, so the code's own names cannot clash with one.
 
 
-def _compiled(cls: type[M]) -> type[M]:
-    """Gives the class that defines the fields its constructor and copier, and returns it."""
+def _add_generated_methods(cls: type[M]) -> type[M]:
+    """Adds a generated constructor and copy method to the class, and returns the class."""
     cls = next(owner for owner in cls.__mro__ if "__ros_fields__" in vars(owner))
     names: dict[str, Any] = {
         "_type": type,
@@ -269,13 +289,17 @@ def _compiled(cls: type[M]) -> type[M]:
     for field in cls.__ros_fields__:
         name, slot, kind = field.name, field.slot, field.kind
         names[f"_default_{name}"] = (
-            kind.zero() if isinstance(kind, Scalar) and field.default is zero else field.default
+            kind.zero() if isinstance(kind, ScalarKind) and field.default is zero else field.default
         )
-        names |= {f"_check_{name}": kind.check, f"_exact_{name}": kind.exact, f"_start_{name}": kind.zero}
+        names |= {
+            f"_check_{name}": kind.check,
+            f"_exact_{name}": kind.exact_type,
+            f"_start_{name}": kind.zero,
+        }
         names[f"_copy_{name}"] = kind.copy
         parameters.append(f"{name}=_default_{name}, ")
-        body.append(f"    _self.{slot} = {_source_of_start(field)}")
-        copying.append(f"    _new.{slot} = {_source_of_copy(field)}")
+        body.append(f"    _self.{slot} = {_constructor_expression(field)}")
+        copying.append(f"    _new.{slot} = {_copy_expression(field)}")
     source = [
         f"def __init__(_self, *, {''.join(parameters)}check_fields=None, **_unknown):",
         "    if _unknown: _refuse(_cls, _unknown)",
@@ -292,32 +316,34 @@ def _compiled(cls: type[M]) -> type[M]:
     return cls
 
 
-def _source_of_start(field: Field) -> str:
-    """The expression that turns the constructor's argument into the kept value."""
+def _constructor_expression(field: Field) -> str:
+    """The expression that turns the constructor's argument into the stored value."""
     name, kind = field.name, field.kind
     checked = f"_check_{name}({name}, '{name}')"
-    if isinstance(kind, Scalar):
+    if isinstance(kind, ScalarKind):
         fits = f"_type({name}) is _exact_{name}"
         if kind.low != kind.high:
-            fits = f"_type({name}) is _{kind.python.__name__} and {kind.low!r} <= {name} <= {kind.high!r}"
+            fits = (
+                f"_type({name}) is _{kind.python_type.__name__} and {kind.low!r} <= {name} <= {kind.high!r}"
+            )
         return f"{name} if {fits} else {checked}"
     start = f"_start_{name}()"
-    if isinstance(kind, Nested):
+    if isinstance(kind, MessageKind):
         start = f"_exact_{name}()"
         checked = f"{name} if _type({name}) is _exact_{name} else {checked}"
-    elif isinstance(kind, Many):
-        start = f"_array('{kind.code}')" if kind.code else "[]"
+    elif isinstance(kind, SequenceKind):
+        start = f"_array('{kind.type_code}')" if kind.type_code else "[]"
     return f"{start} if {name} is _zero else {checked}"
 
 
-def _source_of_copy(field: Field) -> str:
-    """The expression that copies a kept value."""
+def _copy_expression(field: Field) -> str:
+    """The expression that copies a stored value."""
     kind, value = field.kind, f"_self.{field.slot}"
-    if isinstance(kind, Scalar):
+    if isinstance(kind, ScalarKind):
         return value
-    if isinstance(kind, Nested):
+    if isinstance(kind, MessageKind):
         return f"{value}.__deepcopy__(None)"
-    if isinstance(kind, Many) and isinstance(kind.item, Scalar):
+    if isinstance(kind, SequenceKind) and isinstance(kind.item, ScalarKind):
         return f"{value}[:]"
     return f"_copy_{field.name}({value})"
 
@@ -342,12 +368,12 @@ def _refuse_unknown(cls: type[Message], unknown: Iterable[str]) -> NoReturn:
 def _equal(a: Any, b: Any) -> bool:
     if type(a) is type(b) and not hasattr(a, "dtype"):
         return bool(a == b)
-    # Fixed arrays are numpy or not yet: compare what they hold.
+    # FixedArrayKind arrays are numpy or not yet: compare what they hold.
     if type(a) in (int, float) or type(b) in (int, float):
         return bool(a == b)
     return bool(list(a) == list(b))
 
 
-def _shown(value: Any) -> str:
-    """As rosidl shows it: arrays of numbers like lists, everything else by its own ``repr``."""
+def _format_value(value: Any) -> str:
+    """Formats a value as rosidl does: arrays of numbers like lists, all else by ``repr``."""
     return repr(value.tolist()) if type(value) is array else repr(value)

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar
 
 from kit.msg.builtin_interfaces import Time
 from kit.msg.fields import (
-    AtMost,
+    MaxItems,
     boolean,
     byte,
     float64,
@@ -79,8 +79,8 @@ class ParameterDescriptor(Message):
     additional_constraints: string = zero
     read_only: boolean = zero
     dynamic_typing: boolean = zero
-    floating_point_range: Annotated[list[FloatingPointRange], AtMost(1)] = zero
-    integer_range: Annotated[list[IntegerRange], AtMost(1)] = zero
+    floating_point_range: Annotated[list[FloatingPointRange], MaxItems(1)] = zero
+    integer_range: Annotated[list[IntegerRange], MaxItems(1)] = zero
 
 
 class ParameterEvent(Message):

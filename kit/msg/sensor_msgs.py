@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar
 
 from kit.msg.builtin_interfaces import Time
 from kit.msg.fields import (
-    Since,
+    AddedIn,
     boolean,
     float32,
     float32_array,
@@ -281,7 +281,7 @@ class Range(Message):
     min_range: float32 = zero
     max_range: float32 = zero
     range: float32 = zero
-    variance: Annotated[float32, Since("iron")] = zero
+    variance: Annotated[float32, AddedIn("iron")] = zero
 
 
 class RelativeHumidity(Message):

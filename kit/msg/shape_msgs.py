@@ -2,7 +2,7 @@
 
 from typing import Annotated, ClassVar
 
-from kit.msg.fields import AtMost, float64_4, float64_array, uint8, uint32_3, zero
+from kit.msg.fields import MaxItems, float64_4, float64_array, uint8, uint32_3, zero
 from kit.msg.geometry_msgs import Point, Polygon
 from kit.msg.message import Message
 
@@ -37,5 +37,5 @@ class SolidPrimitive(Message):
     PRISM_HEIGHT: ClassVar[uint8] = 0
 
     type: uint8 = zero
-    dimensions: Annotated[float64_array, AtMost(3)] = zero
+    dimensions: Annotated[float64_array, MaxItems(3)] = zero
     polygon: Polygon = zero

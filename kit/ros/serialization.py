@@ -14,9 +14,9 @@ import numpy as np
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from kit.msg.fields import Fixed, Kind, Many, Nested, Scalar
+from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.interfaces import definition, fields_of
-from kit.msg.message import Message, is_ours
+from kit.msg.message import Message, is_custom_interface
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -71,11 +71,11 @@ class Serializer:
     def _register(self, cls: type[Message]) -> None:
         """Adds the type, and those of its fields, to the type store if they are missing."""
         for field in fields_of(cls, self.distro):
-            item = field.kind.item if isinstance(field.kind, Many) else field.kind
-            if isinstance(item, Nested):
+            item = field.kind.item if isinstance(field.kind, SequenceKind) else field.kind
+            if isinstance(item, MessageKind):
                 self._register(item.cls)
         if cls.__ros_type__ not in self.typestore.types:
-            assert is_ours(cls), cls
+            assert is_custom_interface(cls), cls
             self.typestore.register(get_types_from_msg(definition(cls, self.distro), cls.__ros_type__))
 
     def _to_rosbags_for(self, cls: type[Message]) -> Convert:
@@ -89,41 +89,41 @@ class Serializer:
             return lambda message: make(structure_needs_at_least_one_member=0)
         return lambda message: make(**{name: step(getattr(message, slot)) for name, slot, step in steps})
 
-    def _to_rosbags_kind(self, kind: Kind) -> Convert:
-        if isinstance(kind, Nested):
+    def _to_rosbags_kind(self, kind: FieldKind) -> Convert:
+        if isinstance(kind, MessageKind):
             return self._to_rosbags_for(kind.cls)
-        if isinstance(kind, Fixed):
-            code = kind.item.code
+        if isinstance(kind, FixedArrayKind):
+            code = kind.item.type_code
             return lambda value: np.frombuffer(value, code)
-        if isinstance(kind, Many):
-            if kind.code:
-                code = kind.code
+        if isinstance(kind, SequenceKind):
+            if kind.type_code:
+                code = kind.type_code
                 return lambda value: np.frombuffer(value, code)
             item = self._to_rosbags_kind(kind.item)
-            if isinstance(kind.item, Scalar) and kind.item.python in (bool, bytes):
-                numbers = np.bool_ if kind.item.python is bool else np.int8
+            if isinstance(kind.item, ScalarKind) and kind.item.python_type in (bool, bytes):
+                numbers = np.bool_ if kind.item.python_type is bool else np.int8
                 return lambda values: np.array([item(value) for value in values], numbers)
             return lambda values: [item(value) for value in values]
-        assert isinstance(kind, Scalar)
-        return _signed_byte if kind.python is bytes else _identity
+        assert isinstance(kind, ScalarKind)
+        return _signed_byte if kind.python_type is bytes else _identity
 
     def _from_rosbags_for(self, cls: type[Message]) -> Convert:
         steps = [(field.name, self._from_rosbags_kind(field.kind)) for field in fields_of(cls, self.distro)]
         return lambda found: cls(**{name: step(getattr(found, name)) for name, step in steps})
 
-    def _from_rosbags_kind(self, kind: Kind) -> Convert:
-        if isinstance(kind, Nested):
+    def _from_rosbags_kind(self, kind: FieldKind) -> Convert:
+        if isinstance(kind, MessageKind):
             return self._from_rosbags_for(kind.cls)
-        if isinstance(kind, Fixed) or (isinstance(kind, Many) and kind.code):
-            code = kind.item.code if isinstance(kind, Fixed) else kind.code
+        if isinstance(kind, FixedArrayKind) or (isinstance(kind, SequenceKind) and kind.type_code):
+            code = kind.item.type_code if isinstance(kind, FixedArrayKind) else kind.type_code
             return lambda found: array(code, found.astype(code).tobytes())
-        if isinstance(kind, Many):
+        if isinstance(kind, SequenceKind):
             item = self._from_rosbags_kind(kind.item)
             return lambda found: [item(value) for value in found]
-        assert isinstance(kind, Scalar)
-        if kind.python is bytes:
+        assert isinstance(kind, ScalarKind)
+        if kind.python_type is bytes:
             return lambda found: bytes([found & 0xFF])
-        return bool if kind.python is bool else _identity
+        return bool if kind.python_type is bool else _identity
 
 
 def _identity(value: Any) -> Any:

@@ -11,7 +11,7 @@ import pytest
 
 from kit.host.codec import Codec, NotFiniteError
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
-from kit.msg.fields import FLOAT32, Fixed, Kind, Many, Nested, Scalar
+from kit.msg.fields import FLOAT32, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.geometry_msgs import Twist, TwistWithCovariance
 from kit.msg.interfaces import find_message, interface_names
 from kit.msg.message import Message
@@ -22,22 +22,22 @@ OURS, CHILDS = Codec(in_child=False), Codec(in_child=True)
 MESSAGES = [name for name in interface_names() if "/msg/" in name]
 
 
-def filled(kind: Kind, chance: random.Random) -> Any:
+def filled(kind: FieldKind, chance: random.Random) -> Any:
     """Some value of this kind."""
-    if isinstance(kind, Nested):
+    if isinstance(kind, MessageKind):
         return some_message(kind.cls, chance)
-    if isinstance(kind, Fixed):
+    if isinstance(kind, FixedArrayKind):
         return [filled(kind.item, chance) for _ in range(kind.length)]
-    if isinstance(kind, Many):
+    if isinstance(kind, SequenceKind):
         return [filled(kind.item, chance) for _ in range(chance.randint(0, min(3, kind.bound or 3)))]
-    assert isinstance(kind, Scalar)
-    if kind.python is float:
+    assert isinstance(kind, ScalarKind)
+    if kind.python_type is float:
         value = chance.gauss(0, 1000)
         return array("f", [value])[0] if kind is FLOAT32 else value
-    if kind.python is int:
+    if kind.python_type is int:
         return chance.randint(int(kind.low), int(kind.high))
     return {bool: chance.random() < 0.5, str: "Grüße\n\t\x1b", bytes: bytes([chance.randrange(256)])}[
-        kind.python
+        kind.python_type
     ]
 
 

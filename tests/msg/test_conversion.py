@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kit.msg.conversion import ConversionError, from_dict, to_dict
-from kit.msg.fields import Fixed, Kind, Many, Nested, Scalar
+from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.geometry_msgs import Twist
 from kit.msg.interfaces import PACKAGES, interfaces
 from kit.msg.message import Message
@@ -24,21 +24,21 @@ from kit.msg.std_msgs import Byte, ByteMultiArray, Float32MultiArray, UInt8Multi
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]
 
 
-def values_of(kind: Kind) -> st.SearchStrategy[Any]:
+def values_of(kind: FieldKind) -> st.SearchStrategy[Any]:
     """Values that a field of this kind takes."""
-    if isinstance(kind, Nested):
+    if isinstance(kind, MessageKind):
         return messages_of(kind.cls)
-    if isinstance(kind, Many):
+    if isinstance(kind, SequenceKind):
         return st.lists(values_of(kind.item), max_size=min(3, kind.bound or 3))
-    if isinstance(kind, Fixed):
+    if isinstance(kind, FixedArrayKind):
         return st.lists(values_of(kind.item), min_size=kind.length, max_size=kind.length)
-    assert isinstance(kind, Scalar)
-    if kind.python is int:
+    assert isinstance(kind, ScalarKind)
+    if kind.python_type is int:
         return st.integers(int(kind.low), int(kind.high))
-    if kind.python is float:
-        return st.floats(width=32 if kind.code == "f" else 64, allow_nan=False)
+    if kind.python_type is float:
+        return st.floats(width=32 if kind.type_code == "f" else 64, allow_nan=False)
     return {bool: st.booleans(), str: st.text(max_size=5), bytes: st.binary(min_size=1, max_size=1)}[
-        kind.python
+        kind.python_type
     ]
 
 

@@ -23,13 +23,13 @@ from kit.msg.interfaces import (
     interface_names,
     interfaces,
 )
-from kit.msg.message import Message, Service, is_ours, type_name
+from kit.msg.message import Message, Service, is_custom_interface, type_name
 from kit.msg.sensor_msgs import LaserScan, Range
 from kit.msg.std_srvs import SetBool
 
 STORES = MappingProxyType({"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY})
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]
-SHARED = [cls for cls in MESSAGES if not is_ours(cls) and "/msg/" in type_name(cls)]
+SHARED = [cls for cls in MESSAGES if not is_custom_interface(cls) and "/msg/" in type_name(cls)]
 
 
 def named(cls: type[Any]) -> str:

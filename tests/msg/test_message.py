@@ -14,7 +14,7 @@ from kit.msg.builtin_interfaces import Time
 from kit.msg.fields import FieldError
 from kit.msg.flatland_msgs import Collision, MoveModel
 from kit.msg.geometry_msgs import Pose, PoseArray, Quaternion, Twist, Vector3
-from kit.msg.message import Message, MessageType, is_ours, type_name
+from kit.msg.message import Message, MessageType, is_custom_interface, type_name
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan, NavSatStatus
 from kit.msg.std_msgs import Empty, Header, String
@@ -137,11 +137,11 @@ def test_services_have_requests_and_responses_and_no_instances() -> None:
 def test_what_is_ours_is_marked() -> None:
     from kit.msg.geometry_msgs import Pose2D
 
-    assert is_ours(Collision)
-    assert is_ours(MoveModel)
-    assert is_ours(Pose2D)
-    assert not is_ours(Twist)
-    assert not is_ours(SetBool)
+    assert is_custom_interface(Collision)
+    assert is_custom_interface(MoveModel)
+    assert is_custom_interface(Pose2D)
+    assert not is_custom_interface(Twist)
+    assert not is_custom_interface(SetBool)
 
 
 def test_odd_values_of_fields_named_like_builtins() -> None:

@@ -9,7 +9,7 @@ from kit.cli.ros.world_client import exit_with_error
 from kit.inspection.graph_text import definition_text
 from kit.inspection.message_text import TextStyle, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, interfaces
-from kit.msg.message import Message, is_ours
+from kit.msg.message import Message, is_custom_interface
 
 
 @click.group()
@@ -45,7 +45,7 @@ def show(name: str) -> None:
     kit ros interface show geometry_msgs/msg/Twist
     """
     cls = find_or_exit(find_interface, name)
-    if is_ours(cls):
+    if is_custom_interface(cls):
         click.echo("# Not a part of ROS 2: the kit's own, or Flatland's.")
     click.echo(definition_text(cls), nl=False)
 

@@ -11,7 +11,7 @@ import yaml
 from kit.cli.ros.world_client import exit_with_error
 from kit.msg.builtin_interfaces import Time
 from kit.msg.conversion import ConversionError, from_dict
-from kit.msg.fields import Nested
+from kit.msg.fields import MessageKind
 from kit.msg.interfaces import UnknownInterface
 from kit.msg.message import Message
 from kit.msg.std_msgs import Header
@@ -65,7 +65,7 @@ def _with_timestamps(cls: type[Message], content: Mapping[str, Any], now_ns: int
     dated = dict(content)
     for name, value in content.items():
         kind = kinds.get(name)
-        if not isinstance(kind, Nested):
+        if not isinstance(kind, MessageKind):
             continue
         if kind.cls is Header and value == "auto":
             dated[name] = {"stamp": now}

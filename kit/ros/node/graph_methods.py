@@ -1,4 +1,4 @@
-"""The methods of a node that look around in the graph."""
+"""The methods of a node that list the nodes, topics and services of the graph."""
 
 from __future__ import annotations
 
@@ -42,24 +42,24 @@ class NodeGraphMethods:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _existing(self.handle, node_name, node_namespace).publishers
+        ends = _find_node(self.handle, node_name, node_namespace).publishers
         return _names_and_types((end.topic_name, end.msg_type) for end in ends)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _existing(self.handle, node_name, node_namespace).subscriptions
+        ends = _find_node(self.handle, node_name, node_namespace).subscriptions
         return _names_and_types((end.topic_name, end.msg_type) for end in ends)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _existing(self.handle, node_name, node_namespace).services
+        ends = _find_node(self.handle, node_name, node_namespace).services
         return _names_and_types((end.service_name, end.srv_type) for end in ends)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Raises NodeNameNonExistentError."""
-        ends = _existing(self.handle, node_name, node_namespace).clients
+        ends = _find_node(self.handle, node_name, node_namespace).clients
         return _names_and_types((end.service_name, end.srv_type) for end in ends)
 
     def count_publishers(self, topic_name: str) -> int:
@@ -87,7 +87,7 @@ class NodeGraphMethods:
         return [TopicEndpointInfo.of(end, TopicEndpointTypeEnum.SUBSCRIPTION) for end in ends]
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The absolute name of what this node calls ``topic``, remapped unless ``only_expand``.
+        """The absolute name of ``topic`` for this node, remapped unless ``only_expand``.
 
         Raises InvalidTopicNameException.
         """
@@ -106,7 +106,7 @@ class NodeGraphMethods:
         return handle.arguments.service(service, handle.name, handle.namespace)
 
 
-def _existing(asking: NodeHandle, name: str, namespace: str) -> NodeEntry:
+def _find_node(asking: NodeHandle, name: str, namespace: str) -> NodeEntry:
     found = asking.graph.directory.find_node(name, namespace)
     if found is None:
         raise NodeNameNonExistentError(f"there is no node '{name}' in namespace '{namespace}'")

@@ -1,4 +1,4 @@
-"""Nodes."""
+"""Nodes: they make publishers, subscriptions, services, clients and timers."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ E = TypeVar("E", bound=Entity)
 
 
 class Node(NodeGraphMethods, NodeParameterMethods):
-    """A program's presence in the graph: it publishes, subscribes, serves, asks, keeps time and parameters.
+    """A program's participant in the graph: it has publishers, subscriptions, services, clients, timers, parameters.
 
     Its callbacks run in lock-step with the graph, or wherever an executor spins it.
     """
@@ -74,7 +74,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         arguments = parse_ros_arguments(cli_args or ())
         if use_global_arguments:
             arguments = arguments.followed_by(context.arguments)
-        self.__handle = _handle_for(self, context, arguments, node_name, namespace)
+        self.__handle = _make_handle(self, context, arguments, node_name, namespace)
         handle = self.__handle
         self.__group = MutuallyExclusiveCallbackGroup()
         self.__clock = ROSClock(handle.graph)
@@ -106,11 +106,11 @@ class Node(NodeGraphMethods, NodeParameterMethods):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.__handle.full_name}>"
 
-    # What it is
+    # Properties
 
     @property
     def handle(self) -> NodeHandle:
-        """What the library knows of it."""
+        """The internal record of the node."""
         return self.__handle
 
     @property
@@ -119,7 +119,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
 
     @property
     def executor(self) -> Executor | None:
-        """Who spins it, or last did."""
+        """The executor that it was added to last, or None."""
         return self.__handle.executor
 
     @executor.setter
@@ -175,7 +175,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
     def get_logger(self) -> RcutilsLogger:
         return self.__handle.logger
 
-    # What it makes
+    # Making entities
 
     def create_publisher(
         self,
@@ -192,7 +192,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
 
         Raises InvalidTopicNameException, TypeError or ValueError for what is wrong with the arguments.
         """
-        handle, profile = self.__living(), qos_or_depth(qos_profile)
+        handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
         publisher = publisher_class(
             handle, msg_type, self.resolve_topic_name(topic), profile, event_callbacks
@@ -216,7 +216,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
 
         Raises InvalidTopicNameException, TypeError or ValueError for what is wrong with the arguments.
         """
-        handle, profile = self.__living(), qos_or_depth(qos_profile)
+        handle, profile = self.__existing_handle(), qos_or_depth(qos_profile)
         _check_type(msg_type, MessageType, "message", "String from std_msgs.msg")
         if raw:
             raise NotImplementedError("raw subscriptions are not offered: nothing is serialized here")
@@ -229,7 +229,7 @@ class Node(NodeGraphMethods, NodeParameterMethods):
             profile,
             event_callbacks,
         )
-        return _keep(handle.subscriptions, subscription)
+        return _register(handle.subscriptions, subscription)
 
     def create_client(
         self,
@@ -240,11 +240,11 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         callback_group: CallbackGroup | None = None,
     ) -> Client[Any, Any]:
         """A client. Raises InvalidServiceNameException, TypeError."""
-        handle = self.__living()
+        handle = self.__existing_handle()
         _check_type(srv_type, ServiceType, "service", "Trigger from std_srvs.srv")
         name = self.resolve_service_name(srv_name)
         client: Client[Any, Any] = Client(handle, srv_type, name, callback_group or self.__group, qos_profile)
-        return _keep(handle.clients, client)
+        return _register(handle.clients, client)
 
     def create_service(
         self,
@@ -256,12 +256,12 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         callback_group: CallbackGroup | None = None,
     ) -> Service[Any, Any]:
         """A service answering with ``callback(request, response)``. Raises InvalidServiceNameException, TypeError."""
-        handle = self.__living()
+        handle = self.__existing_handle()
         _check_type(srv_type, ServiceType, "service", "Trigger from std_srvs.srv")
         name = self.resolve_service_name(srv_name)
         group = callback_group or self.__group
         service: Service[Any, Any] = Service(handle, srv_type, name, callback, group, qos_profile)
-        return _keep(handle.services, service)
+        return _register(handle.services, service)
 
     def create_timer(
         self,
@@ -272,18 +272,18 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         autostart: bool = True,
     ) -> Timer:
         """Calls back every ``timer_period_sec`` seconds, for the first time after one. ValueError if negative."""
-        handle = self.__living()
+        handle = self.__existing_handle()
         period = int(float(timer_period_sec) * S_TO_NS)
         if period < 0:
             raise ValueError(f"timer period must be non-negative, not {timer_period_sec}")
         group = callback_group or self.__group
-        return _keep(
+        return _register(
             handle.timers, Timer(handle, callback, group, period, clock or self.__clock, autostart=autostart)
         )
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """A rate of ``frequency`` Hz. ValueError if it is not positive."""
-        handle = self.__living()
+        handle = self.__existing_handle()
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         rate = Rate(handle, int(S_TO_NS / frequency))
@@ -294,13 +294,13 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """A guard condition; any thread may trigger it."""
-        handle = self.__living()
-        return _keep(handle.guards, GuardCondition(handle, callback, callback_group or self.__group))
+        handle = self.__existing_handle()
+        return _register(handle.guards, GuardCondition(handle, callback, callback_group or self.__group))
 
-    # What it gives up
+    # Destroying entities
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Whether it was this node's; likewise the others."""
+        """Destroys a publisher; False if it is not this node's. Likewise the others."""
         return _destroy(self.__handle.publishers, publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
@@ -322,19 +322,19 @@ class Node(NodeGraphMethods, NodeParameterMethods):
         return _destroy(self.__handle.rates, rate)
 
     def destroy_node(self) -> None:
-        """Leaves the graph, with everything it made."""
+        """Removes the node and everything it has entity from the graph."""
         handle = self.__handle
         if handle.destroyed:
             return
         if handle.executor is not None:
             handle.executor.remove_node(self)
-        for made in handle.all_entities():
-            made.destroy()
+        for entity in handle.all_entities():
+            entity.destroy()
         with handle.graph.lock:
             handle.destroyed = True
             handle.graph.directory.remove_node(handle)
 
-    def __living(self) -> NodeHandle:
+    def __existing_handle(self) -> NodeHandle:
         if self.__handle.destroyed:
             raise InvalidHandle(f"cannot use node {self.__handle.full_name}: it has been destroyed")
         return self.__handle
@@ -345,7 +345,7 @@ def create_graph_node(graph: Graph, name: str, namespace: str | None = None) -> 
     return Node(name, context=context_of(graph), namespace=namespace)
 
 
-def _handle_for(
+def _make_handle(
     node: Node, context: Context, arguments: RosArguments, name: str, namespace: str | None
 ) -> NodeHandle:
     """A handle with the names after remapping. Raises InvalidNodeNameException, InvalidNamespaceException."""
@@ -355,27 +355,27 @@ def _handle_for(
     return NodeHandle(node, context, arguments, arguments.node_name(name), arguments.namespace(name, given))
 
 
-def _check_type(interface: object, wanted: type, what: str, example: str) -> None:
-    if not isinstance(interface, wanted):
+def _check_type(interface: object, expected: type, what: str, example: str) -> None:
+    if not isinstance(interface, expected):
         found = interface.__name__ if isinstance(interface, (type, ModuleType)) else repr(interface)
         raise TypeError(f"a {what} class is needed here, like {example}, not {found}")
 
 
-def _keep(kept: list[E], entity: E) -> E:
+def _register(kept: list[E], entity: E) -> E:
     kept.append(entity)
     entity.callback_group.add_entity(entity)
     return entity
 
 
-def _destroy(kept: Sequence[Destroyable], made: Destroyable) -> bool:
-    found = made in kept
+def _destroy(kept: Sequence[Destroyable], entity: Destroyable) -> bool:
+    found = entity in kept
     if found:
-        made.destroy()
+        entity.destroy()
     return found
 
 
 def _as_message(record: LogRecord) -> LogMessage:
-    """A log line as ``/rosout`` carries it."""
+    """A log line as a ``/rosout`` message."""
     return LogMessage(
         stamp=Time(nanoseconds=record.time_ns).to_msg(),
         level=record.severity.value,

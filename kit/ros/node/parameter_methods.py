@@ -125,18 +125,18 @@ class NodeParameterMethods:
         return ListParametersResult(names=names, prefixes=groups)
 
     def set_parameters(self, parameter_list: list[Parameter]) -> list[SetParametersResult]:
-        """Sets one after the other, and says for each whether it worked and why not.
+        """Sets one after the other; each result says whether it succeeded, or why not.
 
         Raises ParameterNotDeclaredException before setting anything.
         """
         return [
             self.handle.parameters.set([parameter])
-            for parameter in _wanted(self.handle.parameters, parameter_list)
+            for parameter in _apply_pre_set_callbacks(self.handle.parameters, parameter_list)
         ]
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Sets all or none. Raises ParameterNotDeclaredException."""
-        return self.handle.parameters.set(_wanted(self.handle.parameters, parameter_list))
+        return self.handle.parameters.set(_apply_pre_set_callbacks(self.handle.parameters, parameter_list))
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
         """Raises ParameterNotDeclaredException."""
@@ -181,11 +181,11 @@ class NodeParameterMethods:
         self.handle.parameters.pre_set.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSet) -> None:
-        """``callback(parameters)`` returns a SetParametersResult, with which it may refuse."""
+        """``callback(parameters)`` returns a SetParametersResult, which may reject the change."""
         self.handle.parameters.on_set.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSet) -> None:
-        """``callback(parameters)`` is told of what has been set."""
+        """``callback(parameters)`` is called after they have been set."""
         self.handle.parameters.post_set.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSet) -> None:
@@ -198,8 +198,8 @@ class NodeParameterMethods:
         self.handle.parameters.post_set.remove(callback)
 
 
-def _wanted(store: ParameterStore, parameters: list[Parameter]) -> list[Parameter]:
-    """What is really to be set, once the pre-set callbacks have had their say."""
+def _apply_pre_set_callbacks(store: ParameterStore, parameters: list[Parameter]) -> list[Parameter]:
+    """The parameters to set, after the pre-set callbacks have changed the list."""
     for callback in store.pre_set:
         parameters = callback(parameters)
     store.check_known(parameters)
@@ -207,7 +207,7 @@ def _wanted(store: ParameterStore, parameters: list[Parameter]) -> list[Paramete
 
 
 def _is_below(name: str, prefix: str, depth: int) -> bool:
-    """Whether a parameter is the prefix itself, or at most ``depth`` parts below it."""
+    """True if a parameter is the prefix itself, or at most ``depth`` parts below it."""
     start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
     if name == prefix:
         return True

@@ -1,4 +1,4 @@
-"""Quality of service: what publishers offer, what subscriptions ask for, and whether the two go together."""
+"""Quality of service: policies, profiles, presets, and whether two profiles are compatible."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class InvalidQoSProfileException(Exception):
 
 
 class QoSPolicyKind(IntEnum):
-    """Names the policy on which two profiles disagree."""
+    """The policies, as flags."""
 
     INVALID = 1 << 0
     DURABILITY = 1 << 1
@@ -31,7 +31,7 @@ class QoSPolicyKind(IntEnum):
 
 
 class QoSPolicyEnum(IntEnum):
-    """A policy whose values also have short names, as the command line writes them."""
+    """A policy whose values also have short names, for the command line."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
@@ -180,7 +180,7 @@ class QoSProfile:
 
     @property
     def queue_length(self) -> int | None:
-        """How many messages a queue holds; None for KEEP_ALL."""
+        """The length of a queue; None for KEEP_ALL."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(1, self.depth)
 
 
@@ -249,7 +249,7 @@ def qos_or_depth(value: QoSProfile | int) -> QoSProfile:
 
 
 def first_incompatibility(offered: QoSProfile, requested: QoSProfile) -> QoSPolicyKind | None:
-    """The policy on which a publisher offers less than a subscription asks for; None if they go together."""
+    """The policy on which a publisher offers less than a subscription asks for; None if they are compatible."""
     if offered.is_best_effort and requested.reliability == ReliabilityPolicy.RELIABLE:
         return QoSPolicyKind.RELIABILITY
     if requested.is_transient_local and offered.durability not in (
@@ -257,18 +257,18 @@ def first_incompatibility(offered: QoSProfile, requested: QoSProfile) -> QoSPoli
         DurabilityPolicy.BEST_AVAILABLE,
     ):
         return QoSPolicyKind.DURABILITY
-    if _slower(offered.deadline, requested.deadline):
+    if _is_longer(offered.deadline, requested.deadline):
         return QoSPolicyKind.DEADLINE
     if (
         requested.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
         and offered.liveliness != LivelinessPolicy.MANUAL_BY_TOPIC
-    ) or _slower(offered.liveliness_lease_duration, requested.liveliness_lease_duration):
+    ) or _is_longer(offered.liveliness_lease_duration, requested.liveliness_lease_duration):
         return QoSPolicyKind.LIVELINESS
     return None
 
 
-def _slower(offered: Duration, requested: Duration) -> bool:
-    """Whether the promise is longer than asked for; zero means no limit."""
+def _is_longer(offered: Duration, requested: Duration) -> bool:
+    """True if the offered duration is longer than the requested one; zero means no limit."""
     limit = requested.nanoseconds
     return limit != 0 and (offered.nanoseconds == 0 or offered.nanoseconds > limit)
 
@@ -282,7 +282,7 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Whether a publisher and a subscription with these profiles would talk, and if not, why."""
+    """Whether messages pass between a publisher and a subscription with these profiles, and if not, why."""
     policy = first_incompatibility(publisher_qos, subscription_qos)
     if policy is None:
         return QoSCompatibility.OK, ""

@@ -1,4 +1,4 @@
-"""Points in time and spans of time, in whole nanoseconds."""
+"""Times and durations in whole nanoseconds."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _INT64_MAX = 2**63 - 1
 
 
 class ClockType(IntEnum):
-    """What a clock measures. In a simulation all three tell the simulation's time."""
+    """The type of a clock. In a simulation all three show the simulated time."""
 
     ROS_TIME = 1
     SYSTEM_TIME = 2
     STEADY_TIME = 3
 
 
-def _total(seconds: float, nanoseconds: float, what: str) -> int:
+def _to_nanoseconds(seconds: float, nanoseconds: float, what: str) -> int:
     # Whole seconds stay exact; as a float, a time of today is off by up to a hundred nanoseconds.
     total = seconds * S_TO_NS if isinstance(seconds, int) else int(seconds * S_TO_NS)
     total += int(nanoseconds)
@@ -37,7 +37,7 @@ class Duration:
     __slots__ = ("_nanoseconds",)
 
     def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
-        self._nanoseconds = _total(seconds, nanoseconds, "duration")
+        self._nanoseconds = _to_nanoseconds(seconds, nanoseconds, "duration")
 
     @property
     def nanoseconds(self) -> int:
@@ -86,7 +86,7 @@ class Time:
             raise ValueError("Seconds value must not be negative")
         if nanoseconds < 0:
             raise ValueError("Nanoseconds value must not be negative")
-        self._nanoseconds = _total(seconds, nanoseconds, "time point")
+        self._nanoseconds = _to_nanoseconds(seconds, nanoseconds, "time point")
         self._clock_type = clock_type
 
     @property
@@ -98,7 +98,7 @@ class Time:
         return self._clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Whole seconds, and the nanoseconds that remain."""
+        """The whole seconds and the remaining nanoseconds."""
         return divmod(self._nanoseconds, S_TO_NS)
 
     def to_msg(self) -> TimeMessage:

@@ -1,4 +1,4 @@
-"""An environment of gym's as one of gymnasium's: what stable-baselines3 looks for when it is given an old one."""
+"""Wraps gym environments for gymnasium; stable-baselines3 imports this module when it is given a gym environment."""
 
 from __future__ import annotations
 

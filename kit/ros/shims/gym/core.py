@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 Step = tuple[Any, float, bool, dict[str, Any]]
-"""Observation, reward, whether the episode is over, and what else there is to know."""
+"""Observation, reward, whether the episode is over, and further information."""
 
 
 class Env:
@@ -44,7 +44,7 @@ class Env:
 
 
 class Wrapper(Env):
-    """Passes on what it does not change."""
+    """Wraps an environment; attributes it does not define are those of the environment."""
 
     def __init__(self, env: Any) -> None:
         self.env = env
@@ -83,7 +83,7 @@ class Wrapper(Env):
 
 
 class ObservationWrapper(Wrapper):
-    """Subclasses say in ``observation`` what becomes of one."""
+    """Subclasses transform observations in ``observation``."""
 
     def reset(self) -> Any:
         return self.observation(self.env.reset())
@@ -94,7 +94,7 @@ class ObservationWrapper(Wrapper):
 
 
 class RewardWrapper(Wrapper):
-    """Subclasses say in ``reward`` what becomes of one."""
+    """Subclasses transform rewards in ``reward``."""
 
     def step(self, action: Any) -> Step:
         observation, reward, done, info = self.env.step(action)
@@ -102,7 +102,7 @@ class RewardWrapper(Wrapper):
 
 
 class ActionWrapper(Wrapper):
-    """Subclasses say in ``action`` what becomes of one."""
+    """Subclasses transform actions in ``action``."""
 
     def step(self, action: Any) -> Step:
         return self.env.step(self.action(action))

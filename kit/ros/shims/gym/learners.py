@@ -17,12 +17,12 @@ CHECKER = "stable_baselines3.common.env_checker"
 
 
 def adapt_checker() -> None:
-    """Has ``check_env`` look at an old environment the way a learner will see it."""
+    """Makes ``check_env`` check a gym environment in the wrapped form that a learner uses."""
     sys.meta_path.insert(0, _CheckerFinder())
 
 
 class _CheckerFinder:
-    """Lets the checker's module be found and loaded as ever, and then replaces one function. A finder and a loader."""
+    """An import finder and loader that loads the checker's module as usual, then replaces one function."""
 
     def __init__(self) -> None:
         self._loader: Any = None
@@ -49,7 +49,7 @@ class _CheckerFinder:
 
 def _checking(check: Callable[..., None]) -> Callable[..., None]:
     def check_env(env: Any, *arguments: Any, **options: Any) -> None:
-        """As stable-baselines3's; what it finds in an old environment is a warning, as most of it came later."""
+        """As in stable-baselines3, but problems of a gym environment are warnings, since most rules are newer than gym."""
         if not isinstance(env, Env):
             check(env, *arguments, **options)
             return

@@ -32,7 +32,7 @@ class KeyCode:
 
 
 class Listener:
-    """Hears nothing, and says so."""
+    """A listener that never receives a key; it logs that when it starts."""
 
     def __init__(self, on_press: Any = None, on_release: Any = None, **_: Any) -> None:
         self.running = False
