@@ -68,7 +68,7 @@ class GradingOptions:
     """Confinement level of programs; None takes the assignment's."""
     secret: bool = False
     """Whether to use the secret seeds too, for the grade."""
-    may_fall: bool = True
+    may_lower_level: bool = True
     """Whether practice, without secret seeds, may go on at a lower level where this machine supports none higher, if no
     level was requested."""
 
@@ -296,8 +296,8 @@ def open_grading(
             f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
             f"not at {int(level)}. `kit doctor` says what this machine can do."
         )
-    may_fall = options.may_fall and options.level is None and not options.secret
-    available = _available_level(level, may_fall=may_fall)
+    may_lower_level = options.may_lower_level and options.level is None and not options.secret
+    available = _available_level(level, may_lower_level=may_lower_level)
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
@@ -306,13 +306,13 @@ def open_grading(
             yield Grading(assignment, submission, collector, secret=options.secret)
 
 
-def _available_level(level: Level, *, may_fall: bool) -> Level:
+def _available_level(level: Level, *, may_lower_level: bool) -> Level:
     """The level to use: ``level``, or the highest below it that this machine has. Raises LevelUnavailable."""
     available = highest_level_up_to(level)
     if available == level:
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
-    if not may_fall:
+    if not may_lower_level:
         raise LevelUnavailable(message)
     sys.stderr.write(f"WARNING: {message} The program runs at level {int(available)}, for practice only.\n")
     return available

@@ -34,9 +34,9 @@ SECRET_FILE: Final = "secret.yaml"
 def read_assignment(folder: Path) -> Assignment:
     """Reads the assignment in ``folder``. Raises WorldError with all its mistakes."""
     problems = ProblemCollector()
-    sheet = folder / ASSIGNMENT_FILE
+    file = folder / ASSIGNMENT_FILE
     documents = WorldDocuments(AllowedRoot.of_folder(folder), {}, problems)
-    section = documents.section(sheet, SourceLocation(sheet))
+    section = documents.section(file, SourceLocation(file))
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     problems.raise_if_any()

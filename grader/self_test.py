@@ -91,8 +91,8 @@ def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[Unfair
 
 def _work_path(folder: Path, stem: str, assignment: Assignment) -> Path:
     """Returns the path of a work: a folder of this name, or a file of this name with the submission's ending."""
-    whole = folder / stem
-    return whole if whole.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
+    folder_path = folder / stem
+    return folder_path if folder_path.is_dir() else folder / f"{stem}{Path(assignment.submit).suffix}"
 
 
 def _try_starter(assignment: Assignment, file: Path, options: GradingOptions) -> WorkReport:

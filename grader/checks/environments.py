@@ -55,11 +55,11 @@ def complaint_check(
 def spaces(record: EnvironmentRecord) -> Iterator[str]:
     """The spaces say what an agent may do and what it sees; {actual} of that is right."""
     action, observation = (record.description.get(each, {}) for each in ("action_space", "observation_space"))
-    wanted = len(record.task.moves)
+    expected = len(record.task.moves)
     yield (
         ""
-        if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", wanted, 0)
-        else f"action_space should be Discrete({wanted}), one number for each action, and is {_space_text(action)}."
+        if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", expected, 0)
+        else f"action_space should be Discrete({expected}), one number for each action, and is {_space_text(action)}."
     )
     fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
     if not fits:
@@ -146,13 +146,13 @@ def sees(record: EnvironmentRecord) -> Iterator[str]:
 def _is_observation_right(
     value: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord
 ) -> bool:
-    numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
+    numbers, expected = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
     return (
         isinstance(numbers, list)
-        and len(numbers) == len(wanted)
+        and len(numbers) == len(expected)
         and all(
             isinstance(given, float) and math.isclose(given, right, abs_tol=OBSERVATION_TOLERANCE)
-            for given, right in zip(numbers, wanted, strict=True)
+            for given, right in zip(numbers, expected, strict=True)
         )
     )
 
@@ -161,17 +161,17 @@ def _explain_difference(
     value: Mapping[str, object], ranges: tuple[float, ...], record: EnvironmentRecord
 ) -> str:
     """Describes the first wrong value of an observation."""
-    numbers, wanted = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
-    if not isinstance(numbers, list) or len(numbers) != len(wanted):
+    numbers, expected = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
+    if not isinstance(numbers, list) or len(numbers) != len(expected):
         return f"an observation is {SECTORS} numbers."
     index = next(
         k
-        for k, (one, other) in enumerate(zip(numbers, wanted, strict=True))
+        for k, (one, other) in enumerate(zip(numbers, expected, strict=True))
         if not isinstance(one, float) or not math.isclose(one, other, abs_tol=OBSERVATION_TOLERANCE)
     )
     given = numbers[index]
     shown = f"{given:.3f}" if isinstance(given, float) else "no finite number"
-    return f"sector {index} should be {wanted[index]:.3f} m by the newest scan, and is {shown}."
+    return f"sector {index} should be {expected[index]:.3f} m by the newest scan, and is {shown}."
 
 
 @complaint_check(none=0.5, full=0.98, unit="%")
@@ -183,11 +183,11 @@ def acts(record: EnvironmentRecord) -> Iterator[str]:
         speed, turn = record.task.moves[step.action]
         gone = math.hypot(step.pose_after.x - step.pose_before.x, step.pose_after.y - step.pose_before.y)
         turned = (step.pose_after.theta - step.pose_before.theta + math.pi) % (2 * math.pi) - math.pi
-        wanted = speed * record.task.step_s, turn * record.task.step_s
-        tolerance = MOVE_TOLERANCE * max(abs(wanted[0]), abs(wanted[1]), 0.01)
-        if abs(gone - wanted[0]) > tolerance or abs(turned - wanted[1]) > tolerance:
+        expected = speed * record.task.step_s, turn * record.task.step_s
+        tolerance = MOVE_TOLERANCE * max(abs(expected[0]), abs(expected[1]), 0.01)
+        if abs(gone - expected[0]) > tolerance or abs(turned - expected[1]) > tolerance:
             yield (
-                f"step({step.action}) should drive {wanted[0]:.3f} m and turn {math.degrees(wanted[1]):.0f} degrees; "
+                f"step({step.action}) should drive {expected[0]:.3f} m and turn {math.degrees(expected[1]):.0f} degrees; "
                 f"the robot drove {gone:.3f} m and turned {math.degrees(turned):.0f}."
             )
         else:
@@ -292,12 +292,12 @@ def pays(record: EnvironmentRecord) -> Iterator[str]:
     ):
         step_records = record.episodes[name].step_records
         paid = step_records[-1].part(1).get("value") if step_records else None
-        fine = isinstance(paid, float) and paid * sign > 0
-        wanted = "more than 0" if sign > 0 else "less than 0"
+        is_right = isinstance(paid, float) and paid * sign > 0
+        expected = "more than 0" if sign > 0 else "less than 0"
         yield (
             ""
-            if fine
-            else f"The step that ends with {what} should be rewarded with {wanted}, not with {paid}."
+            if is_right
+            else f"The step that ends with {what} should be rewarded with {expected}, not with {paid}."
         )
 
 

@@ -35,14 +35,14 @@ class ContentParams:
 def has(world: WorldFacts, params: ContentParams) -> Iterator[str]:
     """Something that the task asks for is not there:"""
     models = [model.name for model in world.models]
-    for what, wanted, there in (
+    for what, expected, present in (
         ("layer", params.layers, world.layers),
         ("map", params.maps, tuple(walls.map for walls in world.walls)),
         ("model", params.models, tuple(models)),
     ):
-        for name in wanted:
-            if name not in there:
-                yield f"there is no {what} {quoted(name)} ({', '.join(there) or 'none at all'})"
+        for name in expected:
+            if name not in present:
+                yield f"there is no {what} {quoted(name)} ({', '.join(present) or 'none at all'})"
     for each in params.plugins:
         name, _, kind = each.partition(" ")
         model = world.model(name)
@@ -69,26 +69,26 @@ class WallParams:
 @world_check(WallParams)
 def walls(world: WorldFacts, params: WallParams) -> Iterator[str]:
     """The walls are not where they should be:"""
-    some = [walls for walls in world.walls if params.map in ("", walls.map)]
-    boxes = [walls.box for walls in some if walls.box is not None]
+    selected = [walls for walls in world.walls if params.map in ("", walls.map)]
+    boxes = [walls.box for walls in selected if walls.box is not None]
     if not boxes:
         yield f"no layer shows the walls of {params.map or 'a map'}"
         return
-    if params.source and (wrong := [walls.source for walls in some if walls.source != params.source]):
+    if params.source and (wrong := [walls.source for walls in selected if walls.source != params.source]):
         yield f"its walls come from {wrong[0]}, not from {params.source}"
     left, bottom, right, top = bounding_box(boxes)
-    for what, is_, wanted in (
+    for what, actual, expected in (
         ("wide", right - left, params.width),
         ("high", top - bottom, params.height),
     ):
-        if abs(is_ - wanted) > params.within:
-            yield f"it is {format_metres(is_)} {what}, not {format_metres(wanted)}"
-    for what, is_, wanted in (
+        if abs(actual - expected) > params.within:
+            yield f"it is {format_metres(actual)} {what}, not {format_metres(expected)}"
+    for what, actual, expected in (
         ("x of its left side", left, params.left),
         ("y of its lower side", bottom, params.bottom),
     ):
-        if abs(is_ - wanted) > params.within:
-            yield f"the {what} is {format_metres(is_)}, not {format_metres(wanted)}"
+        if abs(actual - expected) > params.within:
+            yield f"the {what} is {format_metres(actual)}, not {format_metres(expected)}"
 
 
 def bounding_box(boxes: list[Box]) -> Box:

@@ -36,8 +36,8 @@ def _sorted_pair(a: str, b: str) -> tuple[str, str]:
 @world_check(CollisionParams)
 def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
     """Who collides with whom is not as the task asks:"""
-    wanted, free = (
-        {_sorted_pair(*each.split(" - ")) for each in some} for some in (params.collide, params.free)
+    expected, free = (
+        {_sorted_pair(*each.split(" - ")) for each in names} for names in (params.collide, params.free)
     )
     why: dict[tuple[str, str], tuple[bool, str]] = {}
     for meeting in world.collisions:
@@ -46,10 +46,10 @@ def collisions(world: WorldFacts, params: CollisionParams) -> Iterator[str]:
             why[pair] = meeting.collides, meeting.why
     known = {name for pair in why for name in pair} | {each.name for each in world.models}
     known |= {each.map for each in world.walls}
-    for name in sorted({name for pair in wanted for name in pair} - known):
+    for name in sorted({name for pair in expected for name in pair} - known):
         yield f"there is no {quoted(name)} in this world: {suggestion(name, known)}"
     for pair, (collides, reason) in why.items():
-        if pair in free or collides == (pair in wanted):
+        if pair in free or collides == (pair in expected):
             continue
         a, b = pair
         if collides:
@@ -69,8 +69,8 @@ class SightParams:
 def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
     """Which laser sees whom is not as the task asks:"""
     for each in params.sees:
-        name, _, join_faults = each.partition(":")
-        wanted = {part.strip() for part in join_faults.split(",") if part.strip()}
+        name, _, names_text = each.partition(":")
+        expected = {part.strip() for part in names_text.split(",") if part.strip()}
         views: dict[str, tuple[bool, str]] = {}
         for view in world.sights:
             thing = _thing_name(view.thing, params.split)
@@ -79,10 +79,10 @@ def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
         if not views:
             yield f"there is no laser {quoted(name)}"
             continue
-        for thing in sorted(wanted - views.keys()):
+        for thing in sorted(expected - views.keys()):
             yield f"there is no {quoted(thing)} in this world: {suggestion(thing, tuple(views))}"
         for thing, (sees, why) in views.items():
-            if sees != (thing in wanted):
+            if sees != (thing in expected):
                 whom = "itself" if thing == name.partition("/")[0] else thing
                 yield (
                     f"{name} sees {whom} ({why}), and should not"

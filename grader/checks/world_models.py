@@ -63,21 +63,21 @@ def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
         yield f"{name} has no footprint, so it is nowhere"
         return
     left, bottom, right, top = part.box
-    for what, is_, wanted in (
+    for what, actual, expected in (
         ("is so long", right - left, params.length),
         ("is so wide", top - bottom, params.width),
         ("has its front at x", right, params.front),
         ("is at x", part.pose[0], params.x),
         ("is at y", part.pose[1], params.y),
     ):
-        if abs(is_ - wanted) > params.within:
-            yield f"{name} {what}: {format_metres(is_)}; {format_metres(wanted)} is wanted"
-    for what, flags, asked in (
+        if abs(actual - expected) > params.within:
+            yield f"{name} {what}: {format_metres(actual)}; {format_metres(expected)} is wanted"
+    for what, flags, setting in (
         ("collision", [each.collision for each in part.shapes], params.collision),
         ("sensor", [each.sensor for each in part.shapes], params.sensor),
     ):
-        if asked and any(flag != (asked == "yes") for flag in flags):
-            yield f"{name} has {what}: {str(asked != 'yes').lower()}"
+        if setting and any(flag != (setting == "yes") for flag in flags):
+            yield f"{name} has {what}: {str(setting != 'yes').lower()}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ class PluginTopicsParams:
 
 
 def _wrong_topics(world: WorldFacts, params: PluginTopicsParams, *, publishes: bool) -> Iterator[str]:
-    there = {
+    types = {
         end.topic: end.type
         for end in world.endpoints
         if end.publishes is publishes and params.model in ("", end.model)
@@ -136,13 +136,13 @@ def _wrong_topics(world: WorldFacts, params: PluginTopicsParams, *, publishes: b
     does, other = ("publishes", "subscribed") if publishes else ("subscribes", "published")
     for each in params.topics:
         topic, _, kind = each.partition(" ")
-        if topic in there:
-            if kind and there[topic] != kind:
-                yield f"{topic} carries {there[topic]}, not {kind}"
+        if topic in types:
+            if kind and types[topic] != kind:
+                yield f"{topic} carries {types[topic]}, not {kind}"
         elif topic in others:
             yield f"{topic} is only {other} by a plugin: nothing {does} it"
         else:
-            yield f"no plugin {does} {topic}: {suggestion(topic, tuple(there))}"
+            yield f"no plugin {does} {topic}: {suggestion(topic, tuple(types))}"
 
 
 @world_check(PluginTopicsParams)
@@ -183,13 +183,13 @@ def laser(world: WorldFacts, params: LaserCheckParams) -> Iterator[str]:
         yield (
             f"{params.laser} has {device.rays} rays, not {params.rays}: there are (max - min) / increment + 1"
         )
-    for what, is_, wanted in (
+    for what, actual, expected in (
         ("first ray points to", device.first, params.first),
         ("last ray points to", device.last, params.last),
         ("range is", device.range, params.range),
     ):
-        if abs(is_ - wanted) > params.within:
-            yield f"the {what} {is_:.4g}, not {wanted:.4g}"
+        if abs(actual - expected) > params.within:
+            yield f"the {what} {actual:.4g}, not {expected:.4g}"
 
 
 def _find_laser(world: WorldFacts, name: str) -> PluginFacts | str:

@@ -24,12 +24,12 @@ class PublishRateParams:
 @run_check(PublishRateParams)
 def rate(run: WorldRun, params: PublishRateParams) -> Iterator[str]:
     """A plugin speaks too often or too rarely:"""
-    count_faults = {heard.topic: heard.count for heard in run.run.topics}.get(params.topic, 0)
-    is_ = count_faults / run.run.seconds if run.run.seconds else 0.0
-    if not count_faults:
+    count = {statistics.topic: statistics.count for statistics in run.run.topics}.get(params.topic, 0)
+    actual = count / run.run.seconds if run.run.seconds else 0.0
+    if not count:
         yield f"nothing came on {params.topic}"
-    elif abs(is_ - params.rate) > params.within * params.rate:
-        yield f"{params.topic} came {is_:.3g} times a second, not {params.rate:g}"
+    elif abs(actual - params.rate) > params.within * params.rate:
+        yield f"{params.topic} came {actual:.3g} times a second, not {params.rate:g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class NoiseParams:
 @run_check(NoiseParams)
 def noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
     """The noise, measured while the world stood still, is not what was asked ({where}):"""
-    spread = {heard.topic: heard.spread for heard in run.run.topics}.get(params.topic)
+    spread = {statistics.topic: statistics.spread for statistics in run.run.topics}.get(params.topic)
     if spread is None:
         yield f"nothing came on {params.topic}"
     elif abs(spread - params.deviation) > params.within * params.deviation:

@@ -31,10 +31,10 @@ def number_problems(problems: Sequence[str]) -> Iterator[str]:
 
 def join_faults(faults: Iterable[str]) -> str:
     """Joins faults into one sentence; of many only the first."""
-    some = tuple(faults)
-    more = f"; and {len(some) - MAX_FAULTS_SHOWN} more" if len(some) > MAX_FAULTS_SHOWN else ""
-    said = "; ".join(some[:MAX_FAULTS_SHOWN]) + more
-    return said if not said or said[-1] in ".?" else f"{said}."
+    every_fault = tuple(faults)
+    more = f"; and {len(every_fault) - MAX_FAULTS_SHOWN} more" if len(every_fault) > MAX_FAULTS_SHOWN else ""
+    text = "; ".join(every_fault[:MAX_FAULTS_SHOWN]) + more
+    return text if not text or text[-1] in ".?" else f"{text}."
 
 
 MAX_FAULTS_SHOWN: Final = 4

@@ -101,7 +101,7 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
 
     assignment = options.load_assignment(folder)
     grading_options = GradingOptions(
-        options.to_level(level), secret=assignment.has_secrets, may_fall=not assignment.has_secrets
+        options.to_level(level), secret=assignment.has_secrets, may_lower_level=not assignment.has_secrets
     )
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
     failed = False

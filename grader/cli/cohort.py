@@ -68,7 +68,7 @@ def cohort(
     assignment = options.load_assignment(folder)
     queue = Queue(queue_folder.absolute())
     wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
-    grading_options = GradingOptions(wanted, secret, may_fall=False)
+    grading_options = GradingOptions(wanted, secret, may_lower_level=False)
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."

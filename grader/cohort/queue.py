@@ -78,7 +78,7 @@ class Queue:
         return level
 
     def grading_options(self) -> GradingOptions:
-        return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_fall=False)
+        return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_lower_level=False)
 
     def entries(self) -> tuple[QueueEntry, ...]:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])

@@ -166,7 +166,7 @@ class _EnvironmentExaminer:
         self._task = task
         self._seed = seed
         self.record = EnvironmentRecord(task)
-        assert task.scenario.robot is not None  # the sheet's reader sees to it
+        assert task.scenario.robot is not None  # checked when the assignment was read
         self._robot = task.scenario.robot
         self._answers: list[str] = []
         self._ranges: tuple[float, ...] = ()
@@ -218,7 +218,7 @@ class _EnvironmentExaminer:
         answer = self._call(f"step({action})", call="step", action=action)
         self.record.steps += 1
         case = self._task.scenario.case
-        assert case is not None  # the sheet's reader sees to it
+        assert case is not None  # checked when the assignment was read
         distance = self._runner.simulation.hull_distance(self._robot, case.target)
         returned, is_in_space = answer.get("returned", {}), answer.get("inside") is True
         touched = self._metrics.contact_steps(self._robot) > contact_steps
@@ -228,13 +228,15 @@ class _EnvironmentExaminer:
 
     def _make_pilot(self) -> Callable[[int], int]:
         """Returns a function that chooses actions along the waypoints: turn towards the next one, then drive."""
-        way = list(self._task.waypoints)
+        waypoints = list(self._task.waypoints)
 
         def choose(done: int) -> int:
             pose = self._pose()
-            while len(way) > 1 and math.hypot(way[0][0] - pose.x, way[0][1] - pose.y) < 0.15:
-                way.pop(0)
-            off = math.atan2(way[0][1] - pose.y, way[0][0] - pose.x) - pose.theta
+            while (
+                len(waypoints) > 1 and math.hypot(waypoints[0][0] - pose.x, waypoints[0][1] - pose.y) < 0.15
+            ):
+                waypoints.pop(0)
+            off = math.atan2(waypoints[0][1] - pose.y, waypoints[0][0] - pose.x) - pose.theta
             off = (off + math.pi) % (2 * math.pi) - math.pi
             return max(
                 range(len(self._task.moves)),

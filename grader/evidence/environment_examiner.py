@@ -55,8 +55,8 @@ def describe_space(value: object) -> PlainData:
 def is_observation_valid(env: Any, returned: object) -> bool:
     """True if the observation, the first of the returned values, lies in the observation space."""
     is_space = isinstance(getattr(env, "observation_space", None), gymnasium.Space)
-    seen = returned[0] if isinstance(returned, tuple) and returned else returned
-    return bool(is_space and env.observation_space.contains(seen))
+    observation = returned[0] if isinstance(returned, tuple) and returned else returned
+    return bool(is_space and env.observation_space.contains(observation))
 
 
 def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:

@@ -112,8 +112,8 @@ class LaunchRecord:
     @property
     def nodes(self) -> tuple[str, ...]:
         """Full names of the nodes, without the kit's own."""
-        there = () if self.graph is None else self.graph.nodes
-        return tuple(name for name in there if name not in KIT_NODES)
+        nodes = () if self.graph is None else self.graph.nodes
+        return tuple(name for name in nodes if name not in KIT_NODES)
 
     def explain(self, check: str, params: Any = None) -> str:
         return "" if self.explain_with is None or self.secret else str(self.explain_with(self, check, params))
@@ -128,13 +128,13 @@ KIT_NODES: Final = frozenset({"/flatland_server", "/TeleOpKeys", "/grader_querie
 @contextmanager
 def copied_package(package: Path, file: Path) -> Iterator[LaunchTarget]:
     """Copies the package into a temporary folder, with the student's launch file in it."""
-    with tempfile.TemporaryDirectory(prefix="launch-") as made:
-        folder = Path(made) / "package"
+    with tempfile.TemporaryDirectory(prefix="launch-") as temporary:
+        folder = Path(temporary) / "package"
         shutil.copytree(package, folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
         target = folder / file.name
         target.unlink(missing_ok=True)
         target.write_bytes(file.read_bytes())
-        Path(made).chmod(0o755)
+        Path(temporary).chmod(0o755)
         yield LaunchTarget(target, folder, (folder, SHARE_FOLDER))
 
 
@@ -158,7 +158,7 @@ def run_launch(
         return LaunchRecord(run, _without_folder(error.failure, target))
     try:
         launch.load()
-        seen = (
+        observed = (
             _run_with_world(run, launch, queries)
             if launch.world
             else _run_without_world(run, launch, queries)
@@ -176,7 +176,7 @@ def run_launch(
         arguments=arguments,
         failures=tuple(printable(each) for each in launch.failures),
         printed=tuple(_normalized_line(line, target) for line in printed[:MAX_LINES]),
-        **seen,
+        **observed,
     )
 
 
@@ -208,7 +208,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         _tick_until_over(session.runner, launch, ticks)
         traffic_recorder.stop()
         recording = recorder.recording()
-        ways = {
+        distances = {
             name: _driven_distance(recording.track(name)) for name in session.runner.simulation.model_names
         }
         drawn = "\n".join(
@@ -217,7 +217,7 @@ def _run_with_world(run: LaunchCase, launch: Launch, queries: ParameterQueries) 
         return {
             **_graph_record(launch.graph, traffic_recorder),
             "parameters": _parameters(launch.graph, session.runner, queries),
-            "distances": ways,
+            "distances": distances,
             "drawing": drawn,
             "steps": recording.ticks,
         }

@@ -147,7 +147,7 @@ def _move_results(
     driven = []
     for sign in (1, -1):
         # Between two walls that touch at a corner nothing passes.
-        way = ((x + sign * dx, y + sign * dy), (x + sign * dx, y), (x, y + sign * dy))
-        free = all(cell in number for cell in way)
-        driven.append((number[way[0]] if free else here, heading, not free))
+        entered = ((x + sign * dx, y + sign * dy), (x + sign * dx, y), (x, y + sign * dy))
+        free = all(cell in number for cell in entered)
+        driven.append((number[entered[0]] if free else here, heading, not free))
     return (*driven, (here, (heading + 1) % HEADINGS, False), (here, (heading - 1) % HEADINGS, False))

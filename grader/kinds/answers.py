@@ -123,9 +123,9 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 def _questions(section: Section) -> Iterator[AnswerQuestion]:
     for name in tuple(section.keys()):
         each = section.section(name)
-        made = AnswerQuestion(name, each.text("ask"), each.texts("choices", ()), each.flag("list", False))
+        question = AnswerQuestion(name, each.text("ask"), each.texts("choices", ()), each.flag("list", False))
         each.finish()
-        yield made
+        yield question
     section.finish()
 
 
@@ -137,9 +137,9 @@ def _key(section: Section, question: AnswerQuestion) -> AnswerKey:
             each.error(f"{quoted(value)} is none of the choices", "right")
     given = each.section("feedback", None)
     feedback = {} if given is None else {_normalized(name): given.text(name) for name in tuple(given.keys())}
-    made = AnswerKey(right, each.number("within", 0.0, minimum=0), question.is_list, feedback)
+    key = AnswerKey(right, each.number("within", 0.0, minimum=0), question.is_list, feedback)
     each.finish()
-    return made
+    return key
 
 
 def collect(

@@ -49,13 +49,13 @@ def collect(
 def trials(files: AssignmentFiles) -> Iterator[Trial]:
     """Yields the trials of the assignment."""
     section, secrets, folder = files.public, files.secret, files.folder
-    seen: set[str] = set()
+    names: set[str] = set()
     hidden = None if secrets is None else secrets.section("seeds")
     for each in section.sections("trials", at_least=1):
         name = each.name("name")
-        if name in seen:
+        if name in names:
             each.error(f"a trial named {quoted(name)} already exists", "name")
-        seen.add(name)
+        names.add(name)
         scenario = read_scenario(each, folder)
         time_s = each.number("time", 60.0, above=0, maximum=MAX_EPISODE_S)
         seeds = _seeds(each, "seeds", (1, 2, 3))
@@ -123,8 +123,10 @@ def read_scenario(section: Section, folder: Path) -> Scenario | None:
     if target is None:
         return scenario
     start = scenario.start or Pose()
-    made = MapCase(section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
-    return replace(scenario, case=made)
+    target_case = MapCase(
+        section.name("name"), start, target, radius, (0.0, 0.0), (0.0, 0.0), False, "", None
+    )
+    return replace(scenario, case=target_case)
 
 
 KIND: Final = Kind((".py",), CHECKS, read_settings, collect)

@@ -107,12 +107,12 @@ def collect(
 ) -> AbstractContextManager[EvidenceCollector]:
     """Replays the recording once. No program of the student's is involved."""
     try:
-        seen: Evidence = _rerun(assignment.task, _load_checked(assignment.task, file))
+        evidence: Evidence = _rerun(assignment.task, _load_checked(assignment.task, file))
     except (RecordingError, OSError, MemoryError, RecursionError, OverflowError) as error:
         # The path of the temporary copy means nothing to the student.
         message = printable(str(error).replace(f"{file}", file.name))
-        seen = EvidenceRecord(failure=Failure(FailureKind.IMPORT, message or "It cannot be read."))
-    return nullcontext(FixedEvidence([seen], options.level))
+        evidence = EvidenceRecord(failure=Failure(FailureKind.IMPORT, message or "It cannot be read."))
+    return nullcontext(FixedEvidence([evidence], options.level))
 
 
 def _load_checked(task: HandDriveTask, file: Path) -> Recording:
@@ -240,7 +240,7 @@ class _Rerun:
             return False
         name, pose = arguments
         return name == self._scenario.robot and all(
-            abs(wanted - there) <= HOME_TOLERANCE for wanted, there in zip(pose, home, strict=True)
+            abs(wanted - home_value) <= HOME_TOLERANCE for wanted, home_value in zip(pose, home, strict=True)
         )
 
 

@@ -143,13 +143,13 @@ def free_of_traps(drive: FieldDrive, params: NoParams) -> float:
 def covers(drive: FieldDrive, params: CoverageParams) -> float:
     """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
     assert drive.course is not None
-    own = _line_charges(drive.course.layout.charges)
+    charge_lines = _line_charges(drive.course.layout.charges)
     wanted = _line_charges(derive_charges(drive.course.grid))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
         length
         for each, length in zip(wanted, lengths, strict=True)
-        if any(_is_same_segment(each, other, params.within) for other in own)
+        if any(_is_same_segment(each, other, params.within) for other in charge_lines)
     ]
     return math.fsum(covered) / math.fsum(lengths) if lengths else math.nan
 
@@ -322,11 +322,11 @@ class _FieldRun:
 
     def _decide(self) -> None:
         poses = [Pose(*self._simulation.pose(name)) for name in self._scenario.partners]
-        stands = self.metrics.total_bumps > 0
+        has_bumped = self.metrics.total_bumps > 0
         commands = control_step(poses, self._course.target, self._course.layout).commands
         for robot, (forward, turn) in zip(self._course.robots, commands, strict=True):
-            fine = math.isfinite(forward) and math.isfinite(turn) and not stands
-            command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if fine else Twist()
+            is_valid = math.isfinite(forward) and math.isfinite(turn) and not has_bumped
+            command = Twist(linear=Vector3(x=forward), angular=Vector3(z=turn)) if is_valid else Twist()
             self._runner.accept(robot.commands, command)
 
 

@@ -131,17 +131,17 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 
 
 def _function_specs(section: Section) -> Iterator[FunctionSpec]:
-    comparison: set[str] = set()
+    names: set[str] = set()
     for each in section.sections("functions", at_least=1):
-        made = FunctionSpec(each.name("name"), each.number("within", 1e-6, minimum=0))
+        spec = FunctionSpec(each.name("name"), each.number("within", 1e-6, minimum=0))
         each.finish()
-        if not made.name.isidentifier() or made.name.startswith("_"):
+        if not spec.name.isidentifier() or spec.name.startswith("_"):
             each.error(f"{quoted('name')} must be a function's name", "name")
-        elif made.name in comparison:
-            each.error(f"a function named {quoted(made.name)} is asked for already", "name")
+        elif spec.name in names:
+            each.error(f"a function named {quoted(spec.name)} is asked for already", "name")
         else:
-            yield made
-        comparison.add(made.name)
+            yield spec
+        names.add(spec.name)
 
 
 def load_reference(file: Path) -> ModuleType:

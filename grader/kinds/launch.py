@@ -235,14 +235,14 @@ def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
         values = {} if given is None else {key: given.text(key) for key in given.keys()}  # noqa: SIM118 - no mapping
         if given is not None:
             given.finish()
-        made = LaunchCase(
+        case = LaunchCase(
             each.name("name"),
             each.number("time", 4.0, above=0, maximum=MAX_RUN_S),
             MappingProxyType(values),
             secret,
         )
         each.finish()
-        yield made
+        yield case
 
 
 class LaunchCollector:

@@ -186,7 +186,7 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     if list(edges) != sorted(set(edges)) or not all(0 < edge < 1 for edge in edges):
         section.error(f"{quoted('edges')} must rise, each between 0 and 1", "edges")
     algorithm = section.text("algorithm", budget.algorithms[0], choices=budget.algorithms)
-    made = TrainingSettings(
+    settings = TrainingSettings(
         algorithm=algorithm,
         learning_rate=_schedule(section, "learning_rate", (0.2, 0.02)),
         exploration=_schedule(section, "exploration", (0.3, 0.02)),
@@ -202,10 +202,10 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
         keeps_best=section.choice("keep", {"best": True, "newest": False}, "newest"),
         steps=steps,
     )
-    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].neural and made.order is CaseOrder.APART:
+    if algorithm in ALGORITHMS and ALGORITHMS[algorithm].neural and settings.order is CaseOrder.APART:
         section.error("one case after the other is for tables only", "order")
     section.finish()
-    return made
+    return settings
 
 
 def _schedule(section: Section, key: str, default: tuple[float, float]) -> LinearSchedule:

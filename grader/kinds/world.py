@@ -86,8 +86,8 @@ def _read_spec(section: Section, folder: Path) -> WorldRunSpec:
     file = ""
     if driver:
         try:
-            own = folder / driver
-            file = str(own if own.is_file() else find_controller(driver).file)
+            driver_file = folder / driver
+            file = str(driver_file if driver_file.is_file() else find_controller(driver).file)
         except LookupError as error:
             section.error(str(error), "driver")
     target = section.point("target") if section.has("target") else None

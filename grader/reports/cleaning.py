@@ -22,14 +22,14 @@ def plain(text: str, limit: int = MAX_TEXT) -> str:
     """Returns lines of printable characters: no terminal escapes or other control characters, no marks that change
     the writing direction, and nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
     cut = text if len(text) <= limit else text[:limit] + CUT_MARK
-    kept = "".join(
+    text_left = "".join(
         c if c == "\n" or c.isprintable() or unicodedata.category(c) == "Zs" else "\N{REPLACEMENT CHARACTER}"
         for c in cut
     )
     previous = ""
-    while kept != previous:  # what is left of ":::" must not be a command either
-        previous, kept = kept, _COMMAND.sub(lambda found: " ".join(found.group()), kept)
-    return kept
+    while text_left != previous:  # what is left of ":::" must not be a command either
+        previous, text_left = text_left, _COMMAND.sub(lambda found: " ".join(found.group()), text_left)
+    return text_left
 
 
 def clean_line(text: str, limit: int = 300) -> str:

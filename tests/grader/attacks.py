@@ -299,7 +299,9 @@ def attempt(attack: Attack, level: Level, folder: Path) -> Outcome:
     assignment = read_assignment(assignment_folder)
     try:
         result = grade(
-            assignment, read_submission(handed, assignment.submit), GradingOptions(level, may_fall=False)
+            assignment,
+            read_submission(handed, assignment.submit),
+            GradingOptions(level, may_lower_level=False),
         )
     except SubmissionRefused as refused:
         return Outcome(None, str(refused), "")

@@ -74,10 +74,10 @@ def without_level_1(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("kind", ASSIGNMENTS)
 @pytest.mark.parametrize("may_fall", [True, False])
 def test_a_program_that_blames_the_machine_is_confined_and_fails(
-    tmp_path: Path, kind: str, may_fall: bool
+    tmp_path: Path, kind: str, may_lower_level: bool
 ) -> None:
     source = REFUSING + "\ndef reward(reached): return 1.0\n"
-    result = graded(tmp_path, kind, Level.FILTERED, source, GradingOptions(may_fall=may_fall))
+    result = graded(tmp_path, kind, Level.FILTERED, source, GradingOptions(may_lower_level=may_lower_level))
     assert (result.level, result.verdict, result.points) == (1, GradingVerdict.FAIL, 0.0)
     assert result.tests[0].status is CriterionStatus.PROTOCOL_ERROR
     assert not any("GOT" in test.log + test.rationale for test in result.tests)
@@ -94,7 +94,7 @@ def test_practice_falls_loudly(tmp_path: Path, capsys: pytest.CaptureFixture[str
 @pytest.mark.usefixtures("without_level_1")
 @pytest.mark.parametrize(
     "terms",
-    [GradingOptions(secret=True), GradingOptions(Level.FILTERED), GradingOptions(may_fall=False)],
+    [GradingOptions(secret=True), GradingOptions(Level.FILTERED), GradingOptions(may_lower_level=False)],
     ids=["secret", "asked", "class"],
 )
 def test_a_grade_never_falls(tmp_path: Path, terms: GradingOptions) -> None:

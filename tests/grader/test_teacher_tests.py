@@ -148,7 +148,7 @@ def test_a_cohort_counts_them(tmp_path: Path) -> None:
         queue,
         handed,
         read_assignment(folder_with(tmp_path, OWN)),
-        GradingOptions(Level.LIMITED, may_fall=False),
+        GradingOptions(Level.LIMITED, may_lower_level=False),
     )
     grade_job(queue, *queue.waiting())
     ada, link = gradebook_rows(queue)

@@ -50,8 +50,8 @@ def read_world_facts(file: Path) -> tuple[WorldFacts, World | None]:
 
 def _without_folder(problem: str, folder: Path) -> str:
     """Removes from a problem the path of the temporary copy, and advice that only applies to a command line."""
-    said = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
-    return said.removesuffix(": allow a wider one as root")
+    text = problem.replace(f"{folder}/", "").replace(f'the folder "{folder}"', "the world's folder")
+    return text.removesuffix(": allow a wider one as root")
 
 
 def _world_facts(world: World, simulation: Simulation) -> WorldFacts:
@@ -130,12 +130,12 @@ def _shape_facts(footprint: records.Footprint) -> ShapeFacts:
 
 
 def _joint_facts(joint: records.Joint, poses: dict[str, Pose]) -> JointFacts:
-    one, other = joint.anchors
+    first, second = joint.anchors
     return JointFacts(
         joint.name,
         joint.kind,
-        (one.body, other.body),
-        (poses[one.body].transform_point(*one.point), poses[other.body].transform_point(*other.point)),
+        (first.body, second.body),
+        (poses[first.body].transform_point(*first.point), poses[second.body].transform_point(*second.point)),
     )
 
 
@@ -176,12 +176,12 @@ def _scene_bodies(simulation: Simulation) -> Iterator[SceneBody]:
     """Yields one body per model: its footprints at the pose of its first body."""
     outlines = simulation.outlines()
     for name in simulation.model_names:
-        own = [each for each in outlines if each.model == name]
+        model_outlines = [each for each in outlines if each.model == name]
         yield SceneBody(
             name,
             simulation.pose(name),
-            tuple(np.array(each.points) for each in own if not each.radius),
-            tuple(Disc(*each.points[0], each.radius) for each in own if each.radius),
+            tuple(np.array(each.points) for each in model_outlines if not each.radius),
+            tuple(Disc(*each.points[0], each.radius) for each in model_outlines if each.radius),
             is_robot=any(end.direction == "subscribe" for end in simulation.model_endpoints(name)),
         )
 

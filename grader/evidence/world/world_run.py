@@ -100,10 +100,10 @@ class PathRecorder(Observer):
         poses = {(body.model, body.body): body.pose for body in simulation.state().bodies}
         for model in self._world.models:
             for joint in model.joints:
-                one, other = (
+                first, second = (
                     poses[model.name, end.body].transform_point(*end.point) for end in joint.anchors
                 )
-                if (gap := math.dist(one, other)) > self.joint_gap:
+                if (gap := math.dist(first, second)) > self.joint_gap:
                     self.joint_gap, self.widest_joint = gap, joint.name
 
 
@@ -113,8 +113,8 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     simulation = Simulation(world, seed=spec.seed, step_size=STEP)
     runner = Runner(simulation, graph)
     driving = [m.name for m in world.models if any(p.type.endswith("Drive") for p in m.plugins)]
-    wanted = spec.robot or next(iter(driving), "")
-    model = next((each for each in world.models if each.name == wanted), None)
+    model_name = spec.robot or next(iter(driving), "")
+    model = next((each for each in world.models if each.name == model_name), None)
     case = None
     if spec.target is not None and model is not None:
         case = MapCase("", model.pose, spec.target, spec.radius, (0.0, 0.0), (0.0, 0.0), False, "", None)
@@ -125,12 +125,12 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
         TopicRecorder(graph),
     )
     runner.observers += [metrics, path_recorder]
-    problem, ticks = _drive(runner, metrics, spec, scenario, wanted in driving), simulation.tick
+    problem, ticks = _drive(runner, metrics, spec, scenario, model_name in driving), simulation.tick
     topic_recorder.stop()
     score, radius = metrics.metrics, 0.0 if model is None else model_width(model) / 2
-    way = closed = False
+    is_reachable = is_enclosed = False
     if model is not None:
-        way, closed = search_path(all_wall_segments(world), model.pose[:2], spec.target, radius)
+        is_reachable, is_enclosed = search_path(all_wall_segments(world), model.pose[:2], spec.target, radius)
     disc = None if spec.target is None else Disc(*spec.target, spec.radius)
     return RunFacts(
         problem=problem,
@@ -144,8 +144,8 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
         bumps=score.bumps,
         joint_gap=path_recorder.joint_gap,
         widest_joint=path_recorder.widest_joint,
-        is_reachable=way,
-        is_enclosed=closed,
+        is_reachable=is_reachable,
+        is_enclosed=is_enclosed,
         picture=draw_world(
             world,
             simulation,
@@ -163,8 +163,8 @@ def _drive(
         node_process: NodeProcess | None = None
         if spec.driver:
             if scenario.driven is None or not drives:
-                wanted = f"The model {spec.robot}" if spec.robot else "No model of this world"
-                return f"{wanted} has {'no' if spec.robot else 'a'} drive for our driver to move."
+                subject = f"The model {spec.robot}" if spec.robot else "No model of this world"
+                return f"{subject} has {'no' if spec.robot else 'a'} drive for our driver to move."
             try:
                 node_process = NodeProcess.start(
                     runner.graph, Path(spec.driver), args=controller_arguments(scenario), seed=spec.seed

@@ -44,7 +44,7 @@ from kit.school.result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
-TERMS = GradingOptions(Level.LIMITED, may_fall=False)
+TERMS = GradingOptions(Level.LIMITED, may_lower_level=False)
 DUE = datetime(2026, 11, 30, 12, tzinfo=UTC)
 
 
@@ -362,7 +362,7 @@ def test_levels_do_not_change_points(tmp_path: Path) -> None:
     assert len(levels) >= 2
     for level in levels:
         made = Queue(tmp_path / f"queue{int(level)}")
-        prepare_queue(made, folder, assignment, GradingOptions(level, may_fall=False))
+        prepare_queue(made, folder, assignment, GradingOptions(level, may_lower_level=False))
         for key in made.waiting():
             grade_job(made, key)
         tables.append([(row.name, row.points, dict(row.tests)) for row in gradebook_rows(made)])
