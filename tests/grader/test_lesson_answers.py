@@ -46,7 +46,7 @@ def named(thing: tuple[str, str]) -> str:
 def test_who_collides_in_the_yard(yard: WorldFacts, pair: str) -> None:
     (collides,) = {
         meeting.collides
-        for meeting in yard.meetings
+        for meeting in yard.collisions
         if {named(meeting.a), named(meeting.b)} == set(pair.split("_"))
     }
     assert keys_of(YARD)[pair].right == ("yes" if collides else "no",)
@@ -70,6 +70,6 @@ def test_who_speaks_and_who_listens(tmp_path: Path, plugin: str) -> None:
     )
     facts, _ = read_world_facts(tmp_path / "world.yaml")
     assert facts.problems == ()
-    ways = {end.publishes for end in facts.ends if end.topic != "/tf"}
+    ways = {end.publishes for end in facts.endpoints if end.topic != "/tf"}
     right = {frozenset({True}): "publishes", frozenset({False}): "subscribes"}.get(frozenset(ways), "both")
     assert keys_of(SPEAKERS)[plugin].right == (right,)
